@@ -11,13 +11,16 @@ namespace {
 
 TriangleMesh cube() { return box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}); }
 
-TriangleMesh single_polygon() { return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}; }
+TriangleMesh single_polygon() {
+  return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+}
 
 TriangleMesh terrain() {
   constexpr int kSide = 9;
   TriangleMesh mesh;
   for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) mesh.vertices.push_back({0.25 * x, 0.25 * y, 0.15 * std::sin(1.1 * x) * std::cos(0.8 * y)});
+    for (int x = 0; x < kSide; ++x)
+      mesh.vertices.push_back({0.25 * x, 0.25 * y, 0.15 * std::sin(1.1 * x) * std::cos(0.8 * y)});
   }
   for (int y = 0; y + 1 < kSide; ++y) {
     for (int x = 0; x + 1 < kSide; ++x) {
@@ -32,7 +35,8 @@ TriangleMesh terrain() {
 TriangleMesh without_lid() {
   TriangleMesh mesh = cube();
   std::erase_if(mesh.faces, [&](const Face& face) {
-    return mesh.vertices[face[0]].z() > 0 && mesh.vertices[face[1]].z() > 0 && mesh.vertices[face[2]].z() > 0;
+    return mesh.vertices[face[0]].z() > 0 && mesh.vertices[face[1]].z() > 0 &&
+           mesh.vertices[face[2]].z() > 0;
   });
   return mesh;
 }
@@ -41,7 +45,8 @@ TriangleMesh without_lid() {
 TriangleMesh cracked() {
   TriangleMesh mesh = without_lid();
   const int first = static_cast<int>(mesh.vertices.size());
-  for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) mesh.vertices.push_back({x, y, 0.501});
+  for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
+    mesh.vertices.push_back({x, y, 0.501});
   mesh.faces.push_back({first, first + 1, first + 2});
   mesh.faces.push_back({first, first + 2, first + 3});
   return mesh;
@@ -79,7 +84,10 @@ TriangleMesh mixed_winding() {
 }
 
 /// A closed pillow without a filling: two sheets in one plane, cut along different diagonals.
-TriangleMesh zero_volume() { return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}}; }
+TriangleMesh zero_volume() {
+  return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+          {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+}
 
 TriangleMesh inside_out() {
   TriangleMesh mesh = cube();
@@ -100,7 +108,8 @@ std::vector<Model> broken_catalogue() {
       {"broken/mixed_winding.3ds", {{"mixed", mixed_winding()}}},
       {"broken/zero_volume.3ds", {{"pillow", zero_volume()}}},
       {"broken/no_faces.3ds", {{"points", {cube().vertices, {}}}}},
-      {"broken/inside_out.3ds", {{"inside_out", inside_out()}}},  // not refused: turned, with a notice
+      // not refused: turned, with a notice
+      {"broken/inside_out.3ds", {{"inside_out", inside_out()}}},
   };
 }
 

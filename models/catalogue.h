@@ -9,8 +9,8 @@
 namespace tumble::models {
 
 struct Model {
-  std::string file;              // relative to models/
-  std::vector<Object> objects;   // [m], z up
+  std::string file;             // relative to models/
+  std::vector<Object> objects;  // [m], z up
 };
 
 /// The models in the order of their README. The same list on every call.

@@ -17,7 +17,8 @@ TriangleMesh box(const Vector3d& low, const Vector3d& high) {
   return moved(surface_of(Box{0.5 * (high - low)}), 0.5 * (low + high));
 }
 
-TriangleMesh extrude(const std::vector<Vector2d>& outline, const std::vector<Face>& triangles, double z_low, double z_high) {
+TriangleMesh extrude(const std::vector<Vector2d>& outline, const std::vector<Face>& triangles,
+                     double z_low, double z_high) {
   const int n = static_cast<int>(outline.size());
   TriangleMesh mesh;
   for (double z : {z_low, z_high}) {
@@ -37,10 +38,12 @@ TriangleMesh extrude(const std::vector<Vector2d>& outline, const std::vector<Fac
 
 TriangleMesh revolve(const std::vector<Vector2d>& profile, int segments, bool closed) {
   require(segments >= 3 && profile.size() >= 3, "revolve: at least 3 segments and 3 points");
-  require(closed || (is_pole(profile.front()) && is_pole(profile.back())), "revolve: an open profile starts and ends on the axis");
+  require(closed || (is_pole(profile.front()) && is_pole(profile.back())),
+          "revolve: an open profile starts and ends on the axis");
   TriangleMesh mesh;
   const int rows = static_cast<int>(profile.size());
-  std::vector<int> first(profile.size());  // vertex of each row; a pole has one, a ring has one a segment
+  // vertex of each row; a pole has one, a ring has one a segment
+  std::vector<int> first(profile.size());
   for (int row = 0; row < rows; ++row) {
     const Vector2d& p = profile[row];
     first[row] = static_cast<int>(mesh.vertices.size());
@@ -49,11 +52,14 @@ TriangleMesh revolve(const std::vector<Vector2d>& profile, int segments, bool cl
       mesh.vertices.push_back({p.x() * std::cos(angle), p.x() * std::sin(angle), p.y()});
     }
   }
-  const auto vertex = [&](int row, int s) { return first[row] + (is_pole(profile[row]) ? 0 : s % segments); };
+  const auto vertex = [&](int row, int s) {
+    return first[row] + (is_pole(profile[row]) ? 0 : s % segments);
+  };
   for (int row = 0; row + 1 < rows + (closed ? 1 : 0); ++row) {
     const int above = (row + 1) % rows;
     for (int s = 0; s < segments; ++s) {
-      const int a = vertex(row, s), b = vertex(row, s + 1), c = vertex(above, s + 1), d = vertex(above, s);
+      const int a = vertex(row, s), b = vertex(row, s + 1), c = vertex(above, s + 1),
+                d = vertex(above, s);
       if (!is_pole(profile[row])) mesh.faces.push_back({a, b, c});
       if (!is_pole(profile[above])) mesh.faces.push_back({a, c, d});
     }
@@ -80,8 +86,10 @@ TriangleMesh convex_hull(const std::vector<Vector3d>& points) {
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) {
       for (int k = j + 1; k < n; ++k) {
-        if (all_below(i, j, k)) mesh.faces.push_back({i, j, k});
-        else if (all_below(i, k, j)) mesh.faces.push_back({i, k, j});
+        if (all_below(i, j, k))
+          mesh.faces.push_back({i, j, k});
+        else if (all_below(i, k, j))
+          mesh.faces.push_back({i, k, j});
       }
     }
   }

@@ -16,7 +16,8 @@ TriangleMesh box(const Vector3d& low, const Vector3d& high);
 /// A polygon in the xy plane, stretched along z.
 /// @param outline    counter-clockwise, seen from above [m]
 /// @param triangles  a triangulation of it, counter-clockwise
-TriangleMesh extrude(const std::vector<Vector2d>& outline, const std::vector<Face>& triangles, double z_low, double z_high);
+TriangleMesh extrude(const std::vector<Vector2d>& outline, const std::vector<Face>& triangles,
+                     double z_low, double z_high);
 
 /// A surface round the z axis.
 /// @param profile   (r, z) from the bottom to the top [m]; where r is 0 the surface closes in one

@@ -13,7 +13,8 @@ constexpr std::size_t kMostCounted = 65535;  // counts and indices are u16
 template <class T>
 std::string little_endian(T value) {
   std::string bytes;
-  for (std::size_t i = 0; i < sizeof value; ++i) bytes += static_cast<char>((value >> (8 * i)) & 0xFF);
+  for (std::size_t i = 0; i < sizeof value; ++i)
+    bytes += static_cast<char>((value >> (8 * i)) & 0xFF);
   return bytes;
 }
 
@@ -36,7 +37,8 @@ std::string chunk(std::uint16_t id, const std::string& data) {
 std::string vertex_list(const std::vector<Vector3d>& vertices) {
   require(vertices.size() <= kMostCounted, "vertex_list: a .3ds mesh has at most 65535 vertices");
   std::string data = u16(static_cast<std::uint16_t>(vertices.size()));
-  for (const Vector3d& vertex : vertices) data += f32(vertex.x()) + f32(vertex.y()) + f32(vertex.z());
+  for (const Vector3d& vertex : vertices)
+    data += f32(vertex.x()) + f32(vertex.y()) + f32(vertex.z());
   return chunk(0x4110, data);
 }
 
@@ -63,7 +65,9 @@ std::string file_3ds(const std::string& editor_data, const std::string& more) {
 
 std::string write_3ds(const std::vector<Object>& objects) {
   std::string data;
-  for (const Object& object : objects) data += object_chunk(object.name, vertex_list(object.mesh.vertices) + face_list(object.mesh.faces));
+  for (const Object& object : objects)
+    data +=
+        object_chunk(object.name, vertex_list(object.mesh.vertices) + face_list(object.mesh.faces));
   return file_3ds(data);
 }
 

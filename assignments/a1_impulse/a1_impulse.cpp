@@ -1,4 +1,5 @@
-// Your work for assignment 1. Replace each body; the comment above its declaration in a1_impulse.h says what it must do.
+// Your work for assignment 1. Replace each body; the comment above its declaration in a1_impulse.h
+// says what it must do.
 #include "assignments/a1_impulse/a1_impulse.h"
 
 namespace tumble::a1 {

@@ -1,4 +1,5 @@
-// Your work for assignment 2. Replace each body; the comment above its declaration in a2_integration.h says what it must do.
+// Your work for assignment 2. Replace each body; the comment above its declaration in
+// a2_integration.h says what it must do.
 #include "assignments/a2_integration/a2_integration.h"
 
 namespace tumble::a2 {
@@ -28,7 +29,8 @@ Matrix3d orthonormalize(const Matrix3d&) {
 }
 
 Matrix3d rotation_from_euler_angles(double, double, double) {
-  throw NotImplemented("rotation_from_euler_angles", "handouts/a2_integration.md#hint-euler-angles");
+  throw NotImplemented("rotation_from_euler_angles",
+                       "handouts/a2_integration.md#hint-euler-angles");
 }
 
 EulerAngles euler_angles_from_rotation(const Matrix3d&) {
@@ -39,7 +41,8 @@ RootResult impact_time_bisection(const ScalarFunction&, double, double, double) 
   throw NotImplemented("impact_time_bisection", "handouts/a2_integration.md#hint-bisection");
 }
 
-RootResult impact_time_newton(const ScalarFunction&, const ScalarFunction&, double, double, double) {
+RootResult impact_time_newton(const ScalarFunction&, const ScalarFunction&, double, double,
+                              double) {
   throw NotImplemented("impact_time_newton", "handouts/a2_integration.md#hint-newton");
 }
 

@@ -1,4 +1,5 @@
-// Your work for assignment 3. Replace each body; the comment above its declaration in a3_constraints.h says what it must do.
+// Your work for assignment 3. Replace each body; the comment above its declaration in
+// a3_constraints.h says what it must do.
 #include "assignments/a3_constraints/a3_constraints.h"
 
 namespace tumble::a3 {
@@ -23,11 +24,13 @@ double baumgarte_acceleration(double, double, double) {
   throw NotImplemented("baumgarte_acceleration", "handouts/a3_constraints.md#hint-baumgarte");
 }
 
-VectorXd constraint_multipliers(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd&) {
+VectorXd constraint_multipliers(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&,
+                                const VectorXd&) {
   throw NotImplemented("constraint_multipliers", "handouts/a3_constraints.md#hint-multipliers");
 }
 
-VectorXd constraint_correction(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd&) {
+VectorXd constraint_correction(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&,
+                               const VectorXd&) {
   throw NotImplemented("constraint_correction", "handouts/a3_constraints.md#hint-correction");
 }
 

@@ -1,4 +1,5 @@
-// Your work for assignment 4. Replace each body; the comment above its declaration in a4_timewarp.h says what it must do.
+// Your work for assignment 4. Replace each body; the comment above its declaration in a4_timewarp.h
+// says what it must do.
 #include "assignments/a4_timewarp/a4_timewarp.h"
 
 namespace tumble::a4 {
@@ -15,7 +16,8 @@ CheckDecision on_collision_check(const ScheduledEvent&, const CheckFinding&, dou
   throw NotImplemented("on_collision_check", "handouts/a4_timewarp.md#hint-check");
 }
 
-std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>&, const std::vector<GroupContact>&) {
+std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>&,
+                                                      const std::vector<GroupContact>&) {
   throw NotImplemented("contact_groups", "handouts/a4_timewarp.md#hint-groups");
 }
 

@@ -30,12 +30,18 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 void print_mutants(const std::vector<AuditResult>& results) {
   std::size_t widest = 0;
   for (const AuditResult& r : results) widest = std::max(widest, r.candidate.name.size());
-  fmt::print("{:<{}}  caught by  points  names the slip  for example by\n", "known-wrong solution", widest);
+  fmt::print("{:<{}}  caught by  points  names the slip  for example by\n", "known-wrong solution",
+             widest);
   for (const AuditResult& r : results) {
     if (r.candidate.is_right) continue;
-    if (!r.fault.empty()) fmt::print("{:<{}}  FAULT      {}\n", r.candidate.name, widest, first_line(r.fault));
-    else if (r.caught_by.empty()) fmt::print("{:<{}}  SURVIVES   {}\n", r.candidate.name, widest, r.candidate.slip);
-    else fmt::print("{:<{}}  {:>9}  {:>6}  {:<14}  {}\n", r.candidate.name, widest, r.caught_by.size(), grading::points_text(r.score), r.is_named ? "yes" : "NO: '" + r.candidate.keyword + "'", r.best);
+    if (!r.fault.empty())
+      fmt::print("{:<{}}  FAULT      {}\n", r.candidate.name, widest, first_line(r.fault));
+    else if (r.caught_by.empty())
+      fmt::print("{:<{}}  SURVIVES   {}\n", r.candidate.name, widest, r.candidate.slip);
+    else
+      fmt::print("{:<{}}  {:>9}  {:>6}  {:<14}  {}\n", r.candidate.name, widest, r.caught_by.size(),
+                 grading::points_text(r.score),
+                 r.is_named ? "yes" : "NO: '" + r.candidate.keyword + "'", r.best);
   }
   fmt::print("\n{:<{}}  score\n", "right solution", widest);
   for (const AuditResult& r : results) {
@@ -57,7 +63,8 @@ void print_tests(const grading::Rubric& rubric, const std::vector<AuditResult>& 
     const grading::Catches none, &of_test = found == catches.end() ? none : found->second;
     std::string alone;
     for (const std::string& slip : of_test.alone) alone += (alone.empty() ? "" : ", ") + slip;
-    fmt::print("{:<{}}  {:>7}  {}\n", item.test, widest, of_test.count, of_test.count == 0 ? "none of these slips" : alone);
+    fmt::print("{:<{}}  {:>7}  {}\n", item.test, widest, of_test.count,
+               of_test.count == 0 ? "none of these slips" : alone);
   }
 }
 
@@ -66,40 +73,63 @@ void print_json(const std::vector<AuditResult>& results) {
   for (const AuditResult& r : results) {
     std::vector<std::string> tests;
     for (const auto& test : r.caught_by) tests.push_back(test.test);
-    page.push_back({{"name", r.candidate.name}, {"right", r.candidate.is_right}, {"slip", r.candidate.slip}, {"keyword", r.candidate.keyword}, {"fault", r.fault},
-                    {"score", r.score}, {"possible", r.possible}, {"caught_by", tests}, {"named", r.is_named}, {"as_it_should", r.is_as_it_should()}});
+    page.push_back({{"name", r.candidate.name},
+                    {"right", r.candidate.is_right},
+                    {"slip", r.candidate.slip},
+                    {"keyword", r.candidate.keyword},
+                    {"fault", r.fault},
+                    {"score", r.score},
+                    {"possible", r.possible},
+                    {"caught_by", tests},
+                    {"named", r.is_named},
+                    {"as_it_should", r.is_as_it_should()}});
   }
   fmt::print("{}\n", page.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 std::string share_touched(const grading::TouchedLines& lines) {
-  return fmt::format("slips touch {} of {} lines of code of {} ({} %)", lines.touched, lines.code_lines, lines.file.filename().string(),
+  return fmt::format("slips touch {} of {} lines of code of {} ({} %)", lines.touched,
+                     lines.code_lines, lines.file.filename().string(),
                      lines.code_lines == 0 ? 0 : 100 * lines.touched / lines.code_lines);
 }
 
 void print_lines(const grading::TouchedLines& lines, bool json) {
   if (json) {
     auto untouched = nlohmann::ordered_json::array();
-    for (const grading::LineRange& range : lines.untouched) untouched.push_back({{"first", range.first}, {"last", range.last}, {"code_lines", range.code_lines}});
-    fmt::print("{}\n", nlohmann::ordered_json{{"file", lines.file.string()}, {"code_lines", lines.code_lines}, {"touched", lines.touched}, {"untouched", untouched}}.dump(2));
+    for (const grading::LineRange& range : lines.untouched)
+      untouched.push_back(
+          {{"first", range.first}, {"last", range.last}, {"code_lines", range.code_lines}});
+    fmt::print("{}\n", nlohmann::ordered_json{{"file", lines.file.string()},
+                                              {"code_lines", lines.code_lines},
+                                              {"touched", lines.touched},
+                                              {"untouched", untouched}}
+                           .dump(2));
     return;
   }
-  constexpr std::size_t kWidth = 80;   // of a shown line of code
-  fmt::print("{}\nno slip touches\n{:>9}  {:>4}  beginning with\n", share_touched(lines), "lines", "code");
+  constexpr std::size_t kWidth = 80;  // of a shown line of code
+  fmt::print("{}\nno slip touches\n{:>9}  {:>4}  beginning with\n", share_touched(lines), "lines",
+             "code");
   for (const grading::LineRange& range : lines.untouched)
-    fmt::print("{:>9}  {:>4}  {}\n", range.first == range.last ? std::to_string(range.first) : fmt::format("{}-{}", range.first, range.last), range.code_lines, range.text.substr(0, kWidth));
+    fmt::print("{:>9}  {:>4}  {}\n",
+               range.first == range.last ? std::to_string(range.first)
+                                         : fmt::format("{}-{}", range.first, range.last),
+               range.code_lines, range.text.substr(0, kWidth));
 }
 
 void audit(Context& context, const AuditWords& words) {
-  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  const grading::Course course{context.root, context.build, &context.registry,
+                               context.command_line};
   const auto all = grading::find_candidates(course, words.id, words.mutants);
-  if (words.lines) return print_lines(grading::touched_lines_of_reference(course, words.id, all), words.json);
+  if (words.lines)
+    return print_lines(grading::touched_lines_of_reference(course, words.id, all), words.json);
   const auto candidates = grading::only(all, words.only);
   grading::judge_of(course, words.id);
   const bool line = ::isatty(STDERR_FILENO) == 1;
   const auto told = [&](std::size_t done, std::size_t total) {
-    if (line) fmt::print(stderr, "\r{} of {} judged{}", done, total, done == total ? "\n" : "");
-    else if (done == total || done % 10 == 0) fmt::print(stderr, "{} of {} judged\n", done, total);
+    if (line)
+      fmt::print(stderr, "\r{} of {} judged{}", done, total, done == total ? "\n" : "");
+    else if (done == total || done % 10 == 0)
+      fmt::print(stderr, "{} of {} judged\n", done, total);
   };
   const auto results = grading::audit(course, words.id, candidates, words.jobs, told);
   std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0;
@@ -113,8 +143,13 @@ void audit(Context& context, const AuditWords& words) {
   } else {
     print_mutants(results);
     print_tests(grading::rubric_of(course, words.id), results);
-    fmt::print("\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of {} right solutions have every point\n", caught, wrong, named, whole, right);
-    if (words.only.empty()) fmt::print("{}; --lines lists the others\n", share_touched(grading::touched_lines_of_reference(course, words.id, all)));
+    fmt::print(
+        "\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of "
+        "{} right solutions have every point\n",
+        caught, wrong, named, whole, right);
+    if (words.only.empty())
+      fmt::print("{}; --lines lists the others\n",
+                 share_touched(grading::touched_lines_of_reference(course, words.id, all)));
   }
   context.exit = caught == wrong && whole == right ? ExitCode::kFine : ExitCode::kCheckFailed;
 }
@@ -123,16 +158,29 @@ void audit(Context& context, const AuditWords& words) {
 
 void add_audit(CLI::App& app, Context& context) {
   auto words = std::make_shared<AuditWords>();
-  Verb verb(app, "audit", "Judge every known-wrong solution: which test catches which, and does its story name the slip");
+  Verb verb(app, "audit",
+            "Judge every known-wrong solution: which test catches which, and does its story name "
+            "the slip");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
-  verb.option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own").type_name("FOLDER");
-  verb.option("--only", words->only, "These alone, by the first column's names, with commas between them; reference and other right solutions too").separated_by(',').type_name("SLIP");
+  verb.option("--mutants", words->mutants,
+              "Known-wrong solutions to judge instead of the assignment's own")
+      .type_name("FOLDER");
+  verb.option("--only", words->only,
+              "These alone, by the first column's names, with commas between them; reference and "
+              "other right solutions too")
+      .separated_by(',')
+      .type_name("SLIP");
   verb.option("--jobs", words->jobs, "At a time").between(1, 256).default_text("number of cores");
-  verb.flag("--lines", words->lines, "List the lines of the reference that no slip touches, and judge nothing");
+  verb.flag("--lines", words->lines,
+            "List the lines of the reference that no slip touches, and judge nothing");
   verb.flag("--json", words->json, "For machines");
-  verb.footer("A known-wrong solution is a slip (NAME.slip: what differs from a right solution; framework/grading/course/slip.h) or a whole file (NAME.cpp). A line of the reference is touched\n"
-              "where a slip takes it out or writes it anew; comments, #include, namespaces and braces alone do not count.\n"
-              "Exit: 0 all caught and no right solution accused, 1 otherwise.");
+  verb.footer(
+      "A known-wrong solution is a slip (NAME.slip: what differs from a right solution; "
+      "framework/grading/course/slip.h) or a whole file (NAME.cpp). A line of the reference is "
+      "touched\n"
+      "where a slip takes it out or writes it anew; comments, #include, namespaces and braces "
+      "alone do not count.\n"
+      "Exit: 0 all caught and no right solution accused, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });
 }
 

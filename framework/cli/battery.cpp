@@ -33,7 +33,9 @@ struct BatteryOptions {
 
 bool is_wanted(const battery::Case& a_case, const std::vector<std::string>& only) {
   return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& word) {
-           return word == std::to_string(a_case.row) || (!std::isdigit(static_cast<unsigned char>(word[0])) && lowercase(a_case.name).find(lowercase(word)) != std::string::npos);
+           return word == std::to_string(a_case.row) ||
+                  (!std::isdigit(static_cast<unsigned char>(word[0])) &&
+                   lowercase(a_case.name).find(lowercase(word)) != std::string::npos);
          });
 }
 
@@ -52,9 +54,13 @@ void provide(const Context& context, const std::string& word, battery::Given& gi
 
 // Names are cut in the middle, which carries the least information.
 void print_measure(const std::string& name, const Measure& m) {
-  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", without_middle(name, 24), without_middle(m.what, 50), report::shown_value(m), report::shown_threshold(m),
+  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", without_middle(name, 24),
+             without_middle(m.what, 50), report::shown_value(m), report::shown_threshold(m),
              report::shown_margin(m), report::word_of(report::outcome_of(m)));
-  const std::string note = !m.error.empty() ? m.error : !m.not_run.empty() ? m.not_run : report::outcome_of(m) == Outcome::kShort ? m.shortfall : "";
+  const std::string note = !m.error.empty()                           ? m.error
+                           : !m.not_run.empty()                       ? m.not_run
+                           : report::outcome_of(m) == Outcome::kShort ? m.shortfall
+                                                                      : "";
   if (!note.empty()) fmt::print("{:<24}   {}\n", "", note);
 }
 
@@ -78,7 +84,12 @@ void run_battery(Context& context, const BatteryOptions& options) {
   provide(context, options.modules, given);
   given.is_long = options.is_long;
   if (options.is_long)
-    given.on_measure = [](const Measure& m) { fmt::print(stderr, "tumble:    {}: {}\n", m.what, !m.error.empty() ? m.error : !m.not_run.empty() ? m.not_run : report::shown_value(m)); };
+    given.on_measure = [](const Measure& m) {
+      fmt::print(stderr, "tumble:    {}: {}\n", m.what,
+                 !m.error.empty()     ? m.error
+                 : !m.not_run.empty() ? m.not_run
+                                      : report::shown_value(m));
+    };
   given.truth = [truths](const std::string& id) {
     std::string name = id;
     if (const auto slash = name.find('/'); slash != std::string::npos) name.replace(slash, 1, "__");
@@ -87,9 +98,13 @@ void run_battery(Context& context, const BatteryOptions& options) {
   std::vector<battery::Case> wanted;
   for (const battery::Case& a_case : battery::cases())
     if (is_wanted(a_case, options.only)) wanted.push_back(a_case);
-  if (wanted.empty()) throw UserError("--only", "no case has that number or that word in its name", "Run without --only to see all of them.");
+  if (wanted.empty())
+    throw UserError("--only", "no case has that number or that word in its name",
+                    "Run without --only to see all of them.");
   std::vector<BatteryRow> rows;
-  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case", "closest to its threshold; methods that must fail", "value", "threshold", "margin", "verdict");
+  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case",
+             "closest to its threshold; methods that must fail", "value", "threshold", "margin",
+             "verdict");
   for (const battery::Case& a_case : wanted) {
     fmt::print(stderr, "tumble: {} {}\n", a_case.row, a_case.name);
     rows.push_back(battery::run(a_case, given));
@@ -97,9 +112,12 @@ void run_battery(Context& context, const BatteryOptions& options) {
   }
   const report::BatteryCount count = report::count_of(rows);
   const fs::path page = fs::path(options.out) / "battery.html";
-  report::write_battery_page(rows, std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") + "; integration: " + given.laws.integrator_source +
-                                       ", impulses: " + given.laws.impulse_source + ", constraints: " + given.laws.constraint_source,
-                             record_of(context), page);
+  report::write_battery_page(
+      rows,
+      std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") +
+          "; integration: " + given.laws.integrator_source + ", impulses: " +
+          given.laws.impulse_source + ", constraints: " + given.laws.constraint_source,
+      record_of(context), page);
   fmt::print("\n{}\n{}\n", report::sentence_of(count), page.string());
   if (!count.good()) context.exit = ExitCode::kCheckFailed;
 }
@@ -108,12 +126,18 @@ void run_battery(Context& context, const BatteryOptions& options) {
 
 void add_battery(CLI::App& app, Context& context) {
   auto options = std::make_shared<BatteryOptions>();
-  Verb verb(app, "battery", "Run the cases that are known to break simulations, against thresholds derived beforehand");
-  verb.flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps, an hour of timewarp (half an hour, most of it houses of cards that fall)");
+  Verb verb(
+      app, "battery",
+      "Run the cases that are known to break simulations, against thresholds derived beforehand");
+  verb.flag("--long", options->is_long,
+            "Whole lengths: stacks of 60 s, a million steps, an hour of timewarp (half an hour, "
+            "most of it houses of cards that fall)");
   verb.option("--only", options->only, "Cases by number, or by a word of the name");
-  verb.flag("--each", options->each, "Show every measure, not only the one closest to its threshold");
+  verb.flag("--each", options->each,
+            "Show every measure, not only the one closest to its threshold");
   verb.option("--out", options->out, "Folder of the page battery.html").shows_default();
-  verb.option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so").default_text("reference where this tree has one, else student");
+  verb.option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so")
+      .default_text("reference where this tree has one, else student");
   verb.runs([&context, options] { run_battery(context, *options); });
 }
 

@@ -18,23 +18,31 @@ namespace tumble::battery {
 
 /// Input of a case.
 struct Given {
-  Laws laws;                                                    // laws without a provider are empty
-  bool is_long = false;                                         // the durations of the table; else short ones, for daily use
-  std::function<truths::Case(const std::string& id)> truth;     // a file of reference values: "chain/links8_horizontal"
-  std::map<std::string, modules::AnyModule> modules{};          // modules whose functions are no laws, by id; without those that nothing provides
-  std::function<void(const report::Measure&)> on_measure{};     // called with each measure when it is found, because long rows take minutes; may be empty
+  Laws laws;  // laws without a provider are empty
+  // the durations of the table; else short ones, for daily use
+  bool is_long = false;
+  // a file of reference values: "chain/links8_horizontal"
+  std::function<truths::Case(const std::string& id)> truth;
+  // modules whose functions are no laws, by id; without those that nothing provides
+  std::map<std::string, modules::AnyModule> modules{};
+  // called with each measure when it is found, because long rows take minutes; may be empty
+  std::function<void(const report::Measure&)> on_measure{};
 };
 
 /// Collects the measures of a case.
 class Findings {
  public:
   /// @param on_measure  as Given::on_measure
-  Findings(report::BatteryRow& row, std::function<void(const report::Measure&)> on_measure) : row_(row), on_measure_(std::move(on_measure)) {}
+  Findings(report::BatteryRow& row, std::function<void(const report::Measure&)> on_measure)
+      : row_(row), on_measure_(std::move(on_measure)) {}
 
-  void at_most(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
-  void at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
+  void at_most(const std::string& what, double value, double threshold, const std::string& unit,
+               const std::string& why);
+  void at_least(const std::string& what, double value, double threshold, const std::string& unit,
+                const std::string& why);
   /// As at_most, for a method that is known to violate it: the measure must fail.
-  void must_fail(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
+  void must_fail(const std::string& what, double value, double threshold, const std::string& unit,
+                 const std::string& why);
   /// A condition that must be true.
   void is_true(const std::string& what, bool answer, const std::string& why);
   void not_run(const std::string& what, const std::string& reason);
@@ -55,8 +63,10 @@ class Findings {
 struct Case {
   int row;
   std::string name, about;
-  std::string needs;                                            // laws needed besides integration: "", "a1", "a3", "a1 a3"
-  std::function<void(const Given&, Findings&)> run;             // empty: not part of the battery yet, for the reason in `not_part`
+  // laws needed besides integration: "", "a1", "a3", "a1 a3"
+  std::string needs;
+  // empty: not part of the battery yet, for the reason in `not_part`
+  std::function<void(const Given&, Findings&)> run;
   std::string not_part{};
 };
 

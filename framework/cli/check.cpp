@@ -10,8 +10,11 @@ void add_check(CLI::App& app, Command& command) {
   auto rest = std::make_shared<std::vector<std::string>>();
   Verb verb(app, "check", "Build your file and run the public tests: a verdict and a story each");
   add_check_words(verb, *rest, *id);
-  verb.footer("Exit: 0 all right, 1 something is wrong or does not compile, 2 something to repair, 4 the rest is right but not all is attempted.");
-  verb.runs([&command, id, rest] { command.exit = check_once(command, read_check_words(*id, *rest)); });
+  verb.footer(
+      "Exit: 0 all right, 1 something is wrong or does not compile, 2 something to repair, 4 the "
+      "rest is right but not all is attempted.");
+  verb.runs(
+      [&command, id, rest] { command.exit = check_once(command, read_check_words(*id, *rest)); });
 }
 
 }  // namespace tumble::cli

@@ -21,10 +21,13 @@ namespace fs = std::filesystem;
 using grading::Output;
 using grading::ProgramOutcome;
 
-constexpr double kLoadLimit = 10.0;   // s: a test program starts in 20 ms; the rest is for a loaded machine
+// s: a test program starts in 20 ms; the rest is for a loaded machine
+constexpr double kLoadLimit = 10.0;
 
 // @throws UserError for an id that no assignment has
-const std::string& folder_of(const std::string& id) { return modules::find_name(assignment_names(), id).folder; }
+const std::string& folder_of(const std::string& id) {
+  return modules::find_name(assignment_names(), id).folder;
+}
 
 bool has_colours() { return ::isatty(STDOUT_FILENO) == 1; }
 
@@ -35,7 +38,8 @@ void print_indented(const std::string& text) {
 
 // Shows the compiler's errors as a verdict.
 ExitCode does_not_compile(const fs::path& file, const fs::path& header, const std::string& said) {
-  fmt::print("{}does not compile{}: {}\n\n", has_colours() ? "\033[31m" : "", has_colours() ? "\033[0m" : "", file.filename().string());
+  fmt::print("{}does not compile{}: {}\n\n", has_colours() ? "\033[31m" : "",
+             has_colours() ? "\033[0m" : "", file.filename().string());
   print_indented(grading::compiler_story(said, file, header));
   fmt::print("\nno test ran: correct the first error first\n");
   return ExitCode::kCheckFailed;
@@ -44,18 +48,25 @@ ExitCode does_not_compile(const fs::path& file, const fs::path& header, const st
 void print_warnings(const fs::path& file, const std::string& said) {
   const std::string warnings = grading::compiler_warnings(said, file);
   if (warnings.empty()) return;
-  fmt::print("{}the compiler warns{}: {}\n\n", has_colours() ? "\033[33m" : "", has_colours() ? "\033[0m" : "", file.filename().string());
+  fmt::print("{}the compiler warns{}: {}\n\n", has_colours() ? "\033[33m" : "",
+             has_colours() ? "\033[0m" : "", file.filename().string());
   print_indented(warnings);
   fmt::print("\n");
 }
 
-ExitCode run_tests(const Command& command, const CheckWords& words, std::vector<std::string> program) {
-  program.insert(program.end(), {"--rubric", (command.root / "assignments" / folder_of(words.id) / "rubric.json").string()});
+ExitCode run_tests(const Command& command, const CheckWords& words,
+                   std::vector<std::string> program) {
+  program.insert(
+      program.end(),
+      {"--rubric", (command.root / "assignments" / folder_of(words.id) / "rubric.json").string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);
   const int code = grading::run_program(program, Output::kOurs).code;
   if (code < 0 || code > static_cast<int>(ExitCode::kNotAttempted)) {
-    fmt::print("\nthe program with your code ended with code {} before its tests could be judged: look for code that runs before main\n", code);
+    fmt::print(
+        "\nthe program with your code ended with code {} before its tests could be judged: look "
+        "for code that runs before main\n",
+        code);
     return ExitCode::kCheckFailed;
   }
   return static_cast<ExitCode>(code);
@@ -69,7 +80,8 @@ ExitCode run_tests(const Command& command, const CheckWords& words, std::vector<
 class KeptWords {
  public:
   KeptWords(const Command& command, const std::string& id, const std::string& folder)
-      : object_(command.build / "assignments" / folder / "CMakeFiles" / (id + "_linked.dir") / (folder + ".cpp.o")),
+      : object_(command.build / "assignments" / folder / "CMakeFiles" / (id + "_linked.dir") /
+                (folder + ".cpp.o")),
         words_(command.build / "checked" / (id + ".compiler.txt")) {
     std::error_code ignored;
     if (!are_of_object()) fs::remove(object_, ignored);
@@ -94,18 +106,24 @@ class KeptWords {
 // The initial value of a global object is computed before main: one that does not end would hang
 // every test.
 bool starts(const fs::path& program) {
-  return grading::run_program({program.string(), "--debug", "--gtest_list_tests"}, Output::kDropped, kLoadLimit).in_time;
+  return grading::run_program({program.string(), "--debug", "--gtest_list_tests"}, Output::kDropped,
+                              kLoadLimit)
+      .in_time;
 }
 
-ExitCode check_own(const Command& command, const CheckWords& words, const fs::path& file, const fs::path& header) {
+ExitCode check_own(const Command& command, const CheckWords& words, const fs::path& file,
+                   const fs::path& header) {
   const KeptWords kept(command, words.id, folder_of(words.id));
-  const ProgramOutcome built = grading::run_program({"ninja", "-C", command.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
+  const ProgramOutcome built = grading::run_program(
+      {"ninja", "-C", command.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
   if (built.code != 0) return does_not_compile(file, header, built.printed);
   print_warnings(file, kept.after_build(built.printed));
   const fs::path program = command.build / "bin" / ("check_" + words.id);
   if (!starts(program)) {
-    fmt::print("out of time: {}\n\n    does not start within {:g} s: the initial value of a global or static variable is a loop that does not end\n\nno test ran\n",
-               file.filename().string(), kLoadLimit);
+    fmt::print(
+        "out of time: {}\n\n    does not start within {:g} s: the initial value of a global or "
+        "static variable is a loop that does not end\n\nno test ran\n",
+        file.filename().string(), kLoadLimit);
     return ExitCode::kCheckFailed;
   }
   return run_tests(command, words, {program.string()});
@@ -113,14 +131,19 @@ ExitCode check_own(const Command& command, const CheckWords& words, const fs::pa
 
 // ---- Another file, compiled and called in the sandbox ----
 
-ExitCode check_foreign(const Command& command, const CheckWords& words, const fs::path& file, const fs::path& header) {
+ExitCode check_foreign(const Command& command, const CheckWords& words, const fs::path& file,
+                       const fs::path& header) {
   const fs::path program = command.build / "bin" / ("check_" + words.id + "_sandboxed");
-  if (!fs::exists(program)) throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
+  if (!fs::exists(program))
+    throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
   const PrivateFolder folder;
   const fs::path object = folder.path() / (words.id + ".so");
-  const auto built = grading::build_module(command.root, command.build, words.id, folder_of(words.id), file, object);
-  if (built.outcome == grading::BuiltSubmission::Outcome::kGraderFault) throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
-  if (built.outcome == grading::BuiltSubmission::Outcome::kRefused) return does_not_compile(file, header, built.said);
+  const auto built = grading::build_module(command.root, command.build, words.id,
+                                           folder_of(words.id), file, object);
+  if (built.outcome == grading::BuiltSubmission::Outcome::kGraderFault)
+    throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
+  if (built.outcome == grading::BuiltSubmission::Outcome::kRefused)
+    return does_not_compile(file, header, built.said);
   print_warnings(file, built.said);
   return run_tests(command, words, {program.string(), "--submission", object.string(), "--quick"});
 }
@@ -129,34 +152,46 @@ ExitCode check_foreign(const Command& command, const CheckWords& words, const fs
 
 void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id) {
   verb.option("assignment", id, "Which, e.g. a1").required().type_name("ID");
-  verb.option("what", rest, "FILE.cpp: instead of your file under assignments/, run in the sandbox; other words choose tests, e.g. 'CollisionImpulse.*'").type_name("[FILE] [PATTERN]");
+  verb.option("what", rest,
+              "FILE.cpp: instead of your file under assignments/, run in the sandbox; other words "
+              "choose tests, e.g. 'CollisionImpulse.*'")
+      .type_name("[FILE] [PATTERN]");
 }
 
 CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest) {
   folder_of(id);
   CheckWords words{id, {}, {}};
   for (const std::string& word : rest) {
-    const bool is_file = word.ends_with(".cpp") || word.ends_with(".cc") || word.find('/') != std::string::npos;
+    const bool is_file =
+        word.ends_with(".cpp") || word.ends_with(".cc") || word.find('/') != std::string::npos;
     if (is_file && words.file) throw UserError(word, "is a second file", "Check one at a time.");
-    if (is_file && !fs::is_regular_file(word)) throw UserError(word, "there is no such file", "Check the path.");
-    if (is_file) words.file = word;
-    else words.patterns.push_back(word);
+    if (is_file && !fs::is_regular_file(word))
+      throw UserError(word, "there is no such file", "Check the path.");
+    if (is_file)
+      words.file = word;
+    else
+      words.patterns.push_back(word);
   }
   return words;
 }
 
 fs::path checked_file(const Command& command, const CheckWords& words) {
   const std::string folder = folder_of(words.id);
-  return words.file ? fs::absolute(*words.file) : command.root / "assignments" / folder / (folder + ".cpp");
+  return words.file ? fs::absolute(*words.file)
+                    : command.root / "assignments" / folder / (folder + ".cpp");
 }
 
 ExitCode check_once(const Command& command, const CheckWords& words) {
   const fs::path file = checked_file(command, words);
-  if (!fs::exists(file)) throw UserError(file.string(), "is not there", "Put your file back, or take it from the starter tree.");
+  if (!fs::exists(file))
+    throw UserError(file.string(), "is not there",
+                    "Put your file back, or take it from the starter tree.");
   const std::string folder = folder_of(words.id);
-  const fs::path own = command.root / "assignments" / folder / (folder + ".cpp"), header = own.parent_path() / (folder + ".h");
+  const fs::path own = command.root / "assignments" / folder / (folder + ".cpp"),
+                 header = own.parent_path() / (folder + ".h");
   std::error_code missing;
-  return fs::equivalent(file, own, missing) ? check_own(command, words, file, header) : check_foreign(command, words, file, header);
+  return fs::equivalent(file, own, missing) ? check_own(command, words, file, header)
+                                            : check_foreign(command, words, file, header);
 }
 
 }  // namespace tumble::cli

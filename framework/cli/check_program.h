@@ -13,8 +13,8 @@ namespace tumble::cli {
 
 struct CheckWords {
   std::string id;
-  std::optional<std::filesystem::path> file;   // instead of the stub
-  std::vector<std::string> patterns;           // of test names
+  std::optional<std::filesystem::path> file;  // instead of the stub
+  std::vector<std::string> patterns;          // of test names
 };
 
 /// Declares "a1 [FILE] [PATTERN...]" on a verb; `rest` and `id` hold the words after the parse.

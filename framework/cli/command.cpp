@@ -34,9 +34,11 @@ std::string joined(const std::vector<std::string>& words) {
 void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> known;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(verb->get_name());
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(verb->get_name());
   if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
-  throw UserError(argv[1], "there is no such verb." + did_you_mean(argv[1], known), "Known: " + joined(known) + ". tumble --help says what each does.");
+  throw UserError(argv[1], "there is no such verb." + did_you_mean(argv[1], known),
+                  "Known: " + joined(known) + ". tumble --help says what each does.");
 }
 
 // The parser would only report an unexpected flag.
@@ -48,21 +50,23 @@ void refuse_unknown_flag(const CLI::App& app) {
     for (const std::string& word : verb->remaining()) {
       const std::string flag = word.substr(0, word.find('='));
       if (!flag.starts_with("-") || flag == "-") continue;
-      throw UserError(flag, verb->get_name() + " has no such flag." + did_you_mean(flag, known), "Known: " + joined(known) + ".");
+      throw UserError(flag, verb->get_name() + " has no such flag." + did_you_mean(flag, known),
+                      "Known: " + joined(known) + ".");
     }
   }
 }
 
 // The parser reports a range of 309 digits where a number has to be positive.
 std::string without_digits(const std::string& told) {
-  constexpr const char* kRange = " not in range 0.000000 to 1797";   // the largest double
+  constexpr const char* kRange = " not in range 0.000000 to 1797";  // the largest double
   const std::size_t begin = told.find(kRange);
   return begin == std::string::npos ? told : told.substr(0, begin) + " is not a number above 0";
 }
 
 int run(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare) {
   find_trees(command);
-  for (int i = 0; i < argc; ++i) command.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "tumble");
+  for (int i = 0; i < argc; ++i)
+    command.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "tumble");
 
   CLI::App app{"Tumble: a course on rigid-body simulation that grades itself", "tumble"};
   app.require_subcommand(1);
@@ -76,7 +80,8 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
     refuse_unknown_flag(app);
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
   } catch (const CLI::ValidationError& error) {
-    throw UserError("tumble " + (argc > 1 ? std::string(argv[1]) : ""), without_digits(error.what()), "Run with --help for what each flag takes.");
+    throw UserError("tumble " + (argc > 1 ? std::string(argv[1]) : ""),
+                    without_digits(error.what()), "Run with --help for what each flag takes.");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
   }
@@ -85,7 +90,8 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
 
 }  // namespace
 
-int run_verbs(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare) {
+int run_verbs(int argc, char** argv, Command& command,
+              const std::function<void(CLI::App&)>& declare) {
   keep_freed_memory();
   try {
     return run(argc, argv, command, declare);
@@ -96,7 +102,8 @@ int run_verbs(int argc, char** argv, Command& command, const std::function<void(
     std::fprintf(stderr, "tumble: not attempted: %s\n", missing.what());
     return static_cast<int>(ExitCode::kNotAttempted);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "tumble: this is our bug, please report it with the command: %s\n", error.what());
+    std::fprintf(stderr, "tumble: this is our bug, please report it with the command: %s\n",
+                 error.what());
     return static_cast<int>(ExitCode::kOurBug);
   }
 }

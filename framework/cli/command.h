@@ -20,12 +20,15 @@ struct Command {
   ExitCode exit = ExitCode::kFine;  // what the verb that ran says
 };
 
-/// main() of a program of verbs: finds the trees, reads the words, runs the verb, turns errors into exit codes.
+/// main() of a program of verbs: finds the trees, reads the words, runs the verb, turns errors into
+/// exit codes.
 /// @param declare  declares the verbs, which keep what they are given of `command`
-int run_verbs(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare);
+int run_verbs(int argc, char** argv, Command& command,
+              const std::function<void(CLI::App&)>& declare);
 
-// Verbs that need no scene, no engine and no module's header: programs of their own hold them too (CMakeLists.txt), so
-// that who checks a file or inspects a mesh does not wait for all that `tumble` is made of.
+// Verbs that need no scene, no engine and no module's header: programs of their own hold them too
+// (CMakeLists.txt), so that who checks a file or inspects a mesh does not wait for all that
+// `tumble` is made of.
 void add_check(CLI::App& app, Command& command);
 void add_handouts(CLI::App& app, Command& command);
 void add_inspect(CLI::App& app, Command& command);

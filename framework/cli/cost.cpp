@@ -26,9 +26,15 @@ void print(const report::CostPage& page) {
   for (const report::CostCurve& curve : page.curves) {
     const report::CostPoint* least = nullptr;
     for (const report::CostPoint& point : curve.points)
-      if (point.stopped_by.empty() && std::isfinite(point.error) && (least == nullptr || point.error < least->error)) least = &point;
-    fmt::print("{:<{}} {:>6}  {:<32}", curve.name, width, std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
-               least == nullptr ? "does not reach the end" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " " + page.error_unit, least->fineness));
+      if (point.stopped_by.empty() && std::isfinite(point.error) &&
+          (least == nullptr || point.error < least->error))
+        least = &point;
+    fmt::print("{:<{}} {:>6}  {:<32}", curve.name, width,
+               std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
+               least == nullptr ? "does not reach the end"
+                                : fmt::format("{:.1e}{} at {}", least->error,
+                                              page.error_unit.empty() ? "" : " " + page.error_unit,
+                                              least->fineness));
     for (const double mark : page.marks) {
       const report::CostPoint* point = report::cheapest(curve, mark);
       fmt::print(" {:>14}", point == nullptr ? "-" : report::price_of(point->cpu_s));
@@ -58,7 +64,8 @@ void run_cost(Context& context, const CostWords& words) {
   if (words.scene == kImpactWord) return tell_impacts(context, words);
   if (words.scene == kAllWord) return cost_of_all(context, words);
   for (const modules::ModuleKind* kind : context.registry.all())
-    if (kind->id == words.scene && kind->is_scheduler) return cost_of_scheduler(context, *kind, words);
+    if (kind->id == words.scene && kind->is_scheduler)
+      return cost_of_scheduler(context, *kind, words);
   const MeasuredCost measured = measure_cost(context, words);
   fmt::print("{}\n  {}\n", measured.page.title, measured.against);
   print_and_write(measured.page, words);
@@ -69,22 +76,60 @@ void run_cost(Context& context, const CostWords& words) {
 
 void add_cost(CLI::App& app, Context& context) {
   auto words = std::make_shared<CostWords>();
-  Verb verb(app, "cost", "Error against CPU time by every method, step and engine, with plots and sentences");
-  verb.option("scene", words->scene, "A scene file, the bare name of one, a scene with a size, an assignment (a1 to a4): the student's module against the reference; toi: root finders on times of impact; or all: every scene, and one table").required().type_name("SCENE");
-  verb.option("--methods", words->methods, "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none").separated_by(',');
-  verb.option("--engines", words->engines, "Beside rd with each method: auto (rd, in closed form where nothing but gravity acts), ca, tw, ordered; none").separated_by(',');
-  verb.option("--stabilisations", words->stabilisations, "Stabilisation of rods and joints, each with RK4: none, baumgarte, projection").separated_by(',');
-  verb.option("--impacts", words->impacts, "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748").separated_by(',');
-  verb.option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps, newton (persistent contacts)").separated_by(',');
-  verb.option("--steps", words->steps, "Steps [s], such as 1/30,1/60,0.001, instead of halvings until the budget is used").separated_by(',').type_name("STEPS");
-  verb.option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ... (with rods or joints from 1e-4 on)").separated_by(',').positive();
-  verb.option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is measured (default student)").type_name("WORDS");
-  verb.option("--on", words->on, "Of an assignment: the scene that it is measured on").type_name("SCENE");
-  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive();
-  verb.option("--budget-s", words->budget_s, "CPU time of all methods together [s], default 30, with all: 4 per scene; the reference solution takes at most 18 s more").positive();
+  Verb verb(app, "cost",
+            "Error against CPU time by every method, step and engine, with plots and sentences");
+  verb.option("scene", words->scene,
+              "A scene file, the bare name of one, a scene with a size, an assignment (a1 to a4): "
+              "the student's module against the reference; toi: root finders on times of impact; "
+              "or all: every scene, and one table")
+      .required()
+      .type_name("SCENE");
+  verb.option("--methods", words->methods,
+              "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, "
+              "dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none")
+      .separated_by(',');
+  verb.option("--engines", words->engines,
+              "Beside rd with each method: auto (rd, in closed form where nothing but gravity "
+              "acts), ca, tw, ordered; none")
+      .separated_by(',');
+  verb.option("--stabilisations", words->stabilisations,
+              "Stabilisation of rods and joints, each with RK4: none, baumgarte, projection")
+      .separated_by(',');
+  verb.option("--impacts", words->impacts,
+              "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748")
+      .separated_by(',');
+  verb.option("--solvers", words->solvers,
+              "Iterative solvers in place of direct ones, over their tolerance: gradients (rods "
+              "and joints), sweeps, newton (persistent contacts)")
+      .separated_by(',');
+  verb.option("--steps", words->steps,
+              "Steps [s], such as 1/30,1/60,0.001, instead of halvings until the budget is used")
+      .separated_by(',')
+      .type_name("STEPS");
+  verb.option("--tolerances", words->tolerances,
+              "Tolerances of methods that control their error, instead of 0.1, 0.01, ... (with "
+              "rods or joints from 1e-4 on)")
+      .separated_by(',')
+      .positive();
+  verb.option("--modules", words->modules,
+              "Whose laws, as for tumble run; of an assignment: whose module is measured (default "
+              "student)")
+      .type_name("WORDS");
+  verb.option("--on", words->on, "Of an assignment: the scene that it is measured on")
+      .type_name("SCENE");
+  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")
+      .positive();
+  verb.option("--budget-s", words->budget_s,
+              "CPU time of all methods together [s], default 30, with all: 4 per scene; the "
+              "reference solution takes at most 18 s more")
+      .positive();
   verb.option("--n", words->n, "Size of a scene whose size is a parameter");
-  verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made").shows_default();
-  verb.footer("Example: tumble cost double_pendulum\n         tumble cost a2 --modules mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with each other only.");
+  verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made")
+      .shows_default();
+  verb.footer(
+      "Example: tumble cost double_pendulum\n         tumble cost a2 --modules "
+      "mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with "
+      "each other only.");
   verb.runs([&context, words] { run_cost(context, *words); });
 }
 

@@ -19,28 +19,40 @@
 namespace tumble::cli {
 namespace {
 
-using engines::CostResult;
-using engines::CostReference;
 using engines::CostMethod;
+using engines::CostReference;
+using engines::CostResult;
 
-constexpr double kLeastRunTime = 2.0;   // s of CPU of a run that is always allowed
-constexpr double kLeastShare = 0.2;  // the same as a fraction of a small budget
-constexpr double kAnAnswer = 0.1;    // of the size of the motion: larger errors do not show the order
-constexpr double kTrifle = 0.03;     // of the remaining budget: a run below this is always worth its cost
-constexpr double kUsualOrder = 4.0;  // error is weighed against cost at this rate, so that a method is not preferred only because it has spent more
-constexpr double kLeastSlope = 0.5, kMostSlope = 12.0;   // range of credible slopes of error over cost
+constexpr double kLeastRunTime = 2.0;  // s of CPU of a run that is always allowed
+constexpr double kLeastShare = 0.2;    // the same as a fraction of a small budget
+// of the size of the motion: larger errors do not show the order
+constexpr double kAnAnswer = 0.1;
+// of the remaining budget: a run below this is always worth its cost
+constexpr double kTrifle = 0.03;
+// error is weighed against cost at this rate, so that a method is not preferred only because it has
+// spent more
+constexpr double kUsualOrder = 4.0;
+// range of credible slopes of error over cost
+constexpr double kLeastSlope = 0.5, kMostSlope = 12.0;
 constexpr double kForTheBest = 0.4;  // of the budget: for the refinement with the least error
 constexpr double kLongest = 2.0;     // times its share of the budget, for the same
-constexpr double kFirstRight = 25.0; // s of CPU of a run without a reference solution before any has finished: its result is the only one
-constexpr double kLongestFirst = 0.5;   // of the budget, for such a run with a reference solution
-constexpr double kWorthATruth = 0.1; // of the scene's duration: a shorter reference solution says less than the scene's numbers
-constexpr double kSearch = 3.0, kLeastSearch = 6.0;   // budgets, and s of CPU, for the search for a reference solution
+// s of CPU of a run without a reference solution before any has finished: its result is the only
+// one
+constexpr double kFirstRight = 25.0;
+constexpr double kLongestFirst = 0.5;  // of the budget, for such a run with a reference solution
+// of the scene's duration: a shorter reference solution says less than the scene's numbers
+constexpr double kWorthATruth = 0.1;
+// budgets, and s of CPU, for the search for a reference solution
+constexpr double kSearch = 3.0, kLeastSearch = 6.0;
 constexpr double kLeastProbe = 1.0;  // s, and
-constexpr double kHostsPart = 0.5;   // of the budget, where a module runs in a sandbox: the other process uses as much again
-constexpr double kProbe = 0.1;       // of the budget: for the run that shows whether a scene's size fits
-constexpr int kSmaller = 3;          // the factor by which the size shrinks otherwise
+// of the budget, where a module runs in a sandbox: the other process uses as much again
+constexpr double kHostsPart = 0.5;
+// of the budget: for the run that shows whether a scene's size fits
+constexpr double kProbe = 0.1;
+constexpr int kSmaller = 3;  // the factor by which the size shrinks otherwise
 
-const std::vector<double> kSharesAllowed = {1.0, 0.1};   // of the tolerances of the scene's numbers: required errors without a reference solution
+// of the tolerances of the scene's numbers: required errors without a reference solution
+const std::vector<double> kSharesAllowed = {1.0, 0.1};
 
 struct Refinement {
   CostMethod method;
@@ -48,14 +60,19 @@ struct Refinement {
 };
 
 std::string fineness_of(const CostResult& result) {
-  if (std::isfinite(result.tolerance)) return fmt::format("tolerance\u00a0{:.0e}", result.tolerance);
+  if (std::isfinite(result.tolerance))
+    return fmt::format("tolerance\u00a0{:.0e}", result.tolerance);
   if (!std::isfinite(result.step_s)) return "no step";
-  return 1.0 / result.step_s >= 10 ? fmt::format("1/{:.0f}\u00a0s", 1.0 / result.step_s) : fmt::format("{:.3g} s", result.step_s);
+  return 1.0 / result.step_s >= 10 ? fmt::format("1/{:.0f}\u00a0s", 1.0 / result.step_s)
+                                   : fmt::format("{:.3g} s", result.step_s);
 }
 
 bool is_smooth(const scene::Scene& scene) {
-  const auto collide = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; });
-  return collide < 2 && !scene::asks_for(scene, [](const scene::Traits& traits) { return traits.constrains || traits.looks; });
+  const auto collide = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                     [](const scene::BodySpec& body) { return body.collides; });
+  return collide < 2 && !scene::asks_for(scene, [](const scene::Traits& traits) {
+           return traits.constrains || traits.looks;
+         });
 }
 
 /// Median cost, without runs whose error is no answer.
@@ -63,7 +80,8 @@ double middle_price(const std::vector<Refinement>& refinements, const CostRefere
   std::vector<double> prices;
   for (const Refinement& refinement : refinements)
     for (const CostResult& result : refinement.results)
-      if (result.stopped_by.empty() && result.error_m < reference.scale_m) prices.push_back(result.cpu_s);
+      if (result.stopped_by.empty() && result.error_m < reference.scale_m)
+        prices.push_back(result.cpu_s);
   if (prices.empty()) return 1.0;
   std::sort(prices.begin(), prices.end());
   return prices[prices.size() / 2];
@@ -77,10 +95,12 @@ std::string counted_in_words(std::string counter) {
   return counter;
 }
 
-report::CostCurve curve_of(const Refinement& refinement, const CostReference& reference, double price, bool smooth) {
+report::CostCurve curve_of(const Refinement& refinement, const CostReference& reference,
+                           double price, bool smooth) {
   report::CostCurve curve;
   curve.name = refinement.method.name;
-  curve.reading = engines::read_refinement(refinement.method, refinement.results, reference, smooth);
+  curve.reading =
+      engines::read_refinement(refinement.method, refinement.results, reference, smooth);
   curve.counted = counted_in_words(refinement.method.counted);
   curve.is_subject = refinement.method.name.starts_with("your ");
   const auto fit = engines::order_of(refinement.method, refinement.results, reference);
@@ -88,7 +108,11 @@ report::CostCurve curve_of(const Refinement& refinement, const CostReference& re
   double closest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < refinement.results.size(); ++k) {
     const CostResult& result = refinement.results[k];
-    curve.points.push_back({fineness_of(result), refinement.method.controlled ? kUnset : result.step_s, std::max(result.error_m, reference.floor_m), result.cpu_s, static_cast<double>(result.evaluations), result.stopped_by});   // no run is known to be better than the reference solution
+    // no run is known to be better than the reference solution
+    curve.points.push_back({fineness_of(result),
+                            refinement.method.controlled ? kUnset : result.step_s,
+                            std::max(result.error_m, reference.floor_m), result.cpu_s,
+                            static_cast<double>(result.evaluations), result.stopped_by});
     const double off = std::abs(std::log(result.cpu_s / price));
     if (!result.stopped_by.empty() || !(off < closest)) continue;
     closest = off;
@@ -102,73 +126,115 @@ report::CostCurve curve_of(const Refinement& refinement, const CostReference& re
 
 std::string what_error_is(const CostReference& reference) {
   if (reference.by_numbers)
-    return fmt::format("There is no reference solution ({}). So each run is judged as tumble run judges it, and its error is the worst of the scene's numbers relative to its tolerance: up to 1 is right. "
-                       "A run that exceeds a tolerance of 0 has no such error and is not drawn.", reference.why_by_numbers);
-  return fmt::format("Errors are against {}: {:.1e} m. The error of a body is the distance of its centre of mass from the reference, plus the angle of its rotation error times its radius of gyration; the "
-                     "largest over all movable bodies and samples counts. An error of {:.1e} m, the size of the motion, is no answer, and is not drawn.", reference.what, reference.floor_m, reference.scale_m);
+    return fmt::format(
+        "There is no reference solution ({}). So each run is judged as tumble run judges it, and "
+        "its error is the worst of the scene's numbers relative to its tolerance: up to 1 is "
+        "right. "
+        "A run that exceeds a tolerance of 0 has no such error and is not drawn.",
+        reference.why_by_numbers);
+  return fmt::format(
+      "Errors are against {}: {:.1e} m. The error of a body is the distance of its centre of mass "
+      "from the reference, plus the angle of its rotation error times its radius of gyration; the "
+      "largest over all movable bodies and samples counts. An error of {:.1e} m, the size of the "
+      "motion, is no answer, and is not drawn.",
+      reference.what, reference.floor_m, reference.scale_m);
 }
 
 bool any_gets_through(const Refinement& refinement) {
-  return std::any_of(refinement.results.begin(), refinement.results.end(), [](const CostResult& result) { return result.stopped_by.empty(); });
+  return std::any_of(refinement.results.begin(), refinement.results.end(),
+                     [](const CostResult& result) { return result.stopped_by.empty(); });
 }
 
 /// All refinements within one budget: a first share each, and the rest to the most promising.
 class Refinements {
  public:
-  Refinements(const CostSubject& subject, const CostReference& reference, const CostWords& words, const engines::CostOptions& options)
-      : scene_(subject.scene), reference_(reference), words_{words.steps_s(), words.tolerances}, budget_((subject.connections.empty() ? 1.0 : kHostsPart) * words.budget()), options_(options), until_(cpu_seconds() + budget_) {
+  Refinements(const CostSubject& subject, const CostReference& reference, const CostWords& words,
+              const engines::CostOptions& options)
+      : scene_(subject.scene),
+        reference_(reference),
+        words_{words.steps_s(), words.tolerances},
+        budget_((subject.connections.empty() ? 1.0 : kHostsPart) * words.budget()),
+        options_(options),
+        until_(cpu_seconds() + budget_) {
     for (const CostMethod& method : subject.methods) refinements.push_back({method, {}});
   }
 
   void run() {
     const double first_until = until_ - kForTheBest * budget_;
     for (std::size_t k = 0; k < refinements.size(); ++k) {
-      const double share = std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(refinements.size() - k);
-      if (k > 0 && left() <= 0.0) leave_out(k);
-      else extend(k, share);
+      const double share =
+          std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(refinements.size() - k);
+      if (k > 0 && left() <= 0.0)
+        leave_out(k);
+      else
+        extend(k, share);
       // Where one run takes more than its share, the others would use up the budget before any
       // shows a result.
-      if (k == 0 && !refinements[0].results.empty() && refinements[0].results.back().spent_s > share)
+      if (k == 0 && !refinements[0].results.empty() &&
+          refinements[0].results.back().spent_s > share)
         while (next_mark() > 0.0 && can_go_on(0)) extend(0, 0.0);
     }
     while (const std::optional<std::size_t> best = closest()) extend(*best, 0.0);
-    std::erase_if(refinements, [](const Refinement& refinement) { return refinement.results.empty(); });
+    std::erase_if(refinements,
+                  [](const Refinement& refinement) { return refinement.results.empty(); });
   }
 
   std::vector<Refinement> refinements;
-  std::vector<std::string> not_run;   // methods left out, with the reason
+  std::vector<std::string> not_run;  // methods left out, with the reason
 
  private:
   double left() const { return std::max(0.0, until_ - cpu_seconds()); }
 
   void leave_out(std::size_t k) {
-    not_run.push_back(fmt::format("{}: the budget of {:g} s was used up before its turn", refinements[k].method.name, budget_));
+    not_run.push_back(fmt::format("{}: the budget of {:g} s was used up before its turn",
+                                  refinements[k].method.name, budget_));
     fmt::print(stderr, "{:>2}/{} not run: {}\n", k + 1, refinements.size(), not_run.back());
   }
 
   void extend(std::size_t k, double share) {
     engines::CostOptions own = options_;
-    const bool first = std::none_of(refinements.begin(), refinements.end(), any_gets_through) && (reference_.by_numbers || k == 0);
-    const double allowed = !first ? std::min(kLeastRunTime, kLeastShare * budget_) : reference_.by_numbers ? kFirstRight : kLongestFirst * left();
+    const bool first = std::none_of(refinements.begin(), refinements.end(), any_gets_through) &&
+                       (reference_.by_numbers || k == 0);
+    const double allowed = !first                  ? std::min(kLeastRunTime, kLeastShare * budget_)
+                           : reference_.by_numbers ? kFirstRight
+                                                   : kLongestFirst * left();
     own.most_of_run_s = std::max(allowed, std::min(left(), kLongest * share));
     if (share == 0.0) own.most_of_run_s = std::max(kLeastShare * budget_, left());
-    engines::extend_refinement(scene_, refinements[k].method, reference_, share, own, words_, refinements[k].results, [&](const CostResult& result) {
-      const std::string found = result.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", result.error_m, reference_.by_numbers ? " of the tolerance" : " m", report::price_of(result.cpu_s)) : "stopped";
-      fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, refinements.size(), refinements[k].method.name, fineness_of(result), found, left());
-    });
+    engines::extend_refinement(
+        scene_, refinements[k].method, reference_, share, own, words_, refinements[k].results,
+        [&](const CostResult& result) {
+          const std::string found =
+              result.stopped_by.empty()
+                  ? fmt::format("error {:.1e}{}, {}", result.error_m,
+                                reference_.by_numbers ? " of the tolerance" : " m",
+                                report::price_of(result.cpu_s))
+                  : "stopped";
+          fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1,
+                     refinements.size(), refinements[k].method.name, fineness_of(result), found,
+                     left());
+        });
   }
 
   bool can_go_on(std::size_t k) const {
     const Refinement& refinement = refinements[k];
-    return !refinement.results.empty() && engines::next_price(refinement.results) <= left() && !engines::refinement_is_done(scene_, refinement.method, reference_, refinement.results, words_);
+    return !refinement.results.empty() && engines::next_price(refinement.results) <= left() &&
+           !engines::refinement_is_done(scene_, refinement.method, reference_, refinement.results,
+                                        words_);
   }
 
   /// The largest required error above the floor that no run has reached; 0: there is none.
   double next_mark() const {
-    const std::vector<double> marks = reference_.by_numbers ? kSharesAllowed : report::CostPage().marks;
+    const std::vector<double> marks =
+        reference_.by_numbers ? kSharesAllowed : report::CostPage().marks;
     for (const double mark : marks) {
-      const auto reaches = [&](const CostResult& result) { return result.stopped_by.empty() && std::max(result.error_m, reference_.floor_m) <= mark; };
-      if (mark >= reference_.floor_m && std::none_of(refinements.begin(), refinements.end(), [&](const Refinement& refinement) { return std::any_of(refinement.results.begin(), refinement.results.end(), reaches); })) return mark;
+      const auto reaches = [&](const CostResult& result) {
+        return result.stopped_by.empty() && std::max(result.error_m, reference_.floor_m) <= mark;
+      };
+      if (mark >= reference_.floor_m &&
+          std::none_of(refinements.begin(), refinements.end(), [&](const Refinement& refinement) {
+            return std::any_of(refinement.results.begin(), refinement.results.end(), reaches);
+          }))
+        return mark;
     }
     return 0.0;
   }
@@ -182,7 +248,8 @@ class Refinements {
     for (std::size_t k = 0; k < refinements.size(); ++k) {
       if (!can_go_on(k)) continue;
       const double next = engines::next_price(refinements[k].results);
-      const std::pair<int, double> here = next < kTrifle * left() ? std::pair{0, next} : hope(refinements[k].results, next, mark);
+      const std::pair<int, double> here =
+          next < kTrifle * left() ? std::pair{0, next} : hope(refinements[k].results, next, mark);
       if (best && here >= least) continue;
       best = k;
       least = here;
@@ -193,20 +260,28 @@ class Refinements {
   /// Rank, small is good: refinements that reach the next required error in the remaining time, by
   /// cost; then those with an error, by error at its cost; then those that diverged, because half
   /// the step may be stable; last those without an answer.
-  std::pair<int, double> hope(const std::vector<CostResult>& results, double next, double mark) const {
+  std::pair<int, double> hope(const std::vector<CostResult>& results, double next,
+                              double mark) const {
     const CostResult& result = results.back();
-    if (reference_.by_numbers) return result.stopped_by.empty() && std::isfinite(result.error_m) ? std::pair{2, result.error_m} : std::pair{3, next};
+    if (reference_.by_numbers)
+      return result.stopped_by.empty() && std::isfinite(result.error_m)
+                 ? std::pair{2, result.error_m}
+                 : std::pair{3, next};
     if (!result.stopped_by.empty() || !std::isfinite(result.error_m)) return {3, next};
     if (result.error_m > kAnAnswer * reference_.scale_m) return {4, next};
-    const double price = mark > 0.0 ? result.spent_s * std::pow(result.error_m / mark, 1.0 / slope_of(results)) : std::numeric_limits<double>::infinity();
-    return price < left() ? std::pair{1, price} : std::pair{2, result.error_m * std::pow(result.cpu_s, kUsualOrder)};
+    const double price =
+        mark > 0.0 ? result.spent_s * std::pow(result.error_m / mark, 1.0 / slope_of(results))
+                   : std::numeric_limits<double>::infinity();
+    return price < left() ? std::pair{1, price}
+                          : std::pair{2, result.error_m * std::pow(result.cpu_s, kUsualOrder)};
   }
 
   /// Exponent of the error against the cost in the last part of a refinement.
   double slope_of(const std::vector<CostResult>& results) const {
     if (results.size() < 2 || !results[results.size() - 2].stopped_by.empty()) return kUsualOrder;
     const CostResult &coarse = results[results.size() - 2], &fine = results.back();
-    const double slope = std::log(coarse.error_m / fine.error_m) / std::log(fine.spent_s / coarse.spent_s);
+    const double slope =
+        std::log(coarse.error_m / fine.error_m) / std::log(fine.spent_s / coarse.spent_s);
     return std::isfinite(slope) ? std::clamp(slope, kLeastSlope, kMostSlope) : kUsualOrder;
   }
 
@@ -220,10 +295,12 @@ class Refinements {
 
 /// Whether one of a scene's numbers measures accuracy: a gap with tolerance 0 is only kept or not.
 bool allows_something(const scene::Scene& scene) {
-  return std::any_of(scene.checks.begin(), scene.checks.end(), [](const scene::CheckSpec& check) { return check.tolerance > 0.0; });
+  return std::any_of(scene.checks.begin(), scene.checks.end(),
+                     [](const scene::CheckSpec& check) { return check.tolerance > 0.0; });
 }
 
-report::CostPage page_of(const Context& context, const std::vector<Refinement>& refinements, const CostReference& reference, const CostSubject& subject) {
+report::CostPage page_of(const Context& context, const std::vector<Refinement>& refinements,
+                         const CostReference& reference, const CostSubject& subject) {
   report::CostPage page;
   page.title = subject.title;
   page.about = subject.scene.about;
@@ -238,27 +315,37 @@ report::CostPage page_of(const Context& context, const std::vector<Refinement>& 
   page.scale = reference.scale_m;
   page.record = record_of(context, subject.scene);
   const double price = middle_price(refinements, reference);
-  for (const Refinement& refinement : refinements) page.curves.push_back(curve_of(refinement, reference, price, is_smooth(subject.scene)));
+  for (const Refinement& refinement : refinements)
+    page.curves.push_back(curve_of(refinement, reference, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);
   if (reference.by_numbers && !allows_something(subject.scene))
-    page.readings.push_back("All tolerances of the scene's numbers are 0, so a run keeps to them or does not: the page shows which runs are right and their cost, but not how accurate they are.");
-  if (reference.by_numbers) page.readings.push_back("Judged by the scene's own numbers, because there is no reference solution: " + reference.why_by_numbers + ".");
+    page.readings.push_back(
+        "All tolerances of the scene's numbers are 0, so a run keeps to them or does not: the page "
+        "shows which runs are right and their cost, but not how accurate they are.");
+  if (reference.by_numbers)
+    page.readings.push_back(
+        "Judged by the scene's own numbers, because there is no reference solution: " +
+        reference.why_by_numbers + ".");
   else if (reference.duration_s < (1.0 - 1e-9) * reference.asked_s)
-    page.readings.push_back(fmt::format("Compared are the first {:.3g} s of {:.3g} s: {}.", reference.duration_s, reference.asked_s, reference.shortened_by));
+    page.readings.push_back(fmt::format("Compared are the first {:.3g} s of {:.3g} s: {}.",
+                                        reference.duration_s, reference.asked_s,
+                                        reference.shortened_by));
   if (!subject.note.empty()) page.readings.push_back(subject.note);
   return page;
 }
 
 struct SizedWords {
   CostWords words;
-  std::optional<int> usual_n;   // set where the scene's usual size was too large
+  std::optional<int> usual_n;  // set where the scene's usual size was too large
 };
 
 /// Gives a scene whose size is a parameter a size of which a run fits into the budget many times,
 /// unless the words give one.
-SizedWords with_size_that_fits(const Context& context, CostWords words, engines::CostOptions options) {
+SizedWords with_size_that_fits(const Context& context, CostWords words,
+                               engines::CostOptions options) {
   const scene::SizedScene* sized = scene::sized_scene_named(words.scene);
-  if (sized == nullptr || words.n || std::filesystem::is_regular_file(words.scene)) return {words, std::nullopt};
+  if (sized == nullptr || words.n || std::filesystem::is_regular_file(words.scene))
+    return {words, std::nullopt};
   options.runs = 1;
   options.most_of_run_s = std::max(kLeastProbe, kProbe * words.budget());
   options.duration_s = words.duration_s;
@@ -266,9 +353,14 @@ SizedWords with_size_that_fits(const Context& context, CostWords words, engines:
     words.n = n;
     const CostSubject subject = find_subject(context, words);
     const CostReference whole = engines::by_numbers(subject.scene, options, "");
-    fmt::print(stderr, "tumble: {} with n = {}: testing whether a run fits into {:.3g} s\n", words.scene, n, options.most_of_run_s);
-    const CostMethod method = engines::goes_in_closed_form(subject.scene) ? method_by_engine("ca", subject.truth_laws, true) : method_by_integrator(method_named("rk4"), subject.truth_laws);
-    if (n > 1 && !engines::run_at_resolution(subject.scene, method, whole, 1, kUnset, options).stopped_by.empty()) continue;
+    fmt::print(stderr, "tumble: {} with n = {}: testing whether a run fits into {:.3g} s\n",
+               words.scene, n, options.most_of_run_s);
+    const CostMethod method = engines::goes_in_closed_form(subject.scene)
+                                  ? method_by_engine("ca", subject.truth_laws, true)
+                                  : method_by_integrator(method_named("rk4"), subject.truth_laws);
+    if (n > 1 && !engines::run_at_resolution(subject.scene, method, whole, 1, kUnset, options)
+                      .stopped_by.empty())
+      continue;
     return {words, n == sized->default_n ? std::nullopt : std::optional<int>(sized->default_n)};
   }
 }
@@ -279,7 +371,9 @@ const report::CostCurve* cheapest_curve(const report::CostPage& page, double mar
   const report::CostCurve* best = nullptr;
   for (const report::CostCurve& curve : page.curves) {
     const report::CostPoint* point = report::cheapest(curve, mark);
-    if (point != nullptr && (best == nullptr || point->cpu_s < report::cheapest(*best, mark)->cpu_s)) best = &curve;
+    if (point != nullptr &&
+        (best == nullptr || point->cpu_s < report::cheapest(*best, mark)->cpu_s))
+      best = &curve;
   }
   return best;
 }
@@ -288,40 +382,57 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
   std::vector<std::string> words;
   for (const double mark : page.marks) {
     const report::CostCurve* best = cheapest_curve(page, mark);
-    if (best == nullptr) words.push_back(fmt::format("{}: no run reaches it.", report::mark_in_words(page, mark)));
-    else words.push_back(fmt::format("{} costs at least {}: {}, {}.", report::mark_in_words(page, mark), report::price_of(report::cheapest(*best, mark)->cpu_s), best->name, report::cheapest(*best, mark)->fineness));
+    if (best == nullptr)
+      words.push_back(fmt::format("{}: no run reaches it.", report::mark_in_words(page, mark)));
+    else
+      words.push_back(fmt::format("{} costs at least {}: {}, {}.",
+                                  report::mark_in_words(page, mark),
+                                  report::price_of(report::cheapest(*best, mark)->cpu_s),
+                                  best->name, report::cheapest(*best, mark)->fineness));
   }
   return words;
 }
 
-void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, CostReference& reference) {
+void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws,
+                      CostReference& reference) {
   const std::filesystem::path folder = context.root / "tests" / "truths";
   if (!std::filesystem::is_directory(folder)) return;
   for (const auto& file : find_truths(folder)) {
     const truths::Case known = read_truth(file);
-    engines::check_reference(scene, laws, truths::known_positions(scene, known), "tests/truths/" + file.filename().string(), reference);
+    engines::check_reference(scene, laws, truths::known_positions(scene, known),
+                             "tests/truths/" + file.filename().string(), reference);
   }
 }
 
 MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
-  asked.steps_s();   // refused before any run
+  asked.steps_s();  // refused before any run
   engines::CostOptions options;
   options.timewarp = engines::fast_timewarp();
   options.progress = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
-  options.most_of_search_s = std::clamp(kSearch * asked.budget(), kLeastSearch, options.most_of_search_s);
+  options.most_of_search_s =
+      std::clamp(kSearch * asked.budget(), kLeastSearch, options.most_of_search_s);
   // Subject, reference solution, and the scene's own numbers where there is none.
   const auto [words, usual_n] = with_size_that_fits(context, asked, options);
   CostSubject subject = find_subject(context, words);
   options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
   if (!options.duration_s && !subject.scene.checks.empty()) options.least_share = kWorthATruth;
   std::string why;
-  const std::optional<CostReference> found = engines::try_reference(subject.scene, subject.truth_laws, options, why);
-  if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no reference solution (" + why + "), and the scene has no numbers of its own", "Give it \"checks\", or a shorter --duration-s.");
+  const std::optional<CostReference> found =
+      engines::try_reference(subject.scene, subject.truth_laws, options, why);
+  if (!found && subject.scene.checks.empty())
+    throw UserError(
+        subject.scene.name,
+        "there is no reference solution (" + why + "), and the scene has no numbers of its own",
+        "Give it \"checks\", or a shorter --duration-s.");
   CostReference reference = found ? *found : engines::by_numbers(subject.scene, options, why);
-  if (!found) fmt::print(stderr, "tumble: no reference solution ({}): runs are judged by the scene's numbers\n", why);
+  if (!found)
+    fmt::print(stderr,
+               "tumble: no reference solution ({}): runs are judged by the scene's numbers\n", why);
   if (found) check_with_files(context, subject.scene, subject.truth_laws, reference);
-  if (reference.by_numbers || subject.scene.contact)   // there the method of integration hardly matters: the usual one comes first
-    std::stable_partition(subject.methods.begin(), subject.methods.end(), [](const CostMethod& method) { return method.word == "rk4"; });
+  // there the method of integration hardly matters: the usual one comes first
+  if (reference.by_numbers || subject.scene.contact)
+    std::stable_partition(subject.methods.begin(), subject.methods.end(),
+                          [](const CostMethod& method) { return method.word == "rk4"; });
   // Runs all methods within the budget.
   Refinements all(subject, reference, words, options);
   all.run();
@@ -334,13 +445,23 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   if (usual_n) {
     measured.size = fmt::format("n = {}", *words.n);
     measured.page.title += ", " + measured.size;
-    measured.page.readings.push_back(fmt::format("Measured with n = {}: at its usual size, {}, one run takes longer than {:.3g} s here. Request it with --n {} and a larger --budget-s.", *words.n, *usual_n, std::max(kLeastProbe, kProbe * words.budget()), *usual_n));
+    measured.page.readings.push_back(
+        fmt::format("Measured with n = {}: at its usual size, {}, one run takes longer than {:.3g} "
+                    "s here. Request it with --n {} and a larger --budget-s.",
+                    *words.n, *usual_n, std::max(kLeastProbe, kProbe * words.budget()), *usual_n));
   }
-  if (reference.by_numbers) measured.against = fmt::format("judged by its numbers, over {:.3g} s: the worst of them over its tolerance [-]", reference.duration_s);
-  else measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", reference.what, reference.floor_m, reference.duration_s);
+  if (reference.by_numbers)
+    measured.against = fmt::format(
+        "judged by its numbers, over {:.3g} s: the worst of them over its tolerance [-]",
+        reference.duration_s);
+  else
+    measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", reference.what,
+                                   reference.floor_m, reference.duration_s);
   measured.duration_s = reference.duration_s;
   measured.asked_s = reference.asked_s;
-  const auto unwritten = [](const Refinement& refinement) { return !refinement.results.empty() && refinement.results.back().not_attempted; };
+  const auto unwritten = [](const Refinement& refinement) {
+    return !refinement.results.empty() && refinement.results.back().not_attempted;
+  };
   measured.not_attempted = std::any_of(refinements.begin(), refinements.end(), unwritten);
   return measured;
 }

@@ -11,10 +11,10 @@ namespace tumble::cli {
 
 struct MeasuredCost {
   report::CostPage page;
-  std::string against;            // the reference of errors, in one line
-  double duration_s, asked_s;     // compared duration, and requested duration
-  std::string size;               // of a scene whose usual size is too large; else empty
-  bool not_attempted = false;     // a required function is a stub
+  std::string against;         // the reference of errors, in one line
+  double duration_s, asked_s;  // compared duration, and requested duration
+  std::string size;            // of a scene whose usual size is too large; else empty
+  bool not_attempted = false;  // a required function is a stub
 };
 
 /// Computes the reference, runs every refinement, and reads them. Progress goes to stderr.
@@ -25,7 +25,8 @@ MeasuredCost measure_cost(const Context& context, const CostWords& words);
 /// A file of tests/truths for the same problem gives a better error floor than two runs of one
 /// engine.
 /// @param laws  right ones
-void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, engines::CostReference& reference);
+void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws,
+                      engines::CostReference& reference);
 
 /// The cheapest method for each error, one sentence each.
 std::vector<std::string> verdicts(const report::CostPage& page);

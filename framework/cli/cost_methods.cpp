@@ -52,30 +52,44 @@ CostMethod method_by_engine(const std::string& word, const Laws& laws, bool in_c
   method.name.clear();
   for (const auto& [known, meaning] : engines::engine_words())
     if (known == word) method.name = word + ", " + meaning;
-  if (method.name.empty() || word == "rd") throw UserError("--engines " + word, "expected auto, ca, tw, ordered or none", "rd runs with every method of --methods.");
-  if (!in_closed_form) method.name = word + ", RK4";   // for bodies that do not fly freely
+  if (method.name.empty() || word == "rd")
+    throw UserError("--engines " + word, "expected auto, ca, tw, ordered or none",
+                    "rd runs with every method of --methods.");
+  if (!in_closed_form) method.name = word + ", RK4";  // for bodies that do not fly freely
   return method;
 }
 
 namespace {
 
-bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
+bool is_none(const std::vector<std::string>& words) {
+  return words.size() == 1 && words.front() == "none";
+}
 
 CostMethod by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
-  if (!scene.stabilisation) throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints", "Leave the flag out, or take a scene such as double_pendulum.");
+  if (!scene.stabilisation)
+    throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints",
+                    "Leave the flag out, or take a scene such as double_pendulum.");
   CostMethod method = method_by_integrator(method_named("rk4"), laws);
   method.stabilisation = *scene.stabilisation;
-  if (word == "none") method.stabilisation->kind = scene::StabilisationKind::kNone;
-  else if (word == "baumgarte") method.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
-  else if (word == "projection") method.stabilisation->kind = scene::StabilisationKind::kProjection;
-  else throw UserError("--stabilisations " + word, "expected none, baumgarte or projection", "For example --stabilisations baumgarte,projection.");
-  method.name = word == "none" ? "RK4, no stabilisation" : word == "baumgarte" ? fmt::format("RK4, Baumgarte {:g} s", method.stabilisation->time_constant_s) : "RK4, projection";
+  if (word == "none")
+    method.stabilisation->kind = scene::StabilisationKind::kNone;
+  else if (word == "baumgarte")
+    method.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
+  else if (word == "projection")
+    method.stabilisation->kind = scene::StabilisationKind::kProjection;
+  else
+    throw UserError("--stabilisations " + word, "expected none, baumgarte or projection",
+                    "For example --stabilisations baumgarte,projection.");
+  method.name = word == "none" ? "RK4, no stabilisation"
+                : word == "baumgarte"
+                    ? fmt::format("RK4, Baumgarte {:g} s", method.stabilisation->time_constant_s)
+                    : "RK4, projection";
   method.word = word;
-  method.order = kUnset;   // the stabilisation may determine it
+  method.order = kUnset;  // the stabilisation may determine it
   return method;
 }
 
-constexpr double kTightest = 1e-12;   // tolerance of everything except the varied part
+constexpr double kTightest = 1e-12;  // tolerance of everything except the varied part
 
 /// Impacts by another root finder. The framework refines its answer to the last digit, so that the
 /// tolerance changes the cost but not the result; tumble cost toi shows the root finders alone.
@@ -87,10 +101,14 @@ CostMethod by_impacts(const std::string& word, const scene::Scene& scene, const 
   method.controlled = true;
   method.laws = laws;
   method.counted = "gap_evaluations";
-  if (engines::goes_in_closed_form(scene)) method.propagator = "auto";
-  else method.step_function = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  if (engines::goes_in_closed_form(scene))
+    method.propagator = "auto";
+  else
+    method.step_function = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
   method.tuned = [find = root.find](double tolerance, Laws& tuned) {
-    tuned.find_impact_time = [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double) { return find(gap, rate, low, high, tolerance); };
+    tuned.find_impact_time =
+        [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low,
+                          double high, double) { return find(gap, rate, low, high, tolerance); };
   };
   return method;
 }
@@ -113,31 +131,44 @@ CostMethod by_solver(const std::string& word, const scene::Scene& scene, const L
     method.tuned = solve_contacts_by_newton;
     method.counted = "contact_sweeps";
   } else if (word == "gradients") {
-    throw UserError("--solvers " + word, scene.name + " has no rods and no joints", "Take a scene such as chain_8.");
+    throw UserError("--solvers " + word, scene.name + " has no rods and no joints",
+                    "Take a scene such as chain_8.");
   } else if (word == "sweeps" || word == "newton") {
-    throw UserError("--solvers " + word, scene.name + " has no persistent contacts", "Take a scene such as stack_of_10.");
+    throw UserError("--solvers " + word, scene.name + " has no persistent contacts",
+                    "Take a scene such as stack_of_10.");
   } else {
-    throw UserError("--solvers " + word, "expected gradients (of rods and joints), sweeps or newton (of persistent contacts)", "For example --solvers sweeps,newton.");
+    throw UserError(
+        "--solvers " + word,
+        "expected gradients (of rods and joints), sweeps or newton (of persistent contacts)",
+        "For example --solvers sweeps,newton.");
   }
   return method;
 }
 
 std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
-  if (!words.methods.empty()) return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
-  std::vector<std::string> chosen = {"euler", "symplectic", "midpoint", "rk4", "dopri5", "fehlberg78", "bulirsch-stoer"};
-  if (scene::asks_for(scene, [](const scene::Traits& traits) { return traits.may_be_stiff; })) chosen.push_back("rosenbrock4");
+  if (!words.methods.empty())
+    return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
+  std::vector<std::string> chosen = {"euler",  "symplectic", "midpoint",      "rk4",
+                                     "dopri5", "fehlberg78", "bulirsch-stoer"};
+  if (scene::asks_for(scene, [](const scene::Traits& traits) { return traits.may_be_stiff; }))
+    chosen.push_back("rosenbrock4");
   return chosen;
 }
 
 /// Engines that suit the scene; those left out are listed in `not_run`.
 std::vector<std::string> engines_for(const CostWords& words, CostSubject& subject) {
-  if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
+  if (!words.engines.empty())
+    return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
   std::vector<std::string> chosen;
   const bool sleeps = subject.scene.contact && subject.scene.contact->sleep;
   for (const char* word : {"ca", "tw"}) {
-    if (sleeps) subject.not_run.push_back(fmt::format("{}: bodies at rest fall asleep in this scene, which only rd supports", word));
-    else if (std::string(word) == "tw" && !engines::fast_timewarp()) subject.not_run.push_back("tw: this tree holds no timewarp of its own");
-    else chosen.emplace_back(word);
+    if (sleeps)
+      subject.not_run.push_back(fmt::format(
+          "{}: bodies at rest fall asleep in this scene, which only rd supports", word));
+    else if (std::string(word) == "tw" && !engines::fast_timewarp())
+      subject.not_run.push_back("tw: this tree holds no timewarp of its own");
+    else
+      chosen.emplace_back(word);
   }
   if (engines::goes_in_closed_form(subject.scene)) chosen.push_back("auto");
   return chosen;
@@ -145,11 +176,13 @@ std::vector<std::string> engines_for(const CostWords& words, CostSubject& subjec
 
 void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject) {
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
-  for (const std::string& word : engines_for(words, subject)) subject.methods.push_back(method_by_engine(word, laws, in_closed_form));
+  for (const std::string& word : engines_for(words, subject))
+    subject.methods.push_back(method_by_engine(word, laws, in_closed_form));
 }
 
 /// A module's own methods of integration, each with these laws.
-void add_methods(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, CostSubject& subject) {
+void add_methods(const Context& context, const modules::ModuleKind& kind, const std::string& word,
+                 const std::string& whose, const Laws& laws, CostSubject& subject) {
   modules::AnyModule module;
   if (word == "student" || word == "reference") {
     module = load_word(context, kind, word);
@@ -173,49 +206,60 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
 }
 
 /// A module's own methods of integration, where it has some; else the scene run by all its laws.
-void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
+void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word,
+                const std::string& whose, const Laws& laws, const scene::Scene& scene,
+                CostSubject& subject) {
   if (kind.methods.empty()) {
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+    const ChosenLaws chosen =
+        choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
     CostMethod method = method_by_integrator(method_named("rk4"), chosen.laws);
     method.name = fmt::format("{} {}", whose, kind.id);
     subject.methods.push_back(std::move(method));
-    subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+    subject.connections.insert(subject.connections.end(), chosen.connections.begin(),
+                               chosen.connections.end());
     return;
   }
   add_methods(context, kind, word, whose, laws, subject);
   // Steps alone do not test the module's other laws of motion: the derivative, the renormalisation.
-  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+  const ChosenLaws chosen =
+      choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
   CostMethod whole;
   whole.name = fmt::format("{} whole {}", whose, kind.id);
   whole.word = kind.id;
   whole.order = kind.methods.back().order;
   whole.laws = chosen.laws;
   subject.methods.push_back(std::move(whole));
-  subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+  subject.connections.insert(subject.connections.end(), chosen.connections.begin(),
+                             chosen.connections.end());
 }
 
 /// The word of a chosen module that integrates; empty: none. The reference's methods equal the
 /// library's, so they are included only by name.
 std::string named_motion(const ModuleWords& words, const modules::ModuleKind& kind) {
-  if (const auto own = words.find(kind.id); own != words.end()) return own->second == "library" ? "" : own->second;
+  if (const auto own = words.find(kind.id); own != words.end())
+    return own->second == "library" ? "" : own->second;
   const auto all = words.find("");
-  return all == words.end() || all->second == "library" || all->second == "reference" ? "" : all->second;
+  return all == words.end() || all->second == "library" || all->second == "reference" ? ""
+                                                                                      : all->second;
 }
 
 /// Where a module that integrates was chosen by word, its methods are measured too.
-void add_named_methods(const Context& context, const CostWords& words, const Laws& laws, CostSubject& subject) {
+void add_named_methods(const Context& context, const CostWords& words, const Laws& laws,
+                       CostSubject& subject) {
   if (is_none(words.methods)) return;
   const ModuleWords named = parse_module_words(words.modules, context.registry);
   for (const modules::ModuleKind* kind : context.registry.all()) {
     const std::string word = kind->methods.empty() ? "" : named_motion(named, *kind);
-    if (!word.empty()) add_methods(context, *kind, word, word == "reference" ? "reference" : "your", laws, subject);
+    if (!word.empty())
+      add_methods(context, *kind, word, word == "reference" ? "reference" : "your", laws, subject);
   }
 }
 
 CostSubject of_scene(const Context& context, const CostWords& words) {
   CostSubject subject;
   subject.scene = find_scene(context, words.scene, words.n);
-  const ChosenLaws chosen = choose_laws(context, subject.scene, parse_module_words(words.modules, context.registry));
+  const ChosenLaws chosen =
+      choose_laws(context, subject.scene, parse_module_words(words.modules, context.registry));
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   subject.title = subject.scene.title;
   subject.truth_laws = chosen.laws;
@@ -224,22 +268,40 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
   if (in_closed_form) add_engines(words, chosen.laws, subject);
   add_named_methods(context, words, chosen.laws, subject);
-  for (const std::string& word : methods_for(subject.scene, words)) subject.methods.push_back(method_by_integrator(method_named(word), chosen.laws));
+  for (const std::string& word : methods_for(subject.scene, words))
+    subject.methods.push_back(method_by_integrator(method_named(word), chosen.laws));
   if (!in_closed_form) add_engines(words, chosen.laws, subject);
-  for (const std::string& word : words.stabilisations) subject.methods.push_back(by_stabilisation(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.impacts) subject.methods.push_back(by_impacts(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.solvers) subject.methods.push_back(by_solver(word, subject.scene, chosen.laws));
-  if (subject.methods.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
+  for (const std::string& word : words.stabilisations)
+    subject.methods.push_back(by_stabilisation(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.impacts)
+    subject.methods.push_back(by_impacts(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.solvers)
+    subject.methods.push_back(by_solver(word, subject.scene, chosen.laws));
+  if (subject.methods.empty())
+    throw UserError("tumble cost " + words.scene,
+                    "--methods, --engines and the other axes leave nothing to run",
+                    "Leave one of them out.");
   return subject;
 }
 
-CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
+CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind,
+                          const CostWords& words) {
   CostSubject subject;
-  if (words.on.empty() && kind.note<engines::CostShowcase>().scene.empty()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
-  subject.scene = find_scene(context, words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on, words.n);
+  if (words.on.empty() && kind.note<engines::CostShowcase>().scene.empty())
+    throw UserError("tumble cost " + kind.id,
+                    "no scene is known on which this assignment is measured",
+                    "Name one: --on SCENE.");
+  subject.scene = find_scene(
+      context, words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on, words.n);
   if (words.on.empty()) subject.duration_s = kind.note<engines::CostShowcase>().duration_s;
-  const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
-  const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : kind.methods.empty() ? "" : kind.id + "=library", context.registry));
+  const bool has_reference =
+      std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
+  const ChosenLaws right =
+      choose_laws(context, subject.scene,
+                  parse_module_words(has_reference          ? "reference"
+                                     : kind.methods.empty() ? ""
+                                                            : kind.id + "=library",
+                                     context.registry));
   subject.truth_laws = right.laws;
   subject.connections = right.connections;
   const std::string word = words.modules.empty() ? "student" : words.modules;
@@ -247,12 +309,18 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   // Without a reference in the tree, laws that the library lacks are the student's in the reference
   // solution too.
   if (!has_reference && kind.methods.empty())
-    subject.note = "This tree holds no reference of " + kind.id + ": the reference solution is computed with your own laws, so the integration of the motion is judged here, not the laws.";
+    subject.note = "This tree holds no reference of " + kind.id +
+                   ": the reference solution is computed with your own laws, so the integration of "
+                   "the motion is judged here, not the laws.";
   else if (word != "student" && word != "reference")
-    subject.note = "This module runs in the sandbox, where each call and each derivative costs some microseconds more: compare its force evaluations, not its CPU time.";
+    subject.note =
+        "This module runs in the sandbox, where each call and each derivative costs some "
+        "microseconds more: compare its force evaluations, not its CPU time.";
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
-  if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
-  if (!kind.methods.empty()) subject.methods.push_back(method_by_integrator(method_named("dopri5"), right.laws));
+  if (has_reference && word != "reference")
+    add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
+  if (!kind.methods.empty())
+    subject.methods.push_back(method_by_integrator(method_named("dopri5"), right.laws));
   return subject;
 }
 
@@ -263,11 +331,15 @@ std::vector<double> CostWords::steps_s() const {
   for (const std::string& text : steps) {
     const std::size_t slash = text.find('/');
     char* end = nullptr;
-    const std::string above = text.substr(0, slash), below = slash == std::string::npos ? "1" : text.substr(slash + 1);
+    const std::string above = text.substr(0, slash),
+                      below = slash == std::string::npos ? "1" : text.substr(slash + 1);
     const double numerator = std::strtod(above.c_str(), &end);
     const bool is_number = !above.empty() && *end == '\0';
     const double denominator = std::strtod(below.c_str(), &end);
-    if (!is_number || below.empty() || *end != '\0' || !(numerator / denominator > 0) || !std::isfinite(numerator / denominator)) throw UserError("--steps " + text, "this is no time in seconds", "Give numbers or fractions: 1/30,1/60,0.001");
+    if (!is_number || below.empty() || *end != '\0' || !(numerator / denominator > 0) ||
+        !std::isfinite(numerator / denominator))
+      throw UserError("--steps " + text, "this is no time in seconds",
+                      "Give numbers or fractions: 1/30,1/60,0.001");
     all.push_back(numerator / denominator);
   }
   std::sort(all.rbegin(), all.rend());
@@ -280,9 +352,15 @@ CostSubject find_subject(const Context& context, const CostWords& words) {
   for (const modules::ModuleKind* kind : context.registry.all())
     if (kind->id == words.scene) return of_assignment(context, *kind, words);
   std::string known;
-  for (const modules::ModuleKind* kind : context.registry.all()) known += (known.empty() ? "" : ", ") + kind->id;
-  if (words.scene.size() == 2 && words.scene[0] == 'a' && std::isdigit(static_cast<unsigned char>(words.scene[1])) != 0) throw UserError(words.scene, "there is no such assignment", "Known: " + known + ".");
-  if (!words.on.empty()) throw UserError("--on " + words.on, "goes with an assignment (" + known + "), and '" + words.scene + "' is none", "Give the scene itself: tumble cost " + words.on);
+  for (const modules::ModuleKind* kind : context.registry.all())
+    known += (known.empty() ? "" : ", ") + kind->id;
+  if (words.scene.size() == 2 && words.scene[0] == 'a' &&
+      std::isdigit(static_cast<unsigned char>(words.scene[1])) != 0)
+    throw UserError(words.scene, "there is no such assignment", "Known: " + known + ".");
+  if (!words.on.empty())
+    throw UserError("--on " + words.on,
+                    "goes with an assignment (" + known + "), and '" + words.scene + "' is none",
+                    "Give the scene itself: tumble cost " + words.on);
   return of_scene(context, words);
 }
 

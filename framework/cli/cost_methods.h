@@ -12,15 +12,18 @@
 namespace tumble::cli {
 
 struct CostWords {
-  std::string scene;                     // or an assignment's id
+  std::string scene;  // or an assignment's id
   std::string modules, on, out = "out/cost";
-  std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps;   // empty: those that suit the scene
+  // empty: those that suit the scene
+  std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps;
   std::vector<double> tolerances;
   std::optional<double> duration_s;
   std::optional<int> n;
-  std::optional<double> budget_s;        // CPU time of all refinements together [s]; empty: usual_budget_s
+  // CPU time of all refinements together [s]; empty: usual_budget_s
+  std::optional<double> budget_s;
 
-  static constexpr double kUsualBudget = 30.0;    // with the reference a scene takes less than a minute
+  // with the reference a scene takes less than a minute
+  static constexpr double kUsualBudget = 30.0;
   double budget() const { return budget_s.value_or(kUsualBudget); }
 
   /// @throws UserError for a word that is neither a number nor 1/N
@@ -33,12 +36,12 @@ struct CostWords {
 struct CostSubject {
   scene::Scene scene;
   std::string title;
-  std::optional<double> duration_s;      // suitable duration; empty: the scene's
+  std::optional<double> duration_s;  // suitable duration; empty: the scene's
   Laws truth_laws;
-  std::string note;                      // remark on reading the costs; may be empty
+  std::string note;  // remark on reading the costs; may be empty
   std::vector<engines::CostMethod> methods;
-  std::vector<std::string> not_run;      // methods left out, with the reason
-  std::vector<std::shared_ptr<void>> connections;   // to sandboxes
+  std::vector<std::string> not_run;                // methods left out, with the reason
+  std::vector<std::shared_ptr<void>> connections;  // to sandboxes
 };
 
 /// A method of integration of the library in place of the laws' own.
@@ -46,7 +49,8 @@ engines::CostMethod method_by_integrator(const Method& integrator, const Laws& l
 /// @param word            auto (rd with closed forms), ca, tw, ordered
 /// @param in_closed_form  for the whole scene: else there are processes, which are integrated by
 ///   RK4 with a refinement of their steps
-engines::CostMethod method_by_engine(const std::string& word, const Laws& laws, bool in_closed_form);
+engines::CostMethod method_by_engine(const std::string& word, const Laws& laws,
+                                     bool in_closed_form);
 
 /// @throws UserError with the word that is unknown or does not suit the scene
 CostSubject find_subject(const Context& context, const CostWords& words);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using grading::Grade;
 
 constexpr const char* kPrivateFolder = "solutions_private";
-constexpr const char* kEngines = "engines";   // folder of the comparison
+constexpr const char* kEngines = "engines";  // folder of the comparison
 
 struct DemoOptions {
   std::string out = "out/demo";
@@ -32,7 +32,7 @@ struct DemoOptions {
 /// One assignment as the demo grades it: the reference, the untouched starter, a flawed submission.
 struct Graded {
   const modules::ModuleKind* kind;
-  std::vector<Grade> grades;   // in the order of submissions_of
+  std::vector<Grade> grades;  // in the order of submissions_of
 };
 enum { kReference, kStarter, kFlawed };
 
@@ -46,57 +46,92 @@ grading::FoundSubmissions submissions_of(const Context& context, const modules::
 }
 
 void tell_progress(const std::string& id, const grading::GradeProgress& progress) {
-  const std::string left = progress.left_s < 0 ? "" : fmt::format(", about {:.0f} s left", progress.left_s);
-  if (!progress.finished.empty()) fmt::print(stderr, "tumble: {} {}: {} of {} graded{}\n", id, progress.finished, progress.done, progress.total, left);
+  const std::string left =
+      progress.left_s < 0 ? "" : fmt::format(", about {:.0f} s left", progress.left_s);
+  if (!progress.finished.empty())
+    fmt::print(stderr, "tumble: {} {}: {} of {} graded{}\n", id, progress.finished, progress.done,
+               progress.total, left);
 }
 
 // Difference from the expected result of each submission, for any assignment; empty where there is
 // none.
 std::string surprise(int which, const Grade& grade) {
   if (!grade.is_final()) return "the grader failed";
-  const bool fine = which == kReference ? grade.score == grade.possible : which == kStarter ? grade.score == 0.0 : grade.score > 0.0 && grade.score < grade.possible;
+  const bool fine = which == kReference ? grade.score == grade.possible
+                    : which == kStarter ? grade.score == 0.0
+                                        : grade.score > 0.0 && grade.score < grade.possible;
   if (fine) return "";
-  return which == kReference ? "expected all points" : which == kStarter ? "expected no points" : "expected some of the points";
+  return which == kReference ? "expected all points"
+         : which == kStarter ? "expected no points"
+                             : "expected some of the points";
 }
 
 std::size_t count_of(const Grade& grade, grading::Verdict verdict) {
-  return static_cast<std::size_t>(std::count_if(grade.tests.begin(), grade.tests.end(), [&](const auto& test) { return test.result.verdict == verdict; }));
+  return static_cast<std::size_t>(
+      std::count_if(grade.tests.begin(), grade.tests.end(),
+                    [&](const auto& test) { return test.result.verdict == verdict; }));
 }
 
 void add_scores(report::Page& page, const std::vector<Graded>& all) {
   report::Table table;
-  table.columns = {{"Assignment"}, {"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}};
+  table.columns = {{"Assignment"},
+                   {"Submission"},
+                   {"Score", true},
+                   {"of", true},
+                   {"Right", true},
+                   {"Wrong", true},
+                   {"Not attempted", true},
+                   {"Crashed", true},
+                   {"Out of time or memory", true}};
   for (const Graded& graded : all)
     for (const Grade& grade : graded.grades)
-      table.rows.push_back({{graded.kind->id + " " + graded.kind->title}, {grade.name, report::link_to(fs::path(graded.kind->id) / grade.folder / "index.html")},
-                            {fmt::format("{:g}", grade.score)}, {fmt::format("{:g}", grade.possible)}, {std::to_string(count_of(grade, grading::Verdict::kRight))},
-                            {std::to_string(count_of(grade, grading::Verdict::kWrong))}, {std::to_string(count_of(grade, grading::Verdict::kNotAttempted))},
-                            {std::to_string(count_of(grade, grading::Verdict::kCrashed))}, {std::to_string(count_of(grade, grading::Verdict::kOutOfResources))}});
+      table.rows.push_back(
+          {{graded.kind->id + " " + graded.kind->title},
+           {grade.name, report::link_to(fs::path(graded.kind->id) / grade.folder / "index.html")},
+           {fmt::format("{:g}", grade.score)},
+           {fmt::format("{:g}", grade.possible)},
+           {std::to_string(count_of(grade, grading::Verdict::kRight))},
+           {std::to_string(count_of(grade, grading::Verdict::kWrong))},
+           {std::to_string(count_of(grade, grading::Verdict::kNotAttempted))},
+           {std::to_string(count_of(grade, grading::Verdict::kCrashed))},
+           {std::to_string(count_of(grade, grading::Verdict::kOutOfResources))}});
   page.table(table);
 }
 
 void write_index(const Context& context, const std::vector<Graded>& all, const fs::path& out) {
-  report::Page page("Tumble", "three submissions of each assignment, graded; every scene, submission beside reference");
+  report::Page page(
+      "Tumble",
+      "three submissions of each assignment, graded; every scene, submission beside reference");
   std::vector<report::Cell> links{{"Scores", "#scores"}};
   for (const Graded& graded : all) {
     links.push_back({"Stories of " + graded.kind->id, "#stories-" + graded.kind->id});
     links.push_back({"Scenes of " + graded.kind->id, "#scenes-" + graded.kind->id});
   }
-  links.push_back({"Three engines on the paper's scenes", report::link_to(fs::path(kEngines) / "index.html")});
+  links.push_back(
+      {"Three engines on the paper's scenes", report::link_to(fs::path(kEngines) / "index.html")});
   page.links(links);
   page.heading("Scores", 2, "scores");
-  page.paragraph("The reference solution, the stub as students get it, and a submission with mistakes that students make. Each was compiled and run in a sandbox (" + grading::protection_in_words(grading::chosen_sandbox()) + "), "
-                 "and judged from outside it. The names link to the student's page.");
+  page.paragraph(
+      "The reference solution, the stub as students get it, and a submission with mistakes that "
+      "students make. Each was compiled and run in a sandbox (" +
+      grading::protection_in_words(grading::chosen_sandbox()) +
+      "), "
+      "and judged from outside it. The names link to the student's page.");
   add_scores(page, all);
   for (const Graded& graded : all) {
     const fs::path folder = graded.kind->id;
-    page.links({{graded.kind->id + ": all submissions", report::link_to(folder / "index.html")}, {"gradebook", report::link_to(folder / "gradebook.csv")}});
+    page.links({{graded.kind->id + ": all submissions", report::link_to(folder / "index.html")},
+                {"gradebook", report::link_to(folder / "gradebook.csv")}});
   }
   for (const Graded& graded : all) {
     const Grade& flawed = graded.grades[kFlawed];
-    page.heading(fmt::format("{} {}: report of the flawed submission", graded.kind->id, graded.kind->title), 2, "stories-" + graded.kind->id);
+    page.heading(
+        fmt::format("{} {}: report of the flawed submission", graded.kind->id, graded.kind->title),
+        2, "stories-" + graded.kind->id);
     grading::add_stories(page, flawed);
-    page.heading(fmt::format("{} {}: scenes, flawed submission beside reference", graded.kind->id, graded.kind->title), 2, "scenes-" + graded.kind->id);
+    page.heading(fmt::format("{} {}: scenes, flawed submission beside reference", graded.kind->id,
+                             graded.kind->title),
+                 2, "scenes-" + graded.kind->id);
     grading::add_media(page, flawed.media, fs::path(graded.kind->id) / flawed.folder / "media");
   }
   page.record(record_of(context));
@@ -106,15 +141,19 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
 // @return the number of unexpected scores
 int print_table(const std::vector<Graded>& all) {
   int surprises = 0;
-  fmt::print("{:<22} {:<12} {:>6} {:>5} {:>7} {:>7} {:>15} {:>7}\n", "assignment", "submission", "score", "of", "right", "wrong", "not attempted", "scenes");
+  fmt::print("{:<22} {:<12} {:>6} {:>5} {:>7} {:>7} {:>15} {:>7}\n", "assignment", "submission",
+             "score", "of", "right", "wrong", "not attempted", "scenes");
   for (const Graded& graded : all) {
     for (std::size_t i = 0; i < graded.grades.size(); ++i) {
       const Grade& grade = graded.grades[i];
       const std::string wrong = surprise(static_cast<int>(i), grade);
       surprises += wrong.empty() ? 0 : 1;
-      fmt::print("{:<22} {:<12} {:>6g} {:>5g} {:>7} {:>7} {:>15} {:>7}{}\n", graded.kind->id + " " + graded.kind->title, grade.name, grade.score, grade.possible,
-                 count_of(grade, grading::Verdict::kRight), count_of(grade, grading::Verdict::kWrong), count_of(grade, grading::Verdict::kNotAttempted),
-                 grade.media.size(), wrong.empty() ? "" : "   <- " + wrong);
+      fmt::print("{:<22} {:<12} {:>6g} {:>5g} {:>7} {:>7} {:>15} {:>7}{}\n",
+                 graded.kind->id + " " + graded.kind->title, grade.name, grade.score,
+                 grade.possible, count_of(grade, grading::Verdict::kRight),
+                 count_of(grade, grading::Verdict::kWrong),
+                 count_of(grade, grading::Verdict::kNotAttempted), grade.media.size(),
+                 wrong.empty() ? "" : "   <- " + wrong);
     }
   }
   return surprises;
@@ -122,26 +161,35 @@ int print_table(const std::vector<Graded>& all) {
 
 void demo(Context& context, const DemoOptions& options) {
   if (!fs::exists(context.root / kPrivateFolder))
-    throw UserError("tumble demo", "grades the reference solutions, and this tree has none", "It is the instructor's command; a student starts with: ./tumble check a1");
+    throw UserError("tumble demo", "grades the reference solutions, and this tree has none",
+                    "It is the instructor's command; a student starts with: ./tumble check a1");
   const fs::path out = fs::absolute(options.out);
   grading::Course course{context.root, context.build, &context.registry, context.command_line};
   std::vector<Graded> all;
   for (const modules::ModuleKind* kind : context.registry.all()) {
     grading::GradeOptions grade;
     grade.jobs = options.jobs;
-    grade.accepted_sandbox = grading::traits_of(grading::chosen_sandbox()).name;   // it shows the grader, and gives nobody a grade
-    grade.progress = [kind](const grading::GradeProgress& progress) { tell_progress(kind->id, progress); };
-    all.push_back({kind, grading::grade_submissions(course, kind->id, submissions_of(context, *kind), out / kind->id, grade)});
+    // it shows the grader, and gives nobody a grade
+    grade.accepted_sandbox = grading::traits_of(grading::chosen_sandbox()).name;
+    grade.progress = [kind](const grading::GradeProgress& progress) {
+      tell_progress(kind->id, progress);
+    };
+    all.push_back(
+        {kind, grading::grade_submissions(course, kind->id, submissions_of(context, *kind),
+                                          out / kind->id, grade)});
   }
   EnginesWords engines;
   engines.out = (out / kEngines).string();
-  engines.small = engines.no_videos = engines.quiet = true;   // tumble engines makes the whole page
+  engines.small = engines.no_videos = engines.quiet = true;  // tumble engines makes the whole page
   engines_of_all(context, engines);
   write_index(context, all, out);
   const int surprises = print_table(all);
   fmt::print("{}\n", (out / "index.html").string());
   if (surprises > 0) {
-    fmt::print(stderr, "tumble: {} of these scores differ from the expected ones: this is our bug, please report it\n", surprises);
+    fmt::print(stderr,
+               "tumble: {} of these scores differ from the expected ones: this is our bug, please "
+               "report it\n",
+               surprises);
     context.exit = ExitCode::kOurBug;
   }
 }
@@ -150,9 +198,13 @@ void demo(Context& context, const DemoOptions& options) {
 
 void add_demo(CLI::App& app, Context& context) {
   auto options = std::make_shared<DemoOptions>();
-  Verb verb(app, "demo", "Grade three submissions of each assignment and draw every scene: the whole path on one page");
+  Verb verb(app, "demo",
+            "Grade three submissions of each assignment and draw every scene: the whole path on "
+            "one page");
   verb.option("--out", options->out, "Folder of the report").shows_default();
-  verb.option("--jobs", options->jobs, "Submissions graded at the same time").between(1, 64).shows_default();
+  verb.option("--jobs", options->jobs, "Submissions graded at the same time")
+      .between(1, 64)
+      .shows_default();
   verb.runs([&context, options] { demo(context, *options); });
 }
 

@@ -26,23 +26,24 @@ namespace {
 using report::EngineRow;
 
 constexpr int kShortRuns = 4;
-constexpr double kShort = 0.5;        // [s] of CPU: longer runs are timed once
-constexpr double kNoFrames = 1e-6;    // [1/s], for timed runs
-constexpr std::size_t kFewestSamples = 25;   // a fraction is then known to 10 %
-constexpr double kNoTime = 1e-9;      // steps: a run that ends before anything moves
+constexpr double kShort = 0.5;              // [s] of CPU: longer runs are timed once
+constexpr double kNoFrames = 1e-6;          // [1/s], for timed runs
+constexpr std::size_t kFewestSamples = 25;  // a fraction is then known to 10 %
+constexpr double kNoTime = 1e-9;            // steps: a run that ends before anything moves
 
 std::string meaning_of(const std::string& engine) {
   for (const auto& [word, meaning] : engines::engine_words())
     if (word == engine) return meaning;
   std::vector<std::string> words;
   for (const auto& [word, meaning] : engines::engine_words()) words.push_back(word);
-  throw UserError("--engines " + engine, "there is no engine of that name", fmt::format("Known: {}.", fmt::join(words, ", ")));
+  throw UserError("--engines " + engine, "there is no engine of that name",
+                  fmt::format("Known: {}.", fmt::join(words, ", ")));
 }
 
 // Agreement before chaos: largest difference in time of the first collisions of each body.
 constexpr std::size_t kFirstCollisions = 5;
-constexpr double kSamePlace = 1e-3;   // [m]: far above rounding, far below what is visible
-constexpr double kSameTime = 1e-9;    // [s], of frames
+constexpr double kSamePlace = 1e-3;  // [m]: far above rounding, far below what is visible
+constexpr double kSameTime = 1e-9;   // [s], of frames
 
 using Pairs = std::set<std::pair<int, int>>;
 
@@ -54,12 +55,17 @@ Pairs in_contact(const Trajectory& run) {
   return pairs;
 }
 
-std::vector<std::vector<double>> first_collisions(const Trajectory& run, const Pairs& left_out, double until) {
+std::vector<std::vector<double>> first_collisions(const Trajectory& run, const Pairs& left_out,
+                                                  double until) {
   std::vector<std::vector<double>> times(run.bodies.size());
   for (const Event& event : run.events) {
-    if (event.kind != EventKind::kCollision || event.time > until || left_out.contains({event.body_a, event.body_b})) continue;
+    if (event.kind != EventKind::kCollision || event.time > until ||
+        left_out.contains({event.body_a, event.body_b}))
+      continue;
     for (const int body : {event.body_a, event.body_b})
-      if (body >= 0 && !run.bodies[static_cast<std::size_t>(body)].immovable && times[static_cast<std::size_t>(body)].size() < kFirstCollisions) times[static_cast<std::size_t>(body)].push_back(event.time);
+      if (body >= 0 && !run.bodies[static_cast<std::size_t>(body)].immovable &&
+          times[static_cast<std::size_t>(body)].size() < kFirstCollisions)
+        times[static_cast<std::size_t>(body)].push_back(event.time);
   }
   return times;
 }
@@ -73,7 +79,9 @@ std::optional<double> parted_at(const Trajectory& reference, const Trajectory& r
     if (k == reference.frames.size()) break;
     if (reference.frames[k].time > frame.time + kSameTime) continue;
     for (std::size_t body = 0; body < frame.poses.size(); ++body)
-      if (!((frame.poses[body].com_world - reference.frames[k].poses[body].com_world).norm() <= kSamePlace)) return frame.time;
+      if (!((frame.poses[body].com_world - reference.frames[k].poses[body].com_world).norm() <=
+            kSamePlace))
+        return frame.time;
   }
   return std::nullopt;
 }
@@ -84,17 +92,23 @@ std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
   Pairs left_out = in_contact(reference);
   left_out.merge(in_contact(run));
   const double until = parted.value_or(std::numeric_limits<double>::infinity());
-  const auto expected = first_collisions(reference, left_out, until), found = first_collisions(run, left_out, until);
+  const auto expected = first_collisions(reference, left_out, until),
+             found = first_collisions(run, left_out, until);
   double farthest = 0.0;
   std::size_t compared = 0, missing = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const std::size_t both = std::min(expected[i].size(), found[i].size());
-    for (std::size_t k = 0; k < both; ++k, ++compared) farthest = std::max(farthest, std::abs(expected[i][k] - found[i][k]));
+    for (std::size_t k = 0; k < both; ++k, ++compared)
+      farthest = std::max(farthest, std::abs(expected[i][k] - found[i][k]));
     missing += std::max(expected[i].size(), found[i].size()) - both;
   }
-  const std::string places = parted ? fmt::format("positions within 1 mm until {:.2f} s", *parted) : "positions within 1 mm to the end";
-  if (compared == 0) return places;   // one of the two resolves impacts within steps, and records none
-  return fmt::format("{}; first {} collisions of each body within {:.1e} s ({} compared{})", places, kFirstCollisions, farthest, compared, missing > 0 ? fmt::format(", {} in one only", missing) : "");
+  const std::string places = parted ? fmt::format("positions within 1 mm until {:.2f} s", *parted)
+                                    : "positions within 1 mm to the end";
+  // one of the two resolves impacts within steps, and records none
+  if (compared == 0) return places;
+  return fmt::format("{}; first {} collisions of each body within {:.1e} s ({} compared{})", places,
+                     kFirstCollisions, farthest, compared,
+                     missing > 0 ? fmt::format(", {} in one only", missing) : "");
 }
 
 /// Energy and duration of the shown run. Counts and time are those of the run without pictures.
@@ -108,7 +122,9 @@ void keep(EngineRow& row, const Trajectory& run) {
     const Frame& first = run.frames.front();
     const double scale = first.kinetic_energy + std::abs(first.potential_energy);
     row.frame_times.push_back(frame.time);
-    row.energy_error.push_back(std::abs(frame.kinetic_energy + frame.potential_energy - first.kinetic_energy - first.potential_energy) / (scale > 0 ? scale : 1.0));
+    row.energy_error.push_back(std::abs(frame.kinetic_energy + frame.potential_energy -
+                                        first.kinetic_energy - first.potential_energy) /
+                               (scale > 0 ? scale : 1.0));
   }
 }
 
@@ -118,7 +134,8 @@ class Deadline {
   explicit Deadline(double most_s) : most_s_(most_s), until_(cpu_seconds() + most_s) {}
   bool is_over() const { return is_over_; }
   void look() {
-    thread_local std::uint64_t looks = 0;   // per thread: a shared counter would move between the threads' caches
+    // per thread: a shared counter would move between the threads' caches
+    thread_local std::uint64_t looks = 0;
     if (++looks % kLooksAClock != 0 || !(cpu_seconds() > until_)) return;
     is_over_ = true;
     throw engines::OutOfTime(fmt::format("it takes more than {:.0f} s", most_s_));
@@ -127,12 +144,14 @@ class Deadline {
     Laws watched = laws;
     if (!std::isfinite(most_s_)) return watched;
     if (laws.integrate_step)
-      watched.integrate_step = [this, inner = laws.integrate_step](const OdeFunction& f, double t, const VectorXd& y, double h) {
+      watched.integrate_step = [this, inner = laws.integrate_step](const OdeFunction& f, double t,
+                                                                   const VectorXd& y, double h) {
         look();
         return inner(f, t, y, h);
       };
     if (laws.relative_normal_velocity)
-      watched.relative_normal_velocity = [this, inner = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+      watched.relative_normal_velocity = [this, inner = laws.relative_normal_velocity](
+                                             const Contact& contact, const Body& a, const Body& b) {
         look();
         return inner(contact, a, b);
       };
@@ -141,7 +160,7 @@ class Deadline {
 
  private:
   static constexpr std::uint64_t kLooksAClock = 64;
-  double most_s_, until_;   // [s] of CPU
+  double most_s_, until_;  // [s] of CPU
   std::atomic<bool> is_over_ = false;
 };
 
@@ -151,7 +170,10 @@ class Deadline {
 /// @param counts  its counters
 /// @param shares  fractions of its time
 /// @return nothing where it takes more than most_s
-std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, bool by_the_clock, double most_s, std::map<std::string, std::uint64_t>& counts, engines::TimeShares& shares) {
+std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws,
+                                     engines::RunOptions options, bool by_the_clock, double most_s,
+                                     std::map<std::string, std::uint64_t>& counts,
+                                     engines::TimeShares& shares) {
   options.frame_rate_hz = kNoFrames;
   engines::RunOptions nothing = options;
   nothing.duration_s = kNoTime * scene.step_s;
@@ -161,10 +183,13 @@ std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws
     Deadline deadline(most_s);
     const Laws watched = deadline.watched(laws);
     const auto clock = std::chrono::steady_clock::now();
-    const double begin = thread_seconds();   // several threads are timed by wall time
+    const double begin = thread_seconds();  // several threads are timed by wall time
     engines::run_scene(scene, watched, how, recorder);
     is_over = is_over || deadline.is_over();
-    const double seconds = by_the_clock ? std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count() : thread_seconds() - begin;
+    const double seconds =
+        by_the_clock
+            ? std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count()
+            : thread_seconds() - begin;
     counts = recorder.trajectory().counters.counts;
     return seconds;
   };
@@ -193,14 +218,17 @@ std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws
 std::vector<EngineChoice> engines_named(const std::string& words) {
   std::vector<EngineChoice> choices(1);
   for (const char c : words) {
-    if (c == ',') choices.emplace_back();
-    else choices.back().engine += c;
+    if (c == ',')
+      choices.emplace_back();
+    else
+      choices.back().engine += c;
   }
-  for (const EngineChoice& choice : choices) meaning_of(choice.engine);   // refused before any run
+  for (const EngineChoice& choice : choices) meaning_of(choice.engine);  // refused before any run
   return choices;
 }
 
-EngineRun measure_engine(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EngineChoice& choice) {
+EngineRun measure_engine(const Context& context, const scene::Scene& scene,
+                         const ChosenLaws& chosen, const EngineChoice& choice) {
   engines::RunOptions options;
   options.engine = choice.engine;
   if (choice.engine == "rd") options.propagator = choice.propagator;
@@ -215,13 +243,18 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
   EngineRow& row = measured.row;
   row.engine = choice.engine;
   row.meaning = meaning_of(choice.engine);
-  if (choice.engine == "rd") row.meaning += choice.propagator == "auto" ? ", in closed form" : ", by the laws' integrator";   // the others have closed forms
+  // the others have closed forms
+  if (choice.engine == "rd")
+    row.meaning += choice.propagator == "auto" ? ", in closed form" : ", by the laws' integrator";
   row.label = choice.label.empty() ? choice.engine : choice.label;
   for (const scene::BodySpec& body : scene.bodies) row.bodies += body.immovable ? 0 : 1;
   // One run for the time, one for the frames.
   engines::TimeShares shares;
   try {
-    const auto seconds = choice.is_timed ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, choice.most_s, row.counts, shares) : std::optional(kUnset);
+    const auto seconds = choice.is_timed
+                             ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock,
+                                              choice.most_s, row.counts, shares)
+                             : std::optional(kUnset);
     if (!seconds) {
       row.counts.clear();
       row.stopped_by = fmt::format("left out: it takes more than {:.0f} s", choice.most_s);
@@ -249,11 +282,13 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
 }
 
 void tell_agreement(std::vector<EngineRun>& runs) {
-  std::size_t reference = 0;   // an event-driven run, if there is one
+  std::size_t reference = 0;  // an event-driven run, if there is one
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (runs[k].row.engine != "rd" && runs[k].row.stopped_by.empty()) reference = k;
   for (std::size_t k = 0; k < runs.size(); ++k)
-    if (!runs[k].row.counts.empty()) runs[k].row.agreement = k == reference ? "the others are compared with this one" : agreement_of(runs[reference].run, runs[k].run);
+    if (!runs[k].row.counts.empty())
+      runs[k].row.agreement = k == reference ? "the others are compared with this one"
+                                             : agreement_of(runs[reference].run, runs[k].run);
 }
 
 std::vector<EngineRow> rows_of(const std::vector<EngineRun>& runs) {
@@ -268,15 +303,19 @@ void print_rows(const std::vector<EngineRow>& rows) {
     if (row.stopped_by.empty()) quickest = std::min(quickest, row.cpu_s);
   fmt::print("{:<8}", "engine");
   for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", heading);
-  fmt::print(" {:>8} {:>9} {:>13} {:>8}  {}\n", "w h", "w [1/s]", "mean step[ms]", "time", "agreement");
+  fmt::print(" {:>8} {:>9} {:>13} {:>8}  {}\n", "w h", "w [1/s]", "mean step[ms]", "time",
+             "agreement");
   for (const EngineRow& row : rows) {
     fmt::print("{:<8}", row.label);
     if (row.counts.empty()) {
       fmt::print(" not run: {}\n", row.stopped_by);
       continue;
     }
-    for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", report::count_of(row, name));
-    fmt::print(" {:>8.3g} {:>9.3g} {:>13.3g} {:>7.2f}x  {}\n", row.w_h, row.w_h / row.step_s, 1e3 * report::mean_step_s(row), row.cpu_s / quickest, row.stopped_by.empty() ? row.agreement : "STOPPED " + row.stopped_by);
+    for (const auto& [name, heading] : report::compared_counts())
+      fmt::print(" {:>15}", report::count_of(row, name));
+    fmt::print(" {:>8.3g} {:>9.3g} {:>13.3g} {:>7.2f}x  {}\n", row.w_h, row.w_h / row.step_s,
+               1e3 * report::mean_step_s(row), row.cpu_s / quickest,
+               row.stopped_by.empty() ? row.agreement : "STOPPED " + row.stopped_by);
     if (!row.faults.empty()) fmt::print("{:<8} NOT TO BE TRUSTED: {}\n", "", row.faults);
   }
 }

@@ -16,20 +16,23 @@ namespace tumble::cli {
 
 /// Options of a run.
 struct EngineChoice {
-  std::string engine;                    // a word of engines::engine_words()
-  std::string label;                     // of its column; empty: the engine's word
+  std::string engine;  // a word of engines::engine_words()
+  std::string label;   // of its column; empty: the engine's word
   std::optional<double> step_s, duration_s;
-  std::string propagator;                // of rd
-  int threads = 1;                       // of tw
-  bool by_the_clock = false;             // wall time instead of CPU time: used where one of the engines has several threads
-  double frame_rate_hz = 10.0;           // of the run that is kept; pictures are not part of the measured time
-  bool is_timed = true;                  // false: only shown, as far as it gets in most_s
-  double most_s = std::numeric_limits<double>::infinity();   // of CPU: a longer run is left out, and its row says so
+  std::string propagator;  // of rd
+  int threads = 1;         // of tw
+  // wall time instead of CPU time: used where one of the engines has several threads
+  bool by_the_clock = false;
+  // of the run that is kept; pictures are not part of the measured time
+  double frame_rate_hz = 10.0;
+  bool is_timed = true;  // false: only shown, as far as it gets in most_s
+  // of CPU: a longer run is left out, and its row says so
+  double most_s = std::numeric_limits<double>::infinity();
 };
 
 struct EngineRun {
   report::EngineRow row;
-  Trajectory run;                        // without frames where the engine did not run
+  Trajectory run;  // without frames where the engine did not run
 };
 
 /// The engines named by words with commas between them.
@@ -38,7 +41,8 @@ std::vector<EngineChoice> engines_named(const std::string& words);
 
 /// Runs the scene, first for its time, then for its frames. The row says where an engine does not
 /// support an entry of the scene, or would take too long.
-EngineRun measure_engine(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EngineChoice& choice);
+EngineRun measure_engine(const Context& context, const scene::Scene& scene,
+                         const ChosenLaws& chosen, const EngineChoice& choice);
 
 /// Adds to each row its agreement with an event-driven run: traces bit for bit, else positions
 /// until chaos.

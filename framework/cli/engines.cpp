@@ -18,7 +18,8 @@ namespace {
 
 using report::EngineRow;
 
-std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EnginesWords& words) {
+std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene,
+                               const ChosenLaws& chosen, const EnginesWords& words) {
   std::vector<EngineRun> runs;
   for (EngineChoice& choice : engines_named(words.engines)) {
     std::fprintf(stderr, "tumble: %s by %s\n", scene.name.c_str(), choice.engine.c_str());
@@ -35,48 +36,79 @@ std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene
 
 void run_engines(Context& context, const EnginesWords& words) {
   if (words.scene.empty() || words.scene == kAllScenes) return engines_of_all(context, words);
-  if (words.full || words.small || words.no_videos) throw UserError(words.full ? "--full" : words.small ? "--small" : "--no-videos", "belongs to the page of all scenes", "Leave it out, or leave the scene out.");
+  if (words.full || words.small || words.no_videos)
+    throw UserError(words.full    ? "--full"
+                    : words.small ? "--small"
+                                  : "--no-videos",
+                    "belongs to the page of all scenes", "Leave it out, or leave the scene out.");
   const scene::Scene scene = find_scene(context, words.scene, words.n);
-  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry), words.engines);
+  const ChosenLaws chosen = choose_laws(
+      context, scene, parse_module_words(words.modules, context.registry), words.engines);
   refuse_threads_of_sandboxes(chosen, words.threads);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   std::vector<std::vector<EngineRow>> ladder;
   if (!words.sizes.empty() && scene::sized_scene_named(words.scene) == nullptr)
-    throw UserError("--sizes", fmt::format("'{}' has one size", words.scene), "Give a scene whose size is a parameter, such as atoms, or leave --sizes out.");
+    throw UserError("--sizes", fmt::format("'{}' has one size", words.scene),
+                    "Give a scene whose size is a parameter, such as atoms, or leave --sizes out.");
   for (const int n : words.sizes) {
     ladder.push_back(run_all(context, find_scene(context, words.scene, n), chosen, words));
     fmt::print("n = {}\n", n);
     print_rows(ladder.back());
   }
-  const std::vector<EngineRow> rows = ladder.empty() || words.n ? run_all(context, scene, chosen, words) : ladder.back();
-  fmt::print("{}\n  impulses by {} · motion by {}\n", scene.title, chosen.laws.impulse_source, chosen.laws.integrator_source);
+  const std::vector<EngineRow> rows =
+      ladder.empty() || words.n ? run_all(context, scene, chosen, words) : ladder.back();
+  fmt::print("{}\n  impulses by {} · motion by {}\n", scene.title, chosen.laws.impulse_source,
+             chosen.laws.integrator_source);
   print_rows(rows);
   const std::filesystem::path page = std::filesystem::path(words.out) / scene.name / "index.html";
-  report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene), page);
+  report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene),
+                             page);
   fmt::print("{}\n", page.string());
   for (const EngineRow& row : rows)
-    if ((!row.counts.empty() && !row.stopped_by.empty()) || !row.faults.empty()) context.exit = ExitCode::kCheckFailed;
+    if ((!row.counts.empty() && !row.stopped_by.empty()) || !row.faults.empty())
+      context.exit = ExitCode::kCheckFailed;
 }
 
 }  // namespace
 
 void add_engines(CLI::App& app, Context& context) {
   auto words = std::make_shared<EnginesWords>();
-  Verb verb(app, "engines", "Run a scene by every engine and compare what they count, commit and cost");
-  verb.option("scene", words->scene, "A scene file, the bare name of one, or a scene with a size (atoms, cars, ...); none, or all: the course's scenes on one page").type_name("SCENE");
+  Verb verb(app, "engines",
+            "Run a scene by every engine and compare what they count, commit and cost");
+  verb.option("scene", words->scene,
+              "A scene file, the bare name of one, or a scene with a size (atoms, cars, ...); "
+              "none, or all: the course's scenes on one page")
+      .type_name("SCENE");
   verb.flag("--full", words->full, "Of the page of all scenes: sizes as in the paper; takes long");
-  verb.flag("--small", words->small, "Of the page of all scenes: four of them, smaller still; takes seconds").excludes("--full");
-  verb.flag("--no-videos", words->no_videos, "Of the page of all scenes: tables, plots and players only");
+  verb.flag("--small", words->small,
+            "Of the page of all scenes: four of them, smaller still; takes seconds")
+      .excludes("--full");
+  verb.flag("--no-videos", words->no_videos,
+            "Of the page of all scenes: tables, plots and players only");
   verb.option("--n", words->n, "Size of a scene whose size is a parameter");
-  verb.option("--sizes", words->sizes, "Sizes to run one after the other: draws work and time against n, e.g. --sizes 50,100,200").separated_by(',');
-  verb.option("--engines", words->engines, "Which, with commas between them; ordered is the reference that goes event by event").shows_default();
-  verb.option("--propagator", words->propagator, "Of rd: laws, or auto (closed forms, as the other engines have)").type_name("WORD");
+  verb.option("--sizes", words->sizes,
+              "Sizes to run one after the other: draws work and time against n, e.g. --sizes "
+              "50,100,200")
+      .separated_by(',');
+  verb.option("--engines", words->engines,
+              "Which, with commas between them; ordered is the reference that goes event by event")
+      .shows_default();
+  verb.option("--propagator", words->propagator,
+              "Of rd: laws, or auto (closed forms, as the other engines have)")
+      .type_name("WORD");
   verb.option("--modules", words->modules, "Whose laws, as for tumble run").type_name("WORDS");
-  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive();
+  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")
+      .positive();
   verb.option("--step-s", words->step_s, "Largest step [s] instead of the scene's").positive();
-  verb.option("--threads", words->threads, "Of tw: how many; then times are by the clock").shows_default();
-  verb.option("--out", words->out, "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one").shows_default();
-  verb.footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300\nTimes are CPU times in this run (by the clock with --threads) and are meant to be compared with each other only.");
+  verb.option("--threads", words->threads, "Of tw: how many; then times are by the clock")
+      .shows_default();
+  verb.option("--out", words->out,
+              "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one")
+      .shows_default();
+  verb.footer(
+      "Example: tumble engines\n         tumble engines atoms --sizes 30,100,300\nTimes are CPU "
+      "times in this run (by the clock with --threads) and are meant to be compared with each "
+      "other only.");
   verb.runs([&context, words] { run_engines(context, *words); });
 }
 

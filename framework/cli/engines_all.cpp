@@ -33,16 +33,24 @@ struct Shown {
   double speed;             // seconds of the run per second of video
   double share, paper_share;
 };
-constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0, 0.5, 5, 60},         {"cars", 9, 40, 400, 0, 0.5, 10, 100},     {"robots", 1, 4, 20, 0.8, 0.5, 14, 250}, {"avalanche", 5, 16, 300, 0.7, 1.0, 20, 400},
-                            {"pong", 0, 200, 2000, 0, 0.5, 5, 200}, {"dominoes_row", 0, 12, 50, 0, 1.0, 14, 250}, {"cradle", 0, 8, 20, 0, 1.0, 5, 20}};
+constexpr Shown kShown[] = {
+    {"atoms", 60, 100, 300, 0, 0.5, 5, 60},  {"cars", 9, 40, 400, 0, 0.5, 10, 100},
+    {"robots", 1, 4, 20, 0.8, 0.5, 14, 250}, {"avalanche", 5, 16, 300, 0.7, 1.0, 20, 400},
+    {"pong", 0, 200, 2000, 0, 0.5, 5, 200},  {"dominoes_row", 0, 12, 50, 0, 1.0, 14, 250},
+    {"cradle", 0, 8, 20, 0, 1.0, 5, 20}};
 
 // The slides' sizes are 100 and 200 atoms; both are in every list of sizes. The others are ours.
-const std::vector<int> kSmallLadder = {50, 100, 200}, kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
-const std::vector<int> kSmallPong = {1, 50}, kPong = {1, 200, 2000};   // ours: the slides show Pong, without these sizes
-constexpr double kMostOfPong = 10.0;                       // s of CPU: a slower engine is left out at that size
+const std::vector<int> kSmallLadder = {50, 100, 200}, kLadder = {25, 50, 100, 200},
+                       kPaperLadder = {50, 100, 200, 400};
+// ours: the slides show Pong, without these sizes
+const std::vector<int> kSmallPong = {1, 50}, kPong = {1, 200, 2000};
+// s of CPU: a slower engine is left out at that size
+constexpr double kMostOfPong = 10.0;
 constexpr double kLadderShare = 12, kPaperLadderShare = 150, kPongShare = 10;
-constexpr double kMostOfPaper = 60.0;                      // s of CPU: a slower engine is left out of the paper's sizes for that scene
-constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames per second: of shown runs, and of others
+// s of CPU: a slower engine is left out of the paper's sizes for that scene
+constexpr double kMostOfPaper = 60.0;
+// frames per second: of shown runs, and of others
+constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;
 constexpr int kWidth = 960, kHeight = 540;
 
 /// Reports the current scene and the estimated remaining time.
@@ -50,8 +58,11 @@ class TableProgress {
  public:
   explicit TableProgress(double total) : total_(total), begun_(std::chrono::steady_clock::now()) {}
   void begin(const std::string& what) const {
-    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
-    const std::string left = done_ > 0 ? fmt::format(" · about {:.0f} s left", std::ceil(spent / done_ * (total_ - done_))) : "";
+    const double spent =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    const std::string left = done_ > 0 ? fmt::format(" · about {:.0f} s left",
+                                                     std::ceil(spent / done_ * (total_ - done_)))
+                                       : "";
     fmt::print(stderr, "[{:3.0f} %] {}{}\n", 100.0 * done_ / total_, what, left);
   }
   void finish(double share) { done_ += share; }
@@ -61,11 +72,14 @@ class TableProgress {
   std::chrono::steady_clock::time_point begun_;
 };
 
-int size_of(const EnginesWords& words, const Shown& shown) { return words.full ? shown.paper_n : words.small ? shown.small_n : shown.n; }
+int size_of(const EnginesWords& words, const Shown& shown) {
+  return words.full ? shown.paper_n : words.small ? shown.small_n : shown.n;
+}
 
 std::string modules_of(const Context& context, const EnginesWords& words) {
   if (!words.modules.empty()) return words.modules;
-  return fs::is_directory(context.root / "solutions_private") ? "reference" : "";   // engines are compared, not submissions
+  // engines are compared, not submissions
+  return fs::is_directory(context.root / "solutions_private") ? "reference" : "";
 }
 
 /// Each engine as shown on the page. rd uses closed forms where the others do, so that a ratio
@@ -101,7 +115,8 @@ std::vector<EngineChoice> choices_of_refinement(const EnginesWords& words) {
 
 /// The page that plays timewarp's run beside that of retroactive detection, with every change of
 /// the local virtual times.
-void write_players(const Context& context, const scene::Scene& scene, const std::vector<EngineRun>& runs, const fs::path& file) {
+void write_players(const Context& context, const scene::Scene& scene,
+                   const std::vector<EngineRun>& runs, const fs::path& file) {
   report::PlayerOptions options;
   options.root = context.root;
   std::vector<report::PlayedRun> played;
@@ -109,15 +124,17 @@ void write_players(const Context& context, const scene::Scene& scene, const std:
     for (const EngineRun& run : runs) {
       if (run.row.engine != engine || run.run.frames.empty()) continue;
       played.push_back({run.run, run.row.label});
-      if (!run.run.virtual_times.moves.empty()) options.panels.push_back(report::virtual_times_panel(run.run.virtual_times));
+      if (!run.run.virtual_times.moves.empty())
+        options.panels.push_back(report::virtual_times_panel(run.run.virtual_times));
     }
   if (!played.empty()) report::write_player(file, scene, played, options);
 }
 
 /// Timewarp's run of the whole scene where engines were compared over a part of it: for pictures,
 /// as far as it gets in a few minutes.
-std::optional<EngineRun> whole_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EnginesWords& words) {
-  constexpr double kMost = 200.0;   // s of CPU
+std::optional<EngineRun> whole_run(const Context& context, const scene::Scene& scene,
+                                   const ChosenLaws& chosen, const EnginesWords& words) {
+  constexpr double kMost = 200.0;  // s of CPU
   for (EngineChoice choice : choices_of(words)) {
     if (choice.engine != "tw") continue;
     fmt::print(stderr, "        {} by tw, the whole of it\n", scene.name);
@@ -135,18 +152,22 @@ const EngineRun* run_to_show(const std::vector<EngineRun>& runs) {
   return nullptr;
 }
 
-void add_judgement(const scene::Scene& scene, const std::vector<EngineRun>& runs, EnginesScene& shown) {
+void add_judgement(const scene::Scene& scene, const std::vector<EngineRun>& runs,
+                   EnginesScene& shown) {
   for (const EngineRun& run : runs) {
     if (run.run.frames.empty()) continue;
     for (const engines::CheckResult& check : engines::judge_run(scene, run.run)) {
-      shown.checks.push_back(fmt::format("{}: {} {:.3g} {}(allowed {} {:.3g})", run.row.label, check.kind, check.value == 0.0 ? 0.0 : check.value, check.unit.empty() ? "" : check.unit + " ",
-                                         check.at_least ? "\u2265" : "\u2264", check.threshold == 0.0 ? 0.0 : check.threshold));
+      shown.checks.push_back(fmt::format(
+          "{}: {} {:.3g} {}(allowed {} {:.3g})", run.row.label, check.kind,
+          check.value == 0.0 ? 0.0 : check.value, check.unit.empty() ? "" : check.unit + " ",
+          check.at_least ? "\u2265" : "\u2264", check.threshold == 0.0 ? 0.0 : check.threshold));
       shown.is_right = shown.is_right && check.passed;
     }
   }
 }
 
-EnginesScene show(const Context& context, const EnginesWords& words, const Shown& which, const fs::path& out) {
+EnginesScene show(const Context& context, const EnginesWords& words, const Shown& which,
+                  const fs::path& out) {
   EnginesScene shown;
   shown.name = which.name;
   try {
@@ -157,7 +178,9 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     shown.command = fmt::format("./tumble engines {} --n {}", which.name, n);
     const bool in_part = words.full && which.paper_duration > 0;
     if (in_part) shown.command += fmt::format(" --duration-s {:g}", which.paper_duration);
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry), words.engines);
+    const ChosenLaws chosen = choose_laws(
+        context, scene, parse_module_words(modules_of(context, words), context.registry),
+        words.engines);
     // Runs of all engines, their agreement and judgement.
     std::vector<EngineRun> runs;
     for (EngineChoice choice : choices_of(words)) {
@@ -170,7 +193,8 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     add_judgement(scene, runs, shown);
     // Table, player, picture and video.
     const fs::path folder = out / which.name;
-    report::write_engines_page(scene.title, scene.about, shown.rows, {}, record_of(context, scene), folder / "index.html");
+    report::write_engines_page(scene.title, scene.about, shown.rows, {}, record_of(context, scene),
+                               folder / "index.html");
     shown.page = fs::path(which.name) / "index.html";
     const auto whole = in_part ? whole_run(context, scene, chosen, words) : std::nullopt;
     const EngineRun* best = whole && whole->run.frames.size() > 1 ? &*whole : run_to_show(runs);
@@ -182,23 +206,30 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     picture.height = kHeight;
     picture.speed = which.speed;
     picture.root = context.root;
-    render::write_picture(folder / "picture.png", scene, best->run, render::telling_instant(best->run), picture);
+    render::write_picture(folder / "picture.png", scene, best->run,
+                          render::telling_instant(best->run), picture);
     shown.figure.picture = fs::path(which.name) / "picture.png";
-    shown.figure.caption = fmt::format("{} by {}{}", scene.title, best->row.meaning, which.speed < 1 ? fmt::format(", at {:g} of its speed", which.speed) : "");
+    shown.figure.caption =
+        fmt::format("{} by {}{}", scene.title, best->row.meaning,
+                    which.speed < 1 ? fmt::format(", at {:g} of its speed", which.speed) : "");
     if (words.no_videos) return shown;
     render::write_video(folder / "video.mp4", scene, best->run, picture);
     shown.figure.video = fs::path(which.name) / "video.mp4";
-  } catch (const std::exception& error) {   // an error in one scene is shown in its place
+  } catch (const std::exception& error) {  // an error in one scene is shown in its place
     shown.problem = error.what();
   }
   return shown;
 }
 
-std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesWords& words, const char* name, const std::vector<int>& sizes, double most_s) {
+std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesWords& words,
+                                          const char* name, const std::vector<int>& sizes,
+                                          double most_s) {
   std::vector<std::vector<EngineRow>> ladder;
   for (const int n : sizes) {
     const scene::Scene scene = find_scene(context, name, n);
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry), words.engines);
+    const ChosenLaws chosen = choose_laws(
+        context, scene, parse_module_words(modules_of(context, words), context.registry),
+        words.engines);
     std::vector<EngineRun> runs;
     for (EngineChoice choice : choices_of_refinement(words)) {
       choice.most_s = std::min(choice.most_s, most_s);
@@ -220,13 +251,17 @@ void print_scene(const EnginesScene& scene) {
 }  // namespace
 
 void engines_of_all(Context& context, const EnginesWords& words) {
-  if (words.n || words.duration_s || words.step_s || !words.sizes.empty()) throw UserError("tumble engines", "sizes, durations and steps belong to one scene", "Name a scene, or leave --n, --sizes, --duration-s and --step-s out.");
+  if (words.n || words.duration_s || words.step_s || !words.sizes.empty())
+    throw UserError("tumble engines", "sizes, durations and steps belong to one scene",
+                    "Name a scene, or leave --n, --sizes, --duration-s and --step-s out.");
   engines_named(words.engines);
   // The scenes of the page, and their shares of the time.
   std::vector<Shown> all;
   for (const Shown& shown : kShown)
     if (size_of(words, shown) > 0) all.push_back(shown);
-  const auto share_of = [&](const Shown& shown) { return words.full ? shown.paper_share : shown.share; };
+  const auto share_of = [&](const Shown& shown) {
+    return words.full ? shown.paper_share : shown.share;
+  };
   const double ladder_share = words.full ? kPaperLadderShare : kLadderShare;
   double total = ladder_share + kPongShare;
   for (const Shown& shown : all) total += share_of(shown);
@@ -236,10 +271,15 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   index.is_full = words.full;
   // Runs over several sizes.
   progress.begin("atoms at several sizes");
-  index.ladder = climb(context, words, "atoms", words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder, std::numeric_limits<double>::infinity());
+  index.ladder = climb(context, words, "atoms",
+                       words.full    ? kPaperLadder
+                       : words.small ? kSmallLadder
+                                     : kLadder,
+                       std::numeric_limits<double>::infinity());
   progress.finish(ladder_share);
   progress.begin("pong at several sizes");
-  index.ghosts = climb(context, words, "pong_ghosts", words.small ? kSmallPong : kPong, kMostOfPong);
+  index.ghosts =
+      climb(context, words, "pong_ghosts", words.small ? kSmallPong : kPong, kMostOfPong);
   index.pong = climb(context, words, "pong", words.small ? kSmallPong : kPong, kMostOfPong);
   progress.finish(kPongShare);
   // The scenes.
@@ -249,7 +289,8 @@ void engines_of_all(Context& context, const EnginesWords& words) {
     progress.finish(share_of(shown));
     const EnginesScene& scene = index.scenes.back();
     if (!scene.problem.empty() || !scene.is_right) context.exit = ExitCode::kCheckFailed;
-    report::write_engines_index(index, fs::path(words.out) / "index.html");   // after each scene: a stopped run leaves the page of all scenes so far
+    // after each scene: a stopped run leaves the page of all scenes so far
+    report::write_engines_index(index, fs::path(words.out) / "index.html");
     if (!words.quiet) print_scene(scene);
   }
   if (words.quiet) return;

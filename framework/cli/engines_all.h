@@ -18,11 +18,11 @@ struct EnginesWords {
   std::vector<int> sizes;
   std::optional<int> n;
   std::optional<double> duration_s, step_s;
-  int threads = 1;          // of tw, in one scene
-  bool full = false;        // sizes of the paper
+  int threads = 1;    // of tw, in one scene
+  bool full = false;  // sizes of the paper
   bool no_videos = false;
-  bool small = false;       // a few scenes, smaller still
-  bool quiet = false;       // nothing on stdout: used within a larger report
+  bool small = false;  // a few scenes, smaller still
+  bool quiet = false;  // nothing on stdout: used within a larger report
 };
 
 /// Runs them and writes words.out/index.html, with a folder beside it for each scene.

@@ -29,19 +29,25 @@ struct Stage {
   std::string name;
   std::string does;
   bool is_built;
-  std::vector<std::string> counts;   // names in Counters
+  std::vector<std::string> counts;  // names in Counters
 };
 
 bool is_on(const std::vector<EffectUse>& effects, const std::string& name) {
-  return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) { return effect.name == name && effect.is_on(); });
+  return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) {
+    return effect.name == name && effect.is_on();
+  });
 }
 
 bool is_stage_asked(const std::vector<EffectUse>& effects, const std::string& stage) {
-  return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) { return effect.stage == stage && effect.is_on(); });
+  return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) {
+    return effect.stage == stage && effect.is_on();
+  });
 }
 
 /// Counters of the effects in a stage, and those of the stage itself.
-std::vector<std::string> counts_of(const std::vector<EffectUse>& effects, const std::string& stage, std::vector<std::string> before, const std::vector<std::string>& after) {
+std::vector<std::string> counts_of(const std::vector<EffectUse>& effects, const std::string& stage,
+                                   std::vector<std::string> before,
+                                   const std::vector<std::string>& after) {
   for (const EffectUse& effect : effects)
     if (effect.stage == stage) before.push_back(effect.counter);
   before.insert(before.end(), after.begin(), after.end());
@@ -49,19 +55,38 @@ std::vector<std::string> counts_of(const std::vector<EffectUse>& effects, const 
 }
 
 std::vector<Stage> stages_of(const std::vector<EffectUse>& effects) {
-  const bool constrained = is_stage_asked(effects, "constraints"), colliding = is_on(effects, "collision"), sleeping = is_on(effects, "sleep");
+  const bool constrained = is_stage_asked(effects, "constraints"),
+             colliding = is_on(effects, "collision"), sleeping = is_on(effects, "sleep");
   const bool forced = constrained || is_stage_asked(effects, "forces");
   return {
       {"integration", "moves bodies by their forces, and back to the first impact", true,
-       counts_of(effects, "integration", {"steps", "synchronisations", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks"}, {})},
-      {"forces", "forces on bodies that are linked or do not fly freely, with their gravity", forced, counts_of(effects, "forces", {}, {})},
-      {"constraints", "constraint forces of rods and joints, and their projection", constrained, counts_of(effects, "constraints", {}, {"constraint_solves", "constraint_corrections"})},
-      {"control", "motors are sampled and set their torques", is_stage_asked(effects, "control"), counts_of(effects, "control", {}, {})},
-      {"collision", "candidate pairs, gaps, times of impact", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},
-      {"impacts", "impulses of collisions", colliding, sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"} : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
-      {"contacts", "forces of resting, sliding and rolling contacts", is_on(effects, "lasting contact"),
-       {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations", "contact_unsolved", "contacts_begun", "contacts_ended", "friction_points"}},
-      {"sleep", "bodies at rest are skipped until something would move them", sleeping, {"bodies_put_to_sleep", "bodies_woken", "body_steps_asleep"}},
+       counts_of(effects, "integration",
+                 {"steps", "synchronisations", "shortened_steps", "integrations",
+                  "undone_integrations", "derivative_evaluations", "rollbacks"},
+                 {})},
+      {"forces", "forces on bodies that are linked or do not fly freely, with their gravity",
+       forced, counts_of(effects, "forces", {}, {})},
+      {"constraints", "constraint forces of rods and joints, and their projection", constrained,
+       counts_of(effects, "constraints", {}, {"constraint_solves", "constraint_corrections"})},
+      {"control", "motors are sampled and set their torques", is_stage_asked(effects, "control"),
+       counts_of(effects, "control", {}, {})},
+      {"collision",
+       "candidate pairs, gaps, times of impact",
+       colliding,
+       {"candidate_pairs", "gap_evaluations", "root_findings"}},
+      {"impacts", "impulses of collisions", colliding,
+       sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"}
+                : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges",
+                                           "bodies_put_to_rest", "bodies_woken"}},
+      {"contacts",
+       "forces of resting, sliding and rolling contacts",
+       is_on(effects, "lasting contact"),
+       {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations",
+        "contact_unsolved", "contacts_begun", "contacts_ended", "friction_points"}},
+      {"sleep",
+       "bodies at rest are skipped until something would move them",
+       sleeping,
+       {"bodies_put_to_sleep", "bodies_woken", "body_steps_asleep"}},
       {"recording", "frames and events", true, {}},
   };
 }
@@ -75,7 +100,9 @@ std::uint64_t count_of(const Trajectory& run, const std::string& name) {
 std::vector<std::string> other_counts(const std::vector<Stage>& stages, const Trajectory& run) {
   std::vector<std::string> names;
   for (const auto& [name, value] : run.counters.counts)
-    if (value > 0 && std::none_of(stages.begin(), stages.end(), [&name = name](const Stage& stage) { return std::find(stage.counts.begin(), stage.counts.end(), name) != stage.counts.end(); }))
+    if (value > 0 && std::none_of(stages.begin(), stages.end(), [&name = name](const Stage& stage) {
+          return std::find(stage.counts.begin(), stage.counts.end(), name) != stage.counts.end();
+        }))
       names.push_back(name);
   return names;
 }
@@ -83,7 +110,8 @@ std::vector<std::string> other_counts(const std::vector<Stage>& stages, const Tr
 /// A number with groups of digits: "1,234,567".
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
-  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), " ");
   return digits;
 }
 
@@ -96,15 +124,20 @@ std::vector<AskerLine> lines_of(const EffectUse& effect, const scene::Scene& sce
   const std::string file = scene.file.filename().string();
   std::vector<AskerLine> lines;
   for (const auto& asker : effect.askers) {
-    if (!lines.empty() && lines.back().pointer == asker.pointer && !asker.pointer.empty()) ++lines.back().count;
-    else lines.push_back({asker.pointer, asker.line > 0 ? fmt::format("{}:{}: {}", file, asker.line, asker.pointer) : asker.pointer, asker.what, 1});
+    if (!lines.empty() && lines.back().pointer == asker.pointer && !asker.pointer.empty())
+      ++lines.back().count;
+    else
+      lines.push_back({asker.pointer,
+                       asker.line > 0 ? fmt::format("{}:{}: {}", file, asker.line, asker.pointer)
+                                      : asker.pointer,
+                       asker.what, 1});
   }
   for (AskerLine& line : lines)
     if (line.count > 1) line.what += fmt::format(" ... ({} like it)", line.count);
   return lines;
 }
 
-constexpr std::size_t kMostLines = 6;   // of one effect
+constexpr std::size_t kMostLines = 6;  // of one effect
 
 /// Width of the column with the positions of entries.
 std::size_t width_of_places(const std::vector<EffectUse>& effects, const scene::Scene& scene) {
@@ -112,12 +145,14 @@ std::size_t width_of_places(const std::vector<EffectUse>& effects, const scene::
   std::size_t width = kLeast;
   for (const EffectUse& effect : effects) {
     const auto lines = lines_of(effect, scene);
-    for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i) width = std::max(width, lines[i].place.size());
+    for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i)
+      width = std::max(width, lines[i].place.size());
   }
   return std::min(width, kMost);
 }
 
-void print_effects(const scene::Scene& scene, const std::vector<EffectUse>& effects, const Trajectory* run) {
+void print_effects(const scene::Scene& scene, const std::vector<EffectUse>& effects,
+                   const Trajectory* run) {
   const std::size_t width = width_of_places(effects, scene);
   fmt::print("\n  {:<16} {:<{}} {}\n", "effects", "asked for by", width, "that is");
   for (const EffectUse& effect : effects) {
@@ -128,8 +163,12 @@ void print_effects(const scene::Scene& scene, const std::vector<EffectUse>& effe
       fmt::print("  {:<16} {:<{}} {}\n", name, lines[i].place, width, lines[i].what);
       name.clear();
     }
-    if (lines.size() > kMostLines) fmt::print("  {:<16} {:<{}} (--json lists all)\n", "", fmt::format("... and {} more", lines.size() - kMostLines), width);
-    if (run != nullptr) fmt::print("  {:<16} {:<{}} called {} times ({})\n", "", "", width, grouped(count_of(*run, effect.counter)), effect.counter);
+    if (lines.size() > kMostLines)
+      fmt::print("  {:<16} {:<{}} (--json lists all)\n", "",
+                 fmt::format("... and {} more", lines.size() - kMostLines), width);
+    if (run != nullptr)
+      fmt::print("  {:<16} {:<{}} called {} times ({})\n", "", "", width,
+                 grouped(count_of(*run, effect.counter)), effect.counter);
     if (!effect.note.empty()) fmt::print("  {:<16} note: {}\n", "", effect.note);
   }
   std::string off, notes;
@@ -137,12 +176,15 @@ void print_effects(const scene::Scene& scene, const std::vector<EffectUse>& effe
   for (const EffectUse& effect : effects) {
     if (effect.is_on()) continue;
     off += (off.empty() ? "" : ", ") + effect.name;
-    if (!effect.note.empty()) notes += fmt::format("  {:<16} {}: {}\n", "", effect.name, effect.note);
+    if (!effect.note.empty())
+      notes += fmt::format("  {:<16} {}: {}\n", "", effect.name, effect.note);
     if (run != nullptr) calls += count_of(*run, effect.counter);
   }
   if (off.empty()) return;
   fmt::print("  {:<16} {}\n{}", "not there", off, notes);
-  if (run != nullptr) fmt::print("  {:<16} their code was called {} times{}\n", "", grouped(calls), calls == 0 ? "" : ", and should not have been");
+  if (run != nullptr)
+    fmt::print("  {:<16} their code was called {} times{}\n", "", grouped(calls),
+               calls == 0 ? "" : ", and should not have been");
 }
 
 void print_counts(const std::vector<std::string>& names, const Trajectory& run) {
@@ -173,8 +215,10 @@ void print_stages(const std::vector<Stage>& stages, const Trajectory* run) {
       continue;
     }
     std::string time;
-    if (run != nullptr && run->counters.stage_seconds.contains(stage.name)) time = fmt::format("{:.3f} s", run->counters.stage_seconds.at(stage.name));
-    fmt::print("  {:<16} {}{}\n", stage.name, run != nullptr ? fmt::format("{:<9}", time) : "", stage.does);
+    if (run != nullptr && run->counters.stage_seconds.contains(stage.name))
+      time = fmt::format("{:.3f} s", run->counters.stage_seconds.at(stage.name));
+    fmt::print("  {:<16} {}{}\n", stage.name, run != nullptr ? fmt::format("{:<9}", time) : "",
+               stage.does);
     if (run != nullptr) print_counts(stage.counts, *run);
   }
   if (!absent.empty()) fmt::print("  {:<16} {}\n", "not built", absent);
@@ -184,29 +228,41 @@ void print_stages(const std::vector<Stage>& stages, const Trajectory* run) {
     fmt::print("  {:<16}\n", "other counts");
     print_counts(others, *run);
   }
-  fmt::print("\n  A stage's time includes that of the stages it calls: integration of linked bodies calls forces and constraints.\n"
-             "  Gravity and point forces on free bodies are counted, not timed: a clock would cost more than they do.\n");
+  fmt::print(
+      "\n  A stage's time includes that of the stages it calls: integration of linked bodies calls "
+      "forces and constraints.\n"
+      "  Gravity and point forces on free bodies are counted, not timed: a clock would cost more "
+      "than they do.\n");
 }
 
 std::string bodies_line(const scene::Scene& scene) {
-  const auto immovable = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.immovable; });
+  const auto immovable = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                       [](const scene::BodySpec& body) { return body.immovable; });
   const auto movable = static_cast<std::ptrdiff_t>(scene.bodies.size()) - immovable;
-  return fmt::format("{} {} move{}, {} immovable", movable, movable == 1 ? "body" : "bodies", movable == 1 ? "s" : "", immovable);
+  return fmt::format("{} {} move{}, {} immovable", movable, movable == 1 ? "body" : "bodies",
+                     movable == 1 ? "s" : "", immovable);
 }
 
-void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
-  fmt::print("{}\n  {}, {:g} s in steps of {:.6g} s\n", scene.title, bodies_line(scene), scene.duration_s, scene.step_s);
+void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects,
+                const std::vector<Stage>& stages, const Trajectory* run) {
+  fmt::print("{}\n  {}, {:g} s in steps of {:.6g} s\n", scene.title, bodies_line(scene),
+             scene.duration_s, scene.step_s);
   if (scene.stabilisation) {
     static const char* const kinds[] = {"nothing", "Baumgarte's term", "projection"};
-    fmt::print("  rods and joints are kept together by {}\n", kinds[static_cast<int>(scene.stabilisation->kind)]);
+    fmt::print("  rods and joints are kept together by {}\n",
+               kinds[static_cast<int>(scene.stabilisation->kind)]);
   }
   print_effects(scene, effects, run);
   print_stages(stages, run);
-  if (run == nullptr) fmt::print("\n  --run runs it and adds what each costs.\n");
-  else if (!run->stopped_by.empty()) fmt::print("\n  STOPPED: {}\n", run->stopped_by);
+  if (run == nullptr)
+    fmt::print("\n  --run runs it and adds what each costs.\n");
+  else if (!run->stopped_by.empty())
+    fmt::print("\n  STOPPED: {}\n", run->stopped_by);
 }
 
-void print_json(const Context& context, const scene::Scene& scene, const std::vector<EffectUse>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
+void print_json(const Context& context, const scene::Scene& scene,
+                const std::vector<EffectUse>& effects, const std::vector<Stage>& stages,
+                const Trajectory* run) {
   nlohmann::ordered_json page;
   page["command"] = context.command_line;
   page["version"] = kProgramVersion;
@@ -216,15 +272,23 @@ void print_json(const Context& context, const scene::Scene& scene, const std::ve
   page["scene_digest"] = scene.digest;
   page["seeds"] = scene.seeds;
   for (const EffectUse& effect : effects) {
-    nlohmann::ordered_json entry = {{"name", effect.name}, {"on", effect.is_on()}, {"stage", effect.stage}, {"asked_for_by", nlohmann::json::array()}, {"note", effect.note}};
-    for (const auto& asker : effect.askers) entry["asked_for_by"].push_back({{"pointer", asker.pointer}, {"line", asker.line}, {"what", asker.what}});
+    nlohmann::ordered_json entry = {{"name", effect.name},
+                                    {"on", effect.is_on()},
+                                    {"stage", effect.stage},
+                                    {"asked_for_by", nlohmann::json::array()},
+                                    {"note", effect.note}};
+    for (const auto& asker : effect.askers)
+      entry["asked_for_by"].push_back(
+          {{"pointer", asker.pointer}, {"line", asker.line}, {"what", asker.what}});
     if (run != nullptr) entry["calls"] = count_of(*run, effect.counter);
     page["effects"].push_back(entry);
   }
   for (const Stage& stage : stages) {
-    nlohmann::ordered_json entry = {{"name", stage.name}, {"built", stage.is_built}, {"does", stage.does}};
+    nlohmann::ordered_json entry = {
+        {"name", stage.name}, {"built", stage.is_built}, {"does", stage.does}};
     if (run != nullptr) {
-      if (run->counters.stage_seconds.contains(stage.name)) entry["seconds"] = run->counters.stage_seconds.at(stage.name);
+      if (run->counters.stage_seconds.contains(stage.name))
+        entry["seconds"] = run->counters.stage_seconds.at(stage.name);
       for (const auto& name : stage.counts) entry["counts"][name] = count_of(*run, name);
     }
     page["stages"].push_back(entry);
@@ -239,7 +303,8 @@ void explain(Context& context, const ExplainWords& words) {
   const auto stages = stages_of(effects);
   TrajectoryRecorder recorder;
   if (words.run) {
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
+    const ChosenLaws chosen =
+        choose_laws(context, scene, parse_module_words(words.modules, context.registry));
     for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
     engines::RunOptions options;
     options.duration_s = words.duration_s;
@@ -248,21 +313,33 @@ void explain(Context& context, const ExplainWords& words) {
     if (!recorder.trajectory().stopped_by.empty()) context.exit = ExitCode::kCheckFailed;
   }
   const Trajectory* run = words.run ? &recorder.trajectory() : nullptr;
-  if (words.json) print_json(context, scene, effects, stages, run);
-  else print_page(scene, effects, stages, run);
+  if (words.json)
+    print_json(context, scene, effects, stages, run);
+  else
+    print_page(scene, effects, stages, run);
 }
 
 }  // namespace
 
 void add_explain(CLI::App& app, Context& context) {
   auto words = std::make_shared<ExplainWords>();
-  Verb verb(app, "explain", "Say which effects a scene has, which entry asked for each, and what each costs");
-  verb.option("scene", words->scene, "A scene file, or the bare name of one under assignments/*/scenes").required().type_name("SCENE");
+  Verb verb(app, "explain",
+            "Say which effects a scene has, which entry asked for each, and what each costs");
+  verb.option("scene", words->scene,
+              "A scene file, or the bare name of one under assignments/*/scenes")
+      .required()
+      .type_name("SCENE");
   const Word run = verb.flag("--run", words->run, "Run it, and add times and counts");
-  verb.option("--modules", words->modules, "Whose laws, as for tumble run").type_name("WORDS").needs(run);
-  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive().needs(run);
+  verb.option("--modules", words->modules, "Whose laws, as for tumble run")
+      .type_name("WORDS")
+      .needs(run);
+  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")
+      .positive()
+      .needs(run);
   verb.flag("--json", words->json, "For machines");
-  verb.footer("Example: tumble explain bouncing_ball --run\nExit: 0 fine, 1 the run was stopped, 2 something to repair, 4 not attempted.");
+  verb.footer(
+      "Example: tumble explain bouncing_ball --run\nExit: 0 fine, 1 the run was stopped, 2 "
+      "something to repair, 4 not attempted.");
   verb.runs([&context, words] { explain(context, *words); });
 }
 

@@ -8,7 +8,8 @@
 
 namespace tumble::cli {
 
-/// A .3ds file by its path, or by its name in models/ with or without its ending; the word itself where there is none.
+/// A .3ds file by its path, or by its name in models/ with or without its ending; the word itself
+/// where there is none.
 std::filesystem::path find_model_file(const Command& command, const std::string& word);
 
 }  // namespace tumble::cli

@@ -20,7 +20,8 @@ std::vector<fs::path> scenes_of(const Context& context) {
   std::set<fs::path> files;
   std::error_code ignored;
   for (const auto* kind : context.registry.all())
-    for (const auto& entry : fs::directory_iterator(context.root / "assignments" / kind->folder / "scenes", ignored))
+    for (const auto& entry :
+         fs::directory_iterator(context.root / "assignments" / kind->folder / "scenes", ignored))
       if (entry.path().extension() == ".json") files.insert(entry.path());
   return {files.begin(), files.end()};
 }
@@ -37,13 +38,16 @@ std::string listing(const Context& context) {
     }
     lines += fmt::format("\n  {:<24} {}", file.stem().string(), title);
   }
-  for (const scene::SizedScene& sized : scene::sized_scenes()) lines += fmt::format("\n  {:<24} {} (--n {}: {})", sized.name, sized.title, sized.default_n, sized.counts);
+  for (const scene::SizedScene& sized : scene::sized_scenes())
+    lines += fmt::format("\n  {:<24} {} (--n {}: {})", sized.name, sized.title, sized.default_n,
+                         sized.counts);
   return lines;
 }
 
 std::string sized_names() {
   std::string names;
-  for (const scene::SizedScene& sized : scene::sized_scenes()) names += (names.empty() ? "" : ", ") + sized.name;
+  for (const scene::SizedScene& sized : scene::sized_scenes())
+    names += (names.empty() ? "" : ", ") + sized.name;
   return names;
 }
 
@@ -51,7 +55,10 @@ std::string sized_names() {
 
 scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns) {
   if ((words.scale || words.density || words.drop) && !scene::names_model(words.scene))
-    throw UserError(words.scale ? "--scale" : words.density ? "--density" : "--drop", "'" + words.scene + "' is a scene, which says its sizes and masses itself",
+    throw UserError(words.scale     ? "--scale"
+                    : words.density ? "--density"
+                                    : "--drop",
+                    "'" + words.scene + "' is a scene, which says its sizes and masses itself",
                     "These words are about a .3ds file: tumble run t_handle.3ds --drop");
   scene::ModelSceneOptions model;
   if (words.scale) model.metres_per_unit = *words.scale;
@@ -61,17 +68,24 @@ scene::Scene scene_of_words(const Context& context, const RunWords& words, bool 
   return find_scene(context, words.scene, words.n, model);
 }
 
-scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n, const scene::ModelSceneOptions& model) {
-  if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::is_regular_file(word)) {
+scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n,
+                        const scene::ModelSceneOptions& model) {
+  if (const scene::SizedScene* sized = scene::sized_scene_named(word);
+      sized != nullptr && !fs::is_regular_file(word)) {
     scene::Scene made = scene::make_sized_scene(word, n.value_or(sized->default_n));
-    made.file = context.root / "models" / word;   // models are found beside it
+    made.file = context.root / "models" / word;  // models are found beside it
     return made;
   }
-  if (n) throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size", "Sizes are parameters of " + sized_names() + ".");
-  if (scene::names_model(word)) return scene::make_model_scene(find_model_file(context, word), model);
+  if (n)
+    throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size",
+                    "Sizes are parameters of " + sized_names() + ".");
+  if (scene::names_model(word))
+    return scene::make_model_scene(find_model_file(context, word), model);
   if (fs::is_regular_file(word)) return scene::load_scene(word);
-  if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
-  std::vector<fs::path> beginning;   // an unambiguous prefix of a name is accepted
+  if (word.ends_with(".json") || word.find('/') != std::string::npos)
+    throw UserError(word, "there is no such file",
+                    "Check the path, or give a scene's bare name: " + listing(context));
+  std::vector<fs::path> beginning;  // an unambiguous prefix of a name is accepted
   std::vector<std::string> names_there;
   for (const auto& file : scenes_of(context)) {
     if (file.stem() == word) return scene::load_scene(file);
@@ -79,7 +93,9 @@ scene::Scene find_scene(const Context& context, const std::string& word, std::op
     names_there.push_back(file.stem());
   }
   if (beginning.size() == 1) return scene::load_scene(beginning.front());
-  if (beginning.empty()) throw UserError(word, "there is no such scene." + did_you_mean(word, names_there), "Give the path of a scene file, or one of these: " + listing(context));
+  if (beginning.empty())
+    throw UserError(word, "there is no such scene." + did_you_mean(word, names_there),
+                    "Give the path of a scene file, or one of these: " + listing(context));
   std::string names;
   for (const auto& file : beginning) names += (names.empty() ? "" : ", ") + file.stem().string();
   throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");

@@ -21,7 +21,9 @@ namespace tumble::cli {
 /// @param model  how a scene is made of a .3ds file
 /// @throws UserError with the known scenes, with the one size of a scene, or with the defect of a
 ///   model
-scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n = std::nullopt, const scene::ModelSceneOptions& model = {});
+scene::Scene find_scene(const Context& context, const std::string& word,
+                        std::optional<int> n = std::nullopt,
+                        const scene::ModelSceneOptions& model = {});
 
 /// The scene of a run's words. @param turns  of a .3ds file: whether it rotates from the start
 /// @throws UserError also for words about a model with a scene that is none

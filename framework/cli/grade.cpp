@@ -36,30 +36,35 @@ std::string span_of(double seconds) {
 void tell(const grading::GradeProgress& progress) {
   std::string line = fmt::format("[{}/{}]", progress.done, progress.total);
   if (!progress.finished.empty()) line += ' ' + grading::plain_name(progress.finished);
-  if (progress.done < progress.total) line += progress.left_s >= 0.0 ? " · about " + span_of(progress.left_s) + " left" : " ...";
+  if (progress.done < progress.total)
+    line += progress.left_s >= 0.0 ? " · about " + span_of(progress.left_s) + " left" : " ...";
   fmt::print(stderr, "{}\n", line);
   std::fflush(stderr);
 }
 
 void print_table(const std::vector<grading::Grade>& grades) {
   std::size_t widest = 10;
-  for (const auto& grade : grades) widest = std::max(widest, grading::plain_name(grade.name).size());
+  for (const auto& grade : grades)
+    widest = std::max(widest, grading::plain_name(grade.name).size());
   for (const auto& grade : grades) {
     fmt::print("{:<{}}  {}", grading::plain_name(grade.name), widest, grading::summary_of(grade));
     if (grade.taken_over) fmt::print("  (unchanged since the last run)");
     if (!grade.change.empty() && !grade.taken_over) fmt::print("  ({})", grade.change);
     for (const auto& note : grade.notes) fmt::print("  note: {}", grading::plain_text(note));
-    if (grade.state == grading::GradeState::kNothingToCompile) fmt::print(": {}", grading::plain_text(grade.story));
+    if (grade.state == grading::GradeState::kNothingToCompile)
+      fmt::print(": {}", grading::plain_text(grade.story));
     for (const auto& remark : grade.remarks) fmt::print("  remark: {}", remark);
     fmt::print("\n");
     if (grade.taken_over) continue;
-    for (const auto& c : grade.changes) fmt::print("{:<{}}    {}: {} -> {} ({})\n", "", widest, c.test, c.before, c.after, c.reason);
+    for (const auto& c : grade.changes)
+      fmt::print("{:<{}}    {}: {} -> {} ({})\n", "", widest, c.test, c.before, c.after, c.reason);
   }
 }
 
 void grade(Context& context, const GradeWords& words) {
   const modules::ModuleKind& kind = context.registry.find(words.id);
-  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  const grading::Course course{context.root, context.build, &context.registry,
+                               context.command_line};
   grading::judge_of(course, words.id);  // refused before any submission is read
   if (!words.sandbox.empty()) grading::choose_sandbox(words.sandbox);
   const grading::GradeProtection protection = grading::protection_of_grades(words.accepted_sandbox);
@@ -70,17 +75,26 @@ void grade(Context& context, const GradeWords& words) {
   options.media = !words.no_media;
   options.accepted_sandbox = words.accepted_sandbox;
   options.progress = tell;
-  const fs::path out = words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
-  options.notice = [](const std::string& sentence) { fmt::print(stderr, "{}\n", grading::plain_text(sentence)); };
-  for (const std::string& name : found.passed_over) fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
-  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}; sandbox: {}\n", found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string(), protection.words);
-  const auto grades = grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
+  const fs::path out =
+      words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
+  options.notice = [](const std::string& sentence) {
+    fmt::print(stderr, "{}\n", grading::plain_text(sentence));
+  };
+  for (const std::string& name : found.passed_over)
+    fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
+  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}; sandbox: {}\n",
+             found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string(),
+             protection.words);
+  const auto grades =
+      grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
   print_table(grades);
   if (!protection.is_official) fmt::print("{}\n", protection.note);
   fmt::print("wrote {} and {}\n", (out / "index.html").string(), (out / "gradebook.csv").string());
   for (const auto& grade : grades) {
-    if (!grade.is_final()) context.exit = ExitCode::kOurBug;
-    else if (!grade.has_score() && context.exit == ExitCode::kFine) context.exit = ExitCode::kCheckFailed;
+    if (!grade.is_final())
+      context.exit = ExitCode::kOurBug;
+    else if (!grade.has_score() && context.exit == ExitCode::kFine)
+      context.exit = ExitCode::kCheckFailed;
   }
 }
 
@@ -90,16 +104,39 @@ void add_grade(CLI::App& app, Context& context) {
   auto words = std::make_shared<GradeWords>();
   Verb verb(app, "grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
-  verb.option("folder", words->folder, "One submission a sub-folder").required().type_name("FOLDER");
-  verb.option("--out", words->out, "Where results go, a folder of their own; default out/grade_ID. A run that was ended goes on from there").type_name("FOLDER");
-  verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).default_text("number of cores");
-  verb.option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run").positive().shows_default();
-  verb.flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
-  verb.option("--sandbox", words->sandbox, "namespaces, landlock or bare; default: the strongest that this machine has (tumble doctor)").type_name("KIND");
-  verb.option("--accept-sandbox", words->accepted_sandbox, "Grade in this kind although the policy for grades refuses it; every result says that it is not official").type_name("KIND");
-  verb.footer("Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 something to repair, "
-              "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it again).\n"
-              "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else ~/.local/state/tumble/grader.key, made on first use).");
+  verb.option("folder", words->folder, "One submission a sub-folder")
+      .required()
+      .type_name("FOLDER");
+  verb.option("--out", words->out,
+              "Where results go, a folder of their own; default out/grade_ID. A run that was ended "
+              "goes on from there")
+      .type_name("FOLDER");
+  verb.option("--jobs", words->jobs, "Submissions at a time")
+      .between(1, 256)
+      .default_text("number of cores");
+  verb.option(
+          "--budget-s", words->budget_s,
+          "Time for all tests of one submission together; tests after it are out of time, not run")
+      .positive()
+      .shows_default();
+  verb.flag(
+      "--no-media", words->no_media,
+      "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.option("--sandbox", words->sandbox,
+              "namespaces, landlock or bare; default: the strongest that this machine has (tumble "
+              "doctor)")
+      .type_name("KIND");
+  verb.option("--accept-sandbox", words->accepted_sandbox,
+              "Grade in this kind although the policy for grades refuses it; every result says "
+              "that it is not official")
+      .type_name("KIND");
+  verb.footer(
+      "Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 "
+      "something to repair, "
+      "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it "
+      "again).\n"
+      "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else "
+      "~/.local/state/tumble/grader.key, made on first use).");
   verb.runs([&context, words] { grade(context, *words); });
 }
 

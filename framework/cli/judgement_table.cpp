@@ -7,13 +7,14 @@
 namespace tumble::cli {
 namespace {
 
-constexpr std::size_t kColumns = 110;   // of a line
+constexpr std::size_t kColumns = 110;  // of a line
 
 struct Row {
   std::string verdict, quantity, found, allowed, why;
 };
 
-std::string short_number(double value) { return fmt::format("{:.3g}", value == 0.0 ? 0.0 : value); }   // no "-0"
+// no "-0"
+std::string short_number(double value) { return fmt::format("{:.3g}", value == 0.0 ? 0.0 : value); }
 
 Row row_of(const engines::CheckResult& check) {
   const std::string unit = check.unit.empty() ? "" : ' ' + check.unit;
@@ -36,7 +37,8 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
     const std::size_t end = std::min(text.find(' ', start), text.size());
     const std::string word = text.substr(start, end - start);
     start = end + 1;
-    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width) lines.emplace_back();
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width)
+      lines.emplace_back();
     lines.back() += (lines.back().empty() ? "" : " ") + word;
   }
   return lines;
@@ -53,16 +55,20 @@ std::string judgement_table(const std::vector<engines::CheckResult>& checks) {
     for (const Row& row : rows) most = std::max(most, (row.*column).size());
     return most;
   };
-  const std::size_t quantity = width(&Row::quantity), found = width(&Row::found), allowed = width(&Row::allowed);
+  const std::size_t quantity = width(&Row::quantity), found = width(&Row::found),
+                    allowed = width(&Row::allowed);
   const std::size_t indent = 2 + 7 + quantity + 2 + found + 2 + allowed + 2;
   const std::size_t rest = kColumns > indent + 24 ? kColumns - indent : 24;
   std::string table;
   for (const Row& row : rows) {
     const auto lines = wrapped(row.why, rest);
-    table += fmt::format("  {:<7}{:<{}}  {:<{}}  {:<{}}  {}\n", row.verdict, row.quantity, quantity, row.found, found, row.allowed, allowed, lines[0]);
-    for (std::size_t i = 1; i < lines.size(); ++i) table += std::string(indent, ' ') + lines[i] + '\n';
+    table += fmt::format("  {:<7}{:<{}}  {:<{}}  {:<{}}  {}\n", row.verdict, row.quantity, quantity,
+                         row.found, found, row.allowed, allowed, lines[0]);
+    for (std::size_t i = 1; i < lines.size(); ++i)
+      table += std::string(indent, ' ') + lines[i] + '\n';
   }
-  const auto right = std::count_if(checks.begin(), checks.end(), [](const auto& check) { return check.passed; });
+  const auto right =
+      std::count_if(checks.begin(), checks.end(), [](const auto& check) { return check.passed; });
   return table + fmt::format("  {} of {} right\n", right, checks.size());
 }
 

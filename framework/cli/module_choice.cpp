@@ -34,39 +34,67 @@ fs::path built(const Context& context, const std::string& id, const std::string&
 /// Compiles as the build does (assignments/CMakeLists.txt: tumble_module_object). The compiler's
 /// output goes to stderr.
 void compile(const Context& context, const fs::path& source, const fs::path& object) {
-  std::vector<std::string> words = {"g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-finite-loops", "-fno-gnu-unique", "-Wl,-z,defs",
-                                    "-DTUMBLE_BUILDING_MODULE", "-I", context.root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE,
-                                    source.string(), "-o", object.string()};
+  std::vector<std::string> words = {"g++",
+                                    "-std=c++20",
+                                    "-O2",
+                                    "-fPIC",
+                                    "-shared",
+                                    "-ffp-contract=off",
+                                    "-fno-finite-loops",
+                                    "-fno-gnu-unique",
+                                    "-Wl,-z,defs",
+                                    "-DTUMBLE_BUILDING_MODULE",
+                                    "-I",
+                                    context.root.string(),
+                                    "-isystem",
+                                    TUMBLE_EIGEN_INCLUDE,
+                                    source.string(),
+                                    "-o",
+                                    object.string()};
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t child = 0;
   int status = 0;
-  if (::posix_spawnp(&child, "g++", nullptr, nullptr, argv.data(), environ) != 0) throw UserError("g++", "the compiler cannot be started", "Install g++.");
+  if (::posix_spawnp(&child, "g++", nullptr, nullptr, argv.data(), environ) != 0)
+    throw UserError("g++", "the compiler cannot be started", "Install g++.");
   while (::waitpid(child, &status, 0) < 0) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw UserError(source.string(), "does not compile; the compiler says why above", "Correct it, or name another file after --modules.");
+    throw UserError(source.string(), "does not compile; the compiler says why above",
+                    "Correct it, or name another file after --modules.");
 }
 
 /// The student's file, for people: from the root of the tree.
-std::string student_file(const ModuleKind& kind) { return "assignments/" + kind.folder + "/" + kind.folder + ".cpp"; }
+std::string student_file(const ModuleKind& kind) {
+  return "assignments/" + kind.folder + "/" + kind.folder + ".cpp";
+}
 
 /// The student's module, built from the current file.
 /// @throws UserError with the compiler's output: an old object must not replace a file that does
 ///   not compile
 fs::path build_student(const Context& context, const ModuleKind& kind) {
-  const fs::path object = built(context, kind.id, "student"), source = context.root / student_file(kind);
-  static std::set<std::string> fresh;   // ids, built by this process
+  const fs::path object = built(context, kind.id, "student"),
+                 source = context.root / student_file(kind);
+  static std::set<std::string> fresh;  // ids, built by this process
   if (fresh.contains(kind.id)) return object;
-  if (!fs::exists(source)) throw UserError(source.string(), "is not there", "Put your file back, or take it from the starter tree.");
+  if (!fs::exists(source))
+    throw UserError(source.string(), "is not there",
+                    "Put your file back, or take it from the starter tree.");
   std::error_code missing;
   const auto made = fs::last_write_time(object, missing);
-  if (missing || made < fs::last_write_time(source)) std::fprintf(stderr, "compiling %s\n", student_file(kind).c_str());
-  const auto outcome = grading::run_program({"ninja", "-C", context.build.string(), "--quiet", kind.id + "_student"}, grading::Output::kCaptured);
+  if (missing || made < fs::last_write_time(source))
+    std::fprintf(stderr, "compiling %s\n", student_file(kind).c_str());
+  const auto outcome =
+      grading::run_program({"ninja", "-C", context.build.string(), "--quiet", kind.id + "_student"},
+                           grading::Output::kCaptured);
   if (outcome.code != 0) {
     const fs::path header = source.parent_path() / (kind.folder + ".h");
-    throw UserError(student_file(kind), "does not compile:\n" + grading::compiler_story(outcome.printed, source, header), "Correct it (./tumble check " + kind.id + " says the same), or name another file after --modules.");
+    throw UserError(
+        student_file(kind),
+        "does not compile:\n" + grading::compiler_story(outcome.printed, source, header),
+        "Correct it (./tumble check " + kind.id +
+            " says the same), or name another file after --modules.");
   }
   fresh.insert(kind.id);
   return object;
@@ -74,12 +102,14 @@ fs::path build_student(const Context& context, const ModuleKind& kind) {
 
 /// The user's own code in this process, with guards against errors.
 AnyModule load_own(const ModuleKind& kind, const fs::path& object, const std::string& file) {
-  return grading::guarded(kind, grading::guarded_load(file, [&] { return modules::load_module(kind, object); }), file);
+  return grading::guarded(
+      kind, grading::guarded_load(file, [&] { return modules::load_module(kind, object); }), file);
 }
 
 /// Whether this tree has the module of a word.
 bool is_there(const Context& context, const ModuleKind& kind, const std::string& word) {
-  return word == "student" ? fs::exists(context.root / student_file(kind)) : fs::exists(built(context, kind.id, word));
+  return word == "student" ? fs::exists(context.root / student_file(kind))
+                           : fs::exists(built(context, kind.id, word));
 }
 
 }  // namespace
@@ -88,14 +118,19 @@ AnyModule load_word(const Context& context, const ModuleKind& kind, const std::s
   if (word == "student") return load_own(kind, build_student(context, kind), student_file(kind));
   if (word == "reference") {
     if (!is_there(context, kind, word))
-      throw UserError("--modules " + kind.id + "=reference", "this tree holds no reference solution of " + kind.id,
+      throw UserError("--modules " + kind.id + "=reference",
+                      "this tree holds no reference solution of " + kind.id,
                       "Use " + kind.id + "=student, or name a file of your own.");
     return modules::load_module(kind, built(context, kind.id, word));
   }
   const fs::path file = word;
   if (file.extension() != ".cpp" && file.extension() != ".so")
-    throw UserError("--modules " + kind.id + "=" + word, "this is none of student, reference, library, PATH.so, PATH.cpp", "Give one of these.");
-  if (!fs::exists(file)) throw UserError("--modules " + kind.id + "=" + word, "there is no such file", "Check the path.");
+    throw UserError("--modules " + kind.id + "=" + word,
+                    "this is none of student, reference, library, PATH.so, PATH.cpp",
+                    "Give one of these.");
+  if (!fs::exists(file))
+    throw UserError("--modules " + kind.id + "=" + word, "there is no such file",
+                    "Check the path.");
   if (file.extension() == ".so") return load_own(kind, file, word);
   const PrivateFolder folder;
   const fs::path object = folder.path() / (kind.id + ".so");
@@ -105,25 +140,39 @@ AnyModule load_word(const Context& context, const ModuleKind& kind, const std::s
 
 namespace {
 
-bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
+bool is_path(const std::string& word) {
+  return !word.empty() && word != "student" && word != "reference" && word != "library";
+}
 
 /// The file of a path for a module; empty where the path, given for all modules, belongs to others.
-fs::path file_for(const Context& context, const ModuleKind& kind, const std::string& word, bool for_all) {
+fs::path file_for(const Context& context, const ModuleKind& kind, const std::string& word,
+                  bool for_all) {
   const std::string flag = "--modules " + (for_all ? word : kind.id + '=' + word);
   const fs::path path = word;
   if (fs::is_directory(path)) {
     const fs::path file = path / (kind.folder + ".cpp");
     if (fs::exists(file)) return file;
     const auto kinds = context.registry.all();
-    const bool is_other = for_all && std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* k) { return fs::exists(path / (k->folder + ".cpp")); });
-    if (!is_other) throw UserError(flag, "this folder holds no " + kind.folder + ".cpp", "Name a submission's folder, or its file.");
+    const bool is_other =
+        for_all && std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* k) {
+          return fs::exists(path / (k->folder + ".cpp"));
+        });
+    if (!is_other)
+      throw UserError(flag, "this folder holds no " + kind.folder + ".cpp",
+                      "Name a submission's folder, or its file.");
     return {};
   }
   if (path.extension() != ".cpp" && path.extension() != ".so")
-    throw UserError(flag, "this is none of student, reference, library, PATH.so, PATH.cpp, or a submission's folder", "Give one of these.");
+    throw UserError(
+        flag,
+        "this is none of student, reference, library, PATH.so, PATH.cpp, or a submission's folder",
+        "Give one of these.");
   if (!fs::exists(path)) throw UserError(flag, "there is no such file", "Check the path.");
   const auto kinds = context.registry.all();
-  const bool is_other = for_all && std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* k) { return k->id != kind.id && path.stem() == k->folder; });
+  const bool is_other =
+      for_all && std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* k) {
+        return k->id != kind.id && path.stem() == k->folder;
+      });
   return is_other ? fs::path() : path;
 }
 
@@ -134,7 +183,7 @@ std::string stand_in(Law& law, const Law& library, const Call& call) {
   } catch (const NotImplemented& missing) {
     law = library;
     return missing.function();
-  } catch (const std::exception&) {   // it is written; whether it is right is not checked here
+  } catch (const std::exception&) {  // it is written; whether it is right is not checked here
   }
   return "";
 }
@@ -146,13 +195,20 @@ std::vector<std::string> stand_in_for_stubs(Laws& laws) {
   const VectorXd y = VectorXd::Constant(1, 1.0);
   const OdeFunction decay = [](double, const VectorXd& at) -> VectorXd { return -at; };
   const ScalarFunction line = [](double t) { return 0.5 - t; }, slope = [](double) { return -1.0; };
-  const RigidBodyState rest{Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+  const RigidBodyState rest{Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
+                            Vector3d::Zero()};
   const Inertia unit{1.0, 1.0, Matrix3d::Identity(), Matrix3d::Identity()};
   std::vector<std::string> missing = {
-      stand_in(laws.integrate_step, library.integrate_step, [&](auto& law) { law(decay, 0.0, y, 0.1); }),
-      stand_in(laws.state_derivative, library.state_derivative, [&](auto& law) { law(rest, unit, {Vector3d::Zero(), Vector3d::Zero()}); }),
-      stand_in(laws.renormalize, library.renormalize, [](auto& law) { law(Quaterniond::Identity()); }),
-      stand_in(laws.find_impact_time, library.find_impact_time, [&](auto& law) { law(line, slope, 0.0, 1.0, 1e-9); })};
+      stand_in(laws.integrate_step, library.integrate_step,
+               [&](auto& law) { law(decay, 0.0, y, 0.1); }),
+      stand_in(laws.state_derivative, library.state_derivative,
+               [&](auto& law) {
+                 law(rest, unit, {Vector3d::Zero(), Vector3d::Zero()});
+               }),
+      stand_in(laws.renormalize, library.renormalize,
+               [](auto& law) { law(Quaterniond::Identity()); }),
+      stand_in(laws.find_impact_time, library.find_impact_time,
+               [&](auto& law) { law(line, slope, 0.0, 1.0, 1e-9); })};
   std::erase(missing, "");
   return missing;
 }
@@ -168,9 +224,12 @@ bool is_own(const scene::Scene& scene, const ModuleKind& kind) {
 }
 
 /// The word of a module without one; empty: the scene does not need it.
-std::string default_word(const Context& context, const scene::Scene& scene, const ModuleKind& kind, bool scene_has_home) {
+std::string default_word(const Context& context, const scene::Scene& scene, const ModuleKind& kind,
+                         bool scene_has_home) {
   if (is_own(scene, kind)) return "student";
-  if (scene::names_model(scene.file.string()) && !kind.methods.empty()) return best_available(context, kind.id);   // moved by the written module, or by the library
+  // moved by the written module, or by the library
+  if (scene::names_model(scene.file.string()) && !kind.methods.empty())
+    return best_available(context, kind.id);
   if (std::find(scene.needs.begin(), scene.needs.end(), kind.id) == scene.needs.end()) return "";
   return scene_has_home ? best_available(context, kind.id) : "student";
 }
@@ -187,9 +246,14 @@ ModuleWords parse_module_words(const std::string& text, const modules::Registry&
     const std::size_t equals = part.find('=');
     const std::string id = equals == std::string::npos ? "" : part.substr(0, equals);
     const std::string word = equals == std::string::npos ? part : part.substr(equals + 1);
-    if (!id.empty()) registry.find(id);   // throws, with the known ids
-    if (word.empty()) throw UserError("--modules " + text, "nothing stands after '" + id + "='", "Give student, reference, library, PATH.so or PATH.cpp.");
-    if (!words.emplace(id, word).second) throw UserError("--modules " + text, id.empty() ? "more than one word for all modules" : id + " is named twice", "Name each module once: a1=student,a2=library");
+    if (!id.empty()) registry.find(id);  // throws, with the known ids
+    if (word.empty())
+      throw UserError("--modules " + text, "nothing stands after '" + id + "='",
+                      "Give student, reference, library, PATH.so or PATH.cpp.");
+    if (!words.emplace(id, word).second)
+      throw UserError("--modules " + text,
+                      id.empty() ? "more than one word for all modules" : id + " is named twice",
+                      "Name each module once: a1=student,a2=library");
   }
   return words;
 }
@@ -197,34 +261,39 @@ ModuleWords parse_module_words(const std::string& text, const modules::Registry&
 namespace {
 
 bool is_about(const scene::Scene& scene, const ModuleKind& kind) {
-  return is_own(scene, kind) || std::find(scene.needs.begin(), scene.needs.end(), kind.id) != scene.needs.end();
+  return is_own(scene, kind) ||
+         std::find(scene.needs.begin(), scene.needs.end(), kind.id) != scene.needs.end();
 }
 
 /// Adds one module, chosen by a word, to the laws.
-void add_module(const Context& context, const scene::Scene& scene, const ModuleKind& kind, const std::string& word, const fs::path& file, ChosenLaws& result) {
+void add_module(const Context& context, const scene::Scene& scene, const ModuleKind& kind,
+                const std::string& word, const fs::path& file, ChosenLaws& result) {
   result.modules.push_back({kind.id, word});
   if (word == "library") return;
   if (!file.empty()) {
     const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
-    Laws step, derivative;   // from workers of their own, for calls within calls
+    Laws step, derivative;  // from workers of their own, for calls within calls
     modules::bind_laws(kind, sandboxed.search.module, kind.id + " " + word, result.laws);
     kind.bind(sandboxed.step.module, step);
     kind.bind(sandboxed.derivative.module, derivative);
     if (step.integrate_step) result.laws.integrate_step = step.integrate_step;
     if (derivative.renormalize) result.laws.renormalize = derivative.renormalize;
     if (derivative.state_derivative) result.laws.state_derivative = derivative.state_derivative;
-    for (const auto& depth : {sandboxed.search, sandboxed.step, sandboxed.derivative}) result.connections.push_back(depth.connection);
+    for (const auto& depth : {sandboxed.search, sandboxed.step, sandboxed.derivative})
+      result.connections.push_back(depth.connection);
     return;
   }
   const Laws before = result.laws;
   modules::bind_laws(kind, load_word(context, kind, word), kind.id + " " + word, result.laws);
-  const bool may_stand_in = word == "student" && !is_about(scene, kind) && before.integrator_source != result.laws.integrator_source;
+  const bool may_stand_in = word == "student" && !is_about(scene, kind) &&
+                            before.integrator_source != result.laws.integrator_source;
   if (!may_stand_in) return;
   const auto missing = stand_in_for_stubs(result.laws);
   if (missing.empty()) return;
   std::string names;
   for (const auto& name : missing) names += (names.empty() ? "" : ", ") + name;
-  result.notices.push_back(kind.id + " is not written yet (" + names + "): the library's laws of motion stand in");
+  result.notices.push_back(kind.id + " is not written yet (" + names +
+                           "): the library's laws of motion stand in");
   if (missing.size() == 4) result.laws.integrator_source = before.integrator_source;
 }
 
@@ -241,7 +310,10 @@ void refuse_unknown_needs(const scene::Scene& scene, const std::vector<const Mod
   }
   for (std::size_t i = 0; i < scene.needs.size(); ++i)
     if (std::find(ids.begin(), ids.end(), scene.needs[i]) == ids.end())
-      throw UserError(place_of(scene, "/needs/" + std::to_string(i)), "there is no assignment '" + scene.needs[i] + "'." + did_you_mean(scene.needs[i], ids), "Known: " + known + ".");
+      throw UserError(
+          place_of(scene, "/needs/" + std::to_string(i)),
+          "there is no assignment '" + scene.needs[i] + "'." + did_you_mean(scene.needs[i], ids),
+          "Known: " + known + ".");
 }
 
 }  // namespace
@@ -261,32 +333,44 @@ void bind_spare(const Context& context, const ModuleKind& kind, ChosenLaws& resu
 
 }  // namespace
 
-ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words, const std::string& engine) {
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
+                       const std::string& engine) {
   const auto kinds = context.registry.all();
   refuse_unknown_needs(scene, kinds);
-  const bool has_home = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return is_own(scene, *kind); });
+  const bool has_home = std::any_of(kinds.begin(), kinds.end(),
+                                    [&](const ModuleKind* kind) { return is_own(scene, *kind); });
   // A named scheduler is the user's current work in any scene: unfinished earlier assignments must
   // not prevent the run.
-  const bool is_for_scheduler = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return kind->is_scheduler && words.contains(kind->id); });
-  const bool needs_scheduler = (engine.empty() ? scene.engine : engine).find("tw") != std::string::npos && !engines::fast_timewarp();
-  std::map<std::string, std::string> chosen;   // by id
+  const bool is_for_scheduler = std::any_of(
+      kinds.begin(), kinds.end(),
+      [&](const ModuleKind* kind) { return kind->is_scheduler && words.contains(kind->id); });
+  const bool needs_scheduler =
+      (engine.empty() ? scene.engine : engine).find("tw") != std::string::npos &&
+      !engines::fast_timewarp();
+  std::map<std::string, std::string> chosen;  // by id
   std::map<std::string, fs::path> files;
   for (const ModuleKind* kind : kinds) {
     const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
     const bool is_asked = kind->is_scheduler && needs_scheduler;
-    const std::string otherwise = is_asked ? best_available(context, kind->id) : default_word(context, scene, *kind, has_home || is_for_scheduler);
+    const std::string otherwise =
+        is_asked ? best_available(context, kind->id)
+                 : default_word(context, scene, *kind, has_home || is_for_scheduler);
     chosen[kind->id] = told != words.end() ? told->second : otherwise;
     // One word for all modules applies to those that the scene is about and those that exist:
     // "reference" is not applied where an assignment has none yet. A scheduler is included where
     // the engine needs it: a tree without the fast one runs timewarp by the student's.
-    const bool for_all = told != words.end() && told->first.empty() && (told->second == "reference" || told->second == "student");
-    const bool left_out = kind->is_scheduler ? !needs_scheduler : !is_there(context, *kind, told == words.end() ? "" : told->second);
+    const bool for_all = told != words.end() && told->first.empty() &&
+                         (told->second == "reference" || told->second == "student");
+    const bool left_out = kind->is_scheduler
+                              ? !needs_scheduler
+                              : !is_there(context, *kind, told == words.end() ? "" : told->second);
     if (for_all && !is_about(scene, *kind) && left_out) chosen[kind->id] = otherwise;
     if (told == words.end() || !is_path(told->second)) continue;
     files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
     // The submission is another assignment's: this one must not make it fail, so it is right where
     // possible.
-    if (files[kind->id].empty()) chosen[kind->id] = otherwise.empty() ? "" : best_available(context, kind->id);
+    if (files[kind->id].empty())
+      chosen[kind->id] = otherwise.empty() ? "" : best_available(context, kind->id);
   }
 
   ChosenLaws result;
@@ -305,7 +389,9 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
 
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads) {
   if (threads > 1 && !chosen.connections.empty())
-    throw UserError("--threads " + std::to_string(threads), "a submission in the sandbox answers one call at a time", "Run it with --threads 1, or take the modules student or reference.");
+    throw UserError("--threads " + std::to_string(threads),
+                    "a submission in the sandbox answers one call at a time",
+                    "Run it with --threads 1, or take the modules student or reference.");
 }
 
 }  // namespace tumble::cli

@@ -37,14 +37,17 @@ struct ChosenModule {
 struct ChosenLaws {
   Laws laws;
   std::vector<ChosenModule> modules;  // modules that the scene needs or that were named, by id
-  std::vector<std::string> notices;   // for people: what replaces functions that are not written yet
-  std::vector<std::shared_ptr<void>> connections;   // to sandboxes: must outlive every call of the laws
+  // for people: what replaces functions that are not written yet
+  std::vector<std::string> notices;
+  // to sandboxes: must outlive every call of the laws
+  std::vector<std::shared_ptr<void>> connections;
 };
 
 /// @param engine  of the run; empty: the scene's own. In a tree without a fast scheduler, timewarp
 ///   (or a list of engines with "tw") needs a scheduler's module, as a scene about it does.
 /// @throws UserError for a word that names nothing that can be loaded, with a remedy
-ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words, const std::string& engine = "");
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
+                       const std::string& engine = "");
 
 /// @throws UserError where several threads would call laws of a sandbox, which executes one call at
 ///   a time
@@ -53,6 +56,7 @@ void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads);
 /// One module by its word, loaded into this process: for the user's own code.
 /// @param word  student, reference, PATH.so, or PATH.cpp, which is compiled first
 /// @throws UserError when the word names nothing that can be loaded, with a remedy
-modules::AnyModule load_word(const Context& context, const modules::ModuleKind& kind, const std::string& word);
+modules::AnyModule load_word(const Context& context, const modules::ModuleKind& kind,
+                             const std::string& word);
 
 }  // namespace tumble::cli

@@ -25,7 +25,7 @@ struct PlannedRun {
     engines::CostGoal goal;
     engines::CostReference reference;
     engines::CostChoice choice;
-    double seconds = 0.0;            // its CPU time
+    double seconds = 0.0;  // its CPU time
     bool was_cut_short = false;
   };
   std::optional<Search> search;
@@ -36,10 +36,12 @@ void add_plan_words(Verb& verb, RunWords& words);
 
 /// @throws UserError where words contradict each other, where the scene has no reference solution,
 ///   or where no method fulfils the request
-PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words);
+PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                    const RunWords& words);
 
 /// The choice with expected and actual cost. @param cpu_s  of the run, with models and shapes
 std::string search_in_words(const PlannedRun::Search& search, const Trajectory& run, double cpu_s);
-nlohmann::ordered_json search_as_json(const PlannedRun::Search& search, const Trajectory& run, double cpu_s);
+nlohmann::ordered_json search_as_json(const PlannedRun::Search& search, const Trajectory& run,
+                                      double cpu_s);
 
 }  // namespace tumble::cli

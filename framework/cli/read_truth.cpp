@@ -20,12 +20,14 @@ Value to_value(const Json& json, const std::string& place) {
     case Json::value_t::string: return {place, json.get<std::string>()};
     case Json::value_t::array: {
       Value::List items;
-      for (std::size_t i = 0; i < json.size(); ++i) items.push_back(to_value(json[i], place + "/" + std::to_string(i)));
+      for (std::size_t i = 0; i < json.size(); ++i)
+        items.push_back(to_value(json[i], place + "/" + std::to_string(i)));
       return {place, std::move(items)};
     }
     case Json::value_t::object: {
       Value::Members members;
-      for (const auto& [name, member] : json.items()) members.emplace_back(name, to_value(member, place + "/" + name));
+      for (const auto& [name, member] : json.items())
+        members.emplace_back(name, to_value(member, place + "/" + name));
       return {place, std::move(members)};
     }
     default: return {place, json.dump()};  // a bare number, as text
@@ -41,7 +43,8 @@ truths::Case read_truth(const std::filesystem::path& file) {
   try {
     json = Json::parse(stream);
   } catch (const Json::parse_error& error) {
-    throw UserError(file.string(), std::string("is not JSON: ") + error.what(), "Copy the truth file again.");
+    throw UserError(file.string(), std::string("is not JSON: ") + error.what(),
+                    "Copy the truth file again.");
   }
   const Value root = to_value(json, file.string() + ": ");
   truths::Case truth;
@@ -56,12 +59,15 @@ truths::Case read_truth(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> find_truths(const std::filesystem::path& folder_or_file) {
   namespace fs = std::filesystem;
   if (fs::is_regular_file(folder_or_file)) return {folder_or_file};
-  if (!fs::is_directory(folder_or_file)) throw UserError(folder_or_file.string(), "there is no such folder or file", "Try tests/truths.");
+  if (!fs::is_directory(folder_or_file))
+    throw UserError(folder_or_file.string(), "there is no such folder or file",
+                    "Try tests/truths.");
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder_or_file)) {
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   }
-  if (files.empty()) throw UserError(folder_or_file.string(), "holds no truth file (*.json)", "Try tests/truths.");
+  if (files.empty())
+    throw UserError(folder_or_file.string(), "holds no truth file (*.json)", "Try tests/truths.");
   std::sort(files.begin(), files.end());
   return files;
 }

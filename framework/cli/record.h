@@ -10,7 +10,9 @@
 
 namespace tumble::cli {
 
-inline std::string record_of(const Command& command) { return joined_record({command.command_line, version_in_words(kProgramVersion)}); }
+inline std::string record_of(const Command& command) {
+  return joined_record({command.command_line, version_in_words(kProgramVersion)});
+}
 inline std::string record_of(const Command& command, const scene::Scene& scene) {
   return joined_record({record_of(command), scene_in_words(scene.name, scene.digest, scene.seeds)});
 }

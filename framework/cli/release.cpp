@@ -22,8 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPrivate = "solutions_private";
-constexpr const char* kVersionFile = ".version";   // read by framework/core/CMakeLists.txt: a released tree has no history
-constexpr const char* kStudentsReadme = "assignments/README.md";   // in the place of README.md
+// read by framework/core/CMakeLists.txt: a released tree has no history
+constexpr const char* kVersionFile = ".version";
+constexpr const char* kStudentsReadme = "assignments/README.md";  // in the place of README.md
 
 struct ReleaseOptions {
   std::string folder;
@@ -34,7 +35,8 @@ struct ReleaseOptions {
 // Never part of a release, with or without version control: build trees, results, the version
 // control's own folder.
 bool is_made_here(const std::string& name) {
-  return name == ".git" || name == "out" || name == "build" || name.starts_with("build-") || name == kPrivate;
+  return name == ".git" || name == "out" || name == "build" || name.starts_with("build-") ||
+         name == kPrivate;
 }
 
 // What git lists, relative to the root.
@@ -43,9 +45,11 @@ std::vector<fs::path> listed_by_git(const fs::path& root, const std::string& whi
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
   std::string listing;
   std::array<char, 4096> part;
-  for (std::size_t n; pipe && (n = std::fread(part.data(), 1, part.size(), pipe.get())) > 0;) listing.append(part.data(), n);
+  for (std::size_t n; pipe && (n = std::fread(part.data(), 1, part.size(), pipe.get())) > 0;)
+    listing.append(part.data(), n);
   std::vector<fs::path> files;
-  for (std::size_t at = 0, end; (end = listing.find('\0', at)) != std::string::npos; at = end + 1) files.emplace_back(listing.substr(at, end - at));
+  for (std::size_t at = 0, end; (end = listing.find('\0', at)) != std::string::npos; at = end + 1)
+    files.emplace_back(listing.substr(at, end - at));
   std::erase_if(files, [](const fs::path& file) { return is_made_here(file.begin()->string()); });
   std::sort(files.begin(), files.end());
   return files;
@@ -56,16 +60,23 @@ std::vector<fs::path> listed_by_git(const fs::path& root, const std::string& whi
 std::vector<fs::path> project_files(const fs::path& root) {
   if (fs::exists(root / ".git")) {
     const std::vector<fs::path> files = listed_by_git(root, "");
-    if (files.empty()) throw UserError(root.string(), "git lists no files here", "Run the command in a whole checkout.");
+    if (files.empty())
+      throw UserError(root.string(), "git lists no files here",
+                      "Run the command in a whole checkout.");
     for (const fs::path& file : files)
-      if (!fs::exists(root / file)) throw UserError(file.string(), "is tracked by git and not there", "Put it back, or remove it for good: git rm " + file.string());
+      if (!fs::exists(root / file))
+        throw UserError(file.string(), "is tracked by git and not there",
+                        "Put it back, or remove it for good: git rm " + file.string());
     return files;
   }
   std::vector<fs::path> files;
-  for (auto it = fs::recursive_directory_iterator(root); it != fs::recursive_directory_iterator(); ++it) {
+  for (auto it = fs::recursive_directory_iterator(root); it != fs::recursive_directory_iterator();
+       ++it) {
     const fs::path relative = it->path().lexically_relative(root);
-    if (it->is_directory() && is_made_here(relative.begin()->string())) it.disable_recursion_pending();
-    else if (it->is_regular_file()) files.push_back(relative);
+    if (it->is_directory() && is_made_here(relative.begin()->string()))
+      it.disable_recursion_pending();
+    else if (it->is_regular_file())
+      files.push_back(relative);
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -76,11 +87,14 @@ void publish_solution(const Context& context, const std::string& id, const fs::p
   const modules::ModuleKind& kind = context.registry.find(id);
   const fs::path file = fs::path(kind.folder) / (kind.folder + ".cpp");
   const fs::path solution = context.root / kPrivate / file;
-  if (!fs::exists(solution)) throw UserError(solution.string(), "there is no reference to publish", "Run the command in the instructor's tree.");
+  if (!fs::exists(solution))
+    throw UserError(solution.string(), "there is no reference to publish",
+                    "Run the command in the instructor's tree.");
   fs::copy_file(solution, release / "assignments" / file, fs::copy_options::overwrite_existing);
 }
 
-bool is_published(const Context& context, const std::vector<std::string>& published, const fs::path& file) {
+bool is_published(const Context& context, const std::vector<std::string>& published,
+                  const fs::path& file) {
   return std::any_of(published.begin(), published.end(), [&](const std::string& id) {
     const std::string folder = context.registry.find(id).folder;
     return file == fs::path(kPrivate) / folder / (folder + ".cpp");
@@ -92,24 +106,34 @@ grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) 
   const grading::MadeSolution made = grading::make_solution(slip, slip.parent_path().parent_path());
   grading::PrivateFile whole{slip.lexically_relative(context.root), made.text};
   for (const auto& origin : made.origins)
-    whole.places.push_back((origin.is_of_slip ? whole.file : made.base.lexically_relative(context.root)).string() + ":" + std::to_string(origin.line));
+    whole.places.push_back(
+        (origin.is_of_slip ? whole.file : made.base.lexically_relative(context.root)).string() +
+        ":" + std::to_string(origin.line));
   return whole;
 }
 
 // A flawed submission is a student's file: its unchanged part is the stub. What CMake says of
 // solutions is harmless.
-std::vector<grading::PrivateFile> private_files(const Context& context, const std::vector<std::string>& published) {
+std::vector<grading::PrivateFile> private_files(const Context& context,
+                                                const std::vector<std::string>& published) {
   std::vector<grading::PrivateFile> files;
   if (!fs::exists(context.root / kPrivate)) return files;
   for (const auto& entry : fs::recursive_directory_iterator(context.root / kPrivate)) {
-    const fs::path file = entry.path().lexically_relative(context.root), folder = file.parent_path().filename();
-    if (!entry.is_regular_file() || file.filename() == "CMakeLists.txt" || folder == "flawed_submission" || is_published(context, published, file)) continue;
+    const fs::path file = entry.path().lexically_relative(context.root),
+                   folder = file.parent_path().filename();
+    if (!entry.is_regular_file() || file.filename() == "CMakeLists.txt" ||
+        folder == "flawed_submission" || is_published(context, published, file))
+      continue;
     // Once a reference is public, the parts that its wrong and alternative versions share with it
     // are public too.
-    const bool of_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) { return *std::next(file.begin()) == context.registry.find(id).folder; });
+    const bool of_published =
+        std::any_of(published.begin(), published.end(), [&](const std::string& id) {
+          return *std::next(file.begin()) == context.registry.find(id).folder;
+        });
     if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
     files.push_back({file, text_of(entry.path()), folder == "tests" || folder == "support"});
-    if (file.extension() == grading::kSlipExtension) files.push_back(made_of_slip(context, entry.path()));
+    if (file.extension() == grading::kSlipExtension)
+      files.push_back(made_of_slip(context, entry.path()));
   }
   return files;
 }
@@ -117,53 +141,72 @@ std::vector<grading::PrivateFile> private_files(const Context& context, const st
 void refuse(const std::vector<grading::Finding>& findings, const std::string& remedy) {
   if (findings.empty()) return;
   std::string more;
-  for (std::size_t i = 1; i < findings.size(); ++i) more += "\n  " + findings[i].where + ": " + findings[i].problem;
-  throw UserError(findings.front().where, findings.front().problem + more, remedy + " Nothing was released.");
+  for (std::size_t i = 1; i < findings.size(); ++i)
+    more += "\n  " + findings[i].where + ": " + findings[i].problem;
+  throw UserError(findings.front().where, findings.front().problem + more,
+                  remedy + " Nothing was released.");
 }
 
 // The points of each assignment, public and hidden together, are read as the grader reads them: a
 // sum other than 100 is refused.
 void refuse_odd_rubrics(const Context& context) {
-  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  const grading::Course course{context.root, context.build, &context.registry,
+                               context.command_line};
   for (const modules::ModuleKind* kind : context.registry.all())
-    if (fs::exists(context.root / kPrivate / kind->folder / "rubric_hidden.json")) grading::rubric_of(course, kind->id);
+    if (fs::exists(context.root / kPrivate / kind->folder / "rubric_hidden.json"))
+      grading::rubric_of(course, kind->id);
 }
 
-void refuse_what_is_no_stub(const Context& context, const fs::path& release, const std::vector<std::string>& published) {
+void refuse_what_is_no_stub(const Context& context, const fs::path& release,
+                            const std::vector<std::string>& published) {
   for (const modules::ModuleKind* kind : context.registry.all()) {
     if (std::find(published.begin(), published.end(), kind->id) != published.end()) continue;
     const fs::path file = fs::path("assignments") / kind->folder / (kind->folder + ".cpp");
-    refuse(grading::what_is_no_stub(file.string(), text_of(release / file), kind->functions), "Students write this file: take out what is written in it.");
+    refuse(grading::what_is_no_stub(file.string(), text_of(release / file), kind->functions),
+           "Students write this file: take out what is written in it.");
   }
 }
 
 // Builds the tree completely, then checks each stub as a student does first.
-void build_and_check(const Context& context, const fs::path& release, const std::vector<std::string>& published) {
+void build_and_check(const Context& context, const fs::path& release,
+                     const std::vector<std::string>& published) {
   const PrivateFolder folder;
   const auto launch = [&](const std::string& words) {
-    const std::string script = "unset TUMBLE_ROOT; TUMBLE_BUILD='" + (folder.path() / "build").string() + "' exec '" + (release / "tumble").string() + "' " + words + " >'" + (folder.path() / "said").string() + "'";
+    const std::string script = "unset TUMBLE_ROOT; TUMBLE_BUILD='" +
+                               (folder.path() / "build").string() + "' exec '" +
+                               (release / "tumble").string() + "' " + words + " >'" +
+                               (folder.path() / "said").string() + "'";
     return grading::run_program({"/bin/sh", "-c", script}, grading::Output::kOurs).code;
   };
   std::fprintf(stderr, "building the released tree (minutes; --no-build leaves this out)\n");
-  if (launch("test --show-only") != 0) throw UserError(release.string(), "does not build: its errors stand above", "A file that it needs may be untracked or private. Nothing was released.");
+  if (launch("test --show-only") != 0)
+    throw UserError(release.string(), "does not build: its errors stand above",
+                    "A file that it needs may be untracked or private. Nothing was released.");
   for (const modules::ModuleKind* kind : context.registry.all()) {
     const bool is_stub = std::find(published.begin(), published.end(), kind->id) == published.end();
-    const int code = launch("check " + kind->id), expected = static_cast<int>(is_stub ? ExitCode::kNotAttempted : ExitCode::kFine);
+    const int code = launch("check " + kind->id),
+              expected = static_cast<int>(is_stub ? ExitCode::kNotAttempted : ExitCode::kFine);
     if (code != expected)
-      throw UserError("tumble check " + kind->id, "exits with " + std::to_string(code) + " in the released tree, not " + std::to_string(expected) + ":\n" + text_of(folder.path() / "said"),
-                      is_stub ? "Each test of a stub must be \"not attempted\". Nothing was released." : "The published reference must pass its tests. Nothing was released.");
+      throw UserError("tumble check " + kind->id,
+                      "exits with " + std::to_string(code) + " in the released tree, not " +
+                          std::to_string(expected) + ":\n" + text_of(folder.path() / "said"),
+                      is_stub
+                          ? "Each test of a stub must be \"not attempted\". Nothing was released."
+                          : "The published reference must pass its tests. Nothing was released.");
   }
 }
 
 void release(Context& context, const ReleaseOptions& options) {
   const fs::path target = fs::absolute(options.folder);
   if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target)))
-    throw UserError(target.string(), "exists already", "Name a new folder, or remove this one first.");
+    throw UserError(target.string(), "exists already",
+                    "Name a new folder, or remove this one first.");
   for (const std::string& id : options.publish) context.registry.find(id);
   const std::vector<fs::path> files = project_files(context.root);
   refuse_odd_rubrics(context);
   if (fs::exists(context.root / ".git"))
-    refuse(grading::missing_files(context.root, files, listed_by_git(context.root, "--others")), "git add it, or take out what needs it.");
+    refuse(grading::missing_files(context.root, files, listed_by_git(context.root, "--others")),
+           "git add it, or take out what needs it.");
 
   // Built beside the target and renamed last: a release is complete or absent.
   const fs::path partial = target.string() + ".partial";
@@ -177,9 +220,11 @@ void release(Context& context, const ReleaseOptions& options) {
     }
     for (const std::string& id : options.publish) publish_solution(context, id, partial);
     write_whole(partial / kVersionFile, std::string(kProgramVersion) + "\n");
-    if (fs::exists(partial / kStudentsReadme)) fs::rename(partial / kStudentsReadme, partial / "README.md"), --count;
+    if (fs::exists(partial / kStudentsReadme))
+      fs::rename(partial / kStudentsReadme, partial / "README.md"), --count;
     refuse_what_is_no_stub(context, partial, options.publish);
-    refuse(grading::leaks(partial, private_files(context, options.publish)), "Take it out of the public folders.");
+    refuse(grading::leaks(partial, private_files(context, options.publish)),
+           "Take it out of the public folders.");
     if (options.build) build_and_check(context, partial, options.publish);
   } catch (...) {
     fs::remove_all(partial);
@@ -188,7 +233,8 @@ void release(Context& context, const ReleaseOptions& options) {
   fs::remove_all(target);
   fs::rename(partial, target);
   std::printf("%zu files in %s, none of them private\n", count, target.string().c_str());
-  for (const std::string& id : options.publish) std::printf("published: the reference of %s stands where its stub was\n", id.c_str());
+  for (const std::string& id : options.publish)
+    std::printf("published: the reference of %s stands where its stub was\n", id.c_str());
   std::printf("try it as a student would:  cd %s && ./tumble check a1\n", target.string().c_str());
 }
 
@@ -198,10 +244,15 @@ void add_release(CLI::App& app, Context& context) {
   auto options = std::make_shared<ReleaseOptions>();
   Verb verb(app, "release", "Write the starter tree for students: everything but the solutions");
   verb.option("folder", options->folder, "Where to write it (must not exist yet)").required();
-  verb.option("--publish", options->publish, "Assignments whose reference replaces the stub, e.g. after a deadline").separated_by(',');
-  verb.flag("!--no-build", options->build, "Do not build what is released and check its stubs: seconds instead of minutes");
-  verb.footer("Refused: a file that is needed and not tracked, a stub that is more than a stub, lines of a solution anywhere, a rubric that does not sum to 100,\n"
-              "a tree that does not build.");
+  verb.option("--publish", options->publish,
+              "Assignments whose reference replaces the stub, e.g. after a deadline")
+      .separated_by(',');
+  verb.flag("!--no-build", options->build,
+            "Do not build what is released and check its stubs: seconds instead of minutes");
+  verb.footer(
+      "Refused: a file that is needed and not tracked, a stub that is more than a stub, lines of a "
+      "solution anywhere, a rubric that does not sum to 100,\n"
+      "a tree that does not build.");
   verb.runs([&context, options] { release(context, *options); });
 }
 

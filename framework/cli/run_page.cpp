@@ -18,25 +18,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExample = "For example --beside library, --beside a1=PATH, --beside step-s=0.001 or --beside recording=FILE.";
+constexpr const char* kExample =
+    "For example --beside library, --beside a1=PATH, --beside step-s=0.001 or --beside "
+    "recording=FILE.";
 
 struct Second {
   Trajectory run;
   std::string label, label_of_first;
 };
 
-std::string short_name(const std::string& source) { return source.find('/') == source.npos && source.find('.') == source.npos ? source : fs::path(source).stem().string(); }
+std::string short_name(const std::string& source) {
+  return source.find('/') == source.npos && source.find('.') == source.npos
+             ? source
+             : fs::path(source).stem().string();
+}
 
 /// The label of a run: the laws that the other run does not have; else its engine or step.
-std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const TrajectoryInfo& info, const TrajectoryInfo& other) {
+std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const TrajectoryInfo& info,
+                     const TrajectoryInfo& other) {
   std::set<std::string> names;
   for (const ChosenModule& module : mine.modules)
     for (const ChosenModule& theirs : others.modules)
-      if (module.id == theirs.id && module.source != theirs.source) names.insert(short_name(module.source));
+      if (module.id == theirs.id && module.source != theirs.source)
+        names.insert(short_name(module.source));
   std::string label;
   for (const std::string& name : names) label += (label.empty() ? "" : ", ") + name;
   if (info.engine != other.engine) label += (label.empty() ? "" : ", ") + ("engine " + info.engine);
-  if (info.step_s != other.step_s) label += (label.empty() ? "" : ", ") + fmt::format("step {:.4g} s", info.step_s);
+  if (info.step_s != other.step_s)
+    label += (label.empty() ? "" : ", ") + fmt::format("step {:.4g} s", info.step_s);
   return label;
 }
 
@@ -51,14 +60,17 @@ Second recorded(const std::string& file) {
   return second;
 }
 
-Second second_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& first, const RunWords& words) {
+Second second_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                  const Trajectory& first, const RunWords& words) {
   const BesideWords beside = parse_beside(words.beside);
   if (!beside.recording.empty()) return recorded(beside.recording);
   const ModuleWords mine = parse_module_words(words.modules, context.registry);
-  const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)), beside.engine.empty() ? words.engine : beside.engine);
+  const ChosenLaws other = choose_laws(
+      context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)),
+      beside.engine.empty() ? words.engine : beside.engine);
   engines::RunOptions options;
   options.engine = beside.engine.empty() ? words.engine : beside.engine;
-  VirtualTimes times;   // of the fast scheduler; the teaching timewarp sends them to the recorder
+  VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
   options.timewarp = engines::fast_timewarp(&times);
   options.step_s = beside.step_s ? beside.step_s : words.step_s;
   options.duration_s = words.duration_s;
@@ -89,38 +101,59 @@ void add_panel(const report::PlayedRun& played, report::PlayerOptions& options) 
 }  // namespace
 
 void add_page_words(Verb& verb, RunWords& words) {
-  verb.option("--html", words.html, "Write a page that plays the run: motion, curves, events; opens in any browser, needs no network").type_name("FILE");
-  verb.option("--beside", words.beside, "Show a second run in the page, and where the two first differ: whose laws (as --modules), engine=, step-s=, or recording=FILE").type_name("WORDS");
+  verb.option("--html", words.html,
+              "Write a page that plays the run: motion, curves, events; opens in any browser, "
+              "needs no network")
+      .type_name("FILE");
+  verb.option("--beside", words.beside,
+              "Show a second run in the page, and where the two first differ: whose laws (as "
+              "--modules), engine=, step-s=, or recording=FILE")
+      .type_name("WORDS");
 }
 
 BesideWords parse_beside(const std::string& text) {
   BesideWords beside;
   std::stringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {
-    const auto value = [&](const char* key) { return part.starts_with(key) ? part.substr(std::string(key).size()) : ""; };
-    if (part.starts_with("engine=")) beside.engine = value("engine=");
-    else if (part.starts_with("recording=")) beside.recording = value("recording=");
+    const auto value = [&](const char* key) {
+      return part.starts_with(key) ? part.substr(std::string(key).size()) : "";
+    };
+    if (part.starts_with("engine="))
+      beside.engine = value("engine=");
+    else if (part.starts_with("recording="))
+      beside.recording = value("recording=");
     else if (part.starts_with("step-s=")) {
       char* end = nullptr;
       const std::string number = value("step-s=");
       beside.step_s = std::strtod(number.c_str(), &end);
-      if (number.empty() || *end != '\0' || !(*beside.step_s > 0)) throw UserError("--beside " + text, "a step must be a positive number of seconds, not '" + number + "'", kExample);
-    } else beside.modules += (beside.modules.empty() ? "" : ",") + part;
+      if (number.empty() || *end != '\0' || !(*beside.step_s > 0))
+        throw UserError("--beside " + text,
+                        "a step must be a positive number of seconds, not '" + number + "'",
+                        kExample);
+    } else
+      beside.modules += (beside.modules.empty() ? "" : ",") + part;
   }
-  if (!beside.recording.empty() && (!beside.modules.empty() || !beside.engine.empty() || beside.step_s))
-    throw UserError("--beside " + text, "a recording is as it was made: nothing can be chosen for it", kExample);
+  if (!beside.recording.empty() &&
+      (!beside.modules.empty() || !beside.engine.empty() || beside.step_s))
+    throw UserError("--beside " + text,
+                    "a recording is as it was made: nothing can be chosen for it", kExample);
   return beside;
 }
 
 void check_page_words(const Context& context, const RunWords& words) {
   if (words.beside.empty()) return;
-  if (words.html.empty()) throw UserError("--beside " + words.beside, "shows a second run in a page, and no page was asked for", "Add --html FILE.");
+  if (words.html.empty())
+    throw UserError("--beside " + words.beside,
+                    "shows a second run in a page, and no page was asked for", "Add --html FILE.");
   const BesideWords beside = parse_beside(words.beside);
   parse_module_words(beside.modules, context.registry);
-  if (!beside.recording.empty() && !fs::exists(beside.recording)) throw UserError(beside.recording, "there is no such recording", "Make one with --trajectory FILE.");
+  if (!beside.recording.empty() && !fs::exists(beside.recording))
+    throw UserError(beside.recording, "there is no such recording",
+                    "Make one with --trajectory FILE.");
 }
 
-void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const RunWords& words) {
+void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                const Trajectory& run, const RunWords& words) {
   if (words.html.empty()) return;
   report::PlayerOptions options;
   options.root = context.root;
@@ -132,7 +165,9 @@ void write_page(const Context& context, const scene::Scene& scene, const ChosenL
   for (const report::PlayedRun& played : runs) add_panel(played, options);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t bytes = report::write_player(words.html, scene, runs, options);
-  fmt::print(stderr, "wrote {} ({:.2f} MB) in {:.2f} s\n", words.html, 1e-6 * static_cast<double>(bytes), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  fmt::print(stderr, "wrote {} ({:.2f} MB) in {:.2f} s\n", words.html,
+             1e-6 * static_cast<double>(bytes),
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
 }  // namespace tumble::cli

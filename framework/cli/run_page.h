@@ -18,10 +18,11 @@ void add_page_words(Verb& verb, RunWords& words);
 
 /// The words after --beside: how the second run differs from the first.
 struct BesideWords {
-  std::string modules;                 // for parse_module_words; other modules are those of the first run
-  std::string engine;                  // empty: the first run's
+  // for parse_module_words; other modules are those of the first run
+  std::string modules;
+  std::string engine;  // empty: the first run's
   std::optional<double> step_s;
-  std::string recording;               // a recorded run in place of a second run; empty: none
+  std::string recording;  // a recorded run in place of a second run; empty: none
 };
 
 /// @param text  "reference", "a1=reference,engine=tw,step-s=0.001", "recording=FILE"
@@ -37,6 +38,7 @@ void check_page_words(const Context& context, const RunWords& words);
 /// Does nothing where words.html is empty.
 /// @param times  changes of timewarp's local virtual times; empty: not shown
 /// @throws UserError with the word that does not fit
-void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const RunWords& words);
+void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                const Trajectory& run, const RunWords& words);
 
 }  // namespace tumble::cli

@@ -10,24 +10,25 @@
 namespace tumble::cli {
 
 struct RunWords {
-  std::string scene;                   // a path, or a bare name
+  std::string scene;  // a path, or a bare name
   std::string modules;
-  std::string engine, propagator;   // engine empty: the scene's, or rd
-  std::optional<int> n;                // of a scene whose size is a parameter
-  std::optional<double> scale, density;   // of a scene made of a .3ds file: metres per unit, kg/m^3
-  bool drop = false;                   // the same: onto a floor
-  int threads = 1, most_states = 0;    // of timewarp
+  std::string engine, propagator;        // engine empty: the scene's, or rd
+  std::optional<int> n;                  // of a scene whose size is a parameter
+  std::optional<double> scale, density;  // of a scene made of a .3ds file: metres per unit, kg/m^3
+  bool drop = false;                     // the same: onto a floor
+  int threads = 1, most_states = 0;      // of timewarp
   std::optional<double> step_s, duration_s;
-  std::optional<double> accuracy_m, budget_s;        // requested in place of engine, method and step; see planned_run.h
-  std::string method;                  // of integration, in place of the laws' own; empty: theirs
-  std::optional<double> tolerance;     // of a method that has one
-  std::string png, sheet, video, trajectory, html;   // files to write; empty: none
-  std::string virtual_times;           // file of a chart; empty: none
-  std::vector<std::size_t> moves;      // moves of the scheduler that it shows
-  std::optional<double> chart_until_s; // its last time [s]
-  std::string beside;                  // how a second run in the page differs; see run_page.h
-  double at_s = -1.0;                  // of the PNG; negative: the end
-  double speed = 1.0;                  // of the video: 0.25 is slow motion
+  // requested in place of engine, method and step; see planned_run.h
+  std::optional<double> accuracy_m, budget_s;
+  std::string method;               // of integration, in place of the laws' own; empty: theirs
+  std::optional<double> tolerance;  // of a method that has one
+  std::string png, sheet, video, trajectory, html;  // files to write; empty: none
+  std::string virtual_times;                        // file of a chart; empty: none
+  std::vector<std::size_t> moves;                   // moves of the scheduler that it shows
+  std::optional<double> chart_until_s;              // its last time [s]
+  std::string beside;  // how a second run in the page differs; see run_page.h
+  double at_s = -1.0;  // of the PNG; negative: the end
+  double speed = 1.0;  // of the video: 0.25 is slow motion
   std::string size = "640x480";
   bool json = false;
 };

@@ -23,6 +23,7 @@ struct SandboxedModule {
 /// @param file  a source file, or a shared object
 /// @throws UserError when it does not compile (with the compiler's message), or the sandbox is not
 ///   built
-SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind& kind, const std::filesystem::path& file);
+SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind& kind,
+                               const std::filesystem::path& file);
 
 }  // namespace tumble::cli

@@ -7,7 +7,8 @@
 
 namespace tumble::cli {
 
-void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run, const RunWords& words, const PictureSize& size) {
+void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run,
+                    const RunWords& words, const PictureSize& size) {
   render::PictureOptions options;
   options.width = size.width;
   options.height = size.height;

@@ -9,6 +9,7 @@
 namespace tumble::cli {
 
 /// Writes words.png, words.sheet and words.video where they are named, and reports it on stderr.
-void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run, const RunWords& words, const PictureSize& size);
+void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run,
+                    const RunWords& words, const PictureSize& size);
 
 }  // namespace tumble::cli

@@ -36,8 +36,10 @@ namespace fs = std::filesystem;
 using engines::CheckResult;
 
 std::string modules_line(const scene::Scene& scene, const Laws& laws) {
-  std::string line = fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
-  if (scene.contact || effects::asks_laws_of("a3", scene)) line += " · springs, rods and contact by " + laws.constraint_source;
+  std::string line =
+      fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
+  if (scene.contact || effects::asks_laws_of("a3", scene))
+    line += " · springs, rods and contact by " + laws.constraint_source;
   return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
 }
 
@@ -80,28 +82,42 @@ void print_counts(const std::map<std::string, std::uint64_t>& counts) {
   if (column != 0) fmt::print("\n");
 }
 
-void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory& run, const std::vector<CheckResult>& checks, const std::string& extra, const std::string& searched) {
+void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory& run,
+                   const std::vector<CheckResult>& checks, const std::string& extra,
+                   const std::string& searched) {
   fmt::print("{}\n", scene.title);
   if (!extra.empty()) fmt::print("  {}\n", extra);
   if (!scene.about.empty()) fmt::print("  {}\n", scene.about);
   fmt::print("  laws     {}\n", modules_line(scene, laws));
   fmt::print("{}", searched);
   const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
-  fmt::print("  run      engine {}, step {:.6g} s, {:.6g} s simulated, {} bodies, {} frames\n", run.info.engine, run.info.step_s, end, run.bodies.size(), run.frames.size());
+  fmt::print("  run      engine {}, step {:.6g} s, {:.6g} s simulated, {} bodies, {} frames\n",
+             run.info.engine, run.info.step_s, end, run.bodies.size(), run.frames.size());
   std::string events;
-  for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
+  for (const auto& [name, count] : count_events(run))
+    events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
   fmt::print("  events   {}\n", events.empty() ? "none" : events);
   print_counts(run.counters.counts);
-  fmt::print("  w h      {:.3g}: discontinuities (w, per body and second) in the largest step (h); the larger, the more timewarp saves{}\n", engines::discontinuities_a_body_and_step(run),
-             run.counters.counts.contains("sliding_changes") ? "; without the sliding changes above, for which no engine ends a step of all bodies" : "");
+  fmt::print(
+      "  w h      {:.3g}: discontinuities (w, per body and second) in the largest step (h); the "
+      "larger, the more timewarp saves{}\n",
+      engines::discontinuities_a_body_and_step(run),
+      run.counters.counts.contains("sliding_changes")
+          ? "; without the sliding changes above, for which no engine ends a step of all bodies"
+          : "");
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
-  const bool all_right = std::all_of(checks.begin(), checks.end(), [](const CheckResult& check) { return check.passed; });
-  if (!searched.empty() && run.stopped_by.empty() && !all_right) fmt::print("  the run meets the requested error or time, but some of the scene's own checks failed: try a smaller --accuracy or a larger --budget-s\n");
+  const bool all_right = std::all_of(checks.begin(), checks.end(),
+                                     [](const CheckResult& check) { return check.passed; });
+  if (!searched.empty() && run.stopped_by.empty() && !all_right)
+    fmt::print(
+        "  the run meets the requested error or time, but some of the scene's own checks failed: "
+        "try a smaller --accuracy or a larger --budget-s\n");
 }
 
-void print_json(const scene::Scene& scene, const PlannedRun& plan, const Trajectory& run, const std::vector<CheckResult>& checks, double cpu_s) {
+void print_json(const scene::Scene& scene, const PlannedRun& plan, const Trajectory& run,
+                const std::vector<CheckResult>& checks, double cpu_s) {
   nlohmann::ordered_json page;
   page["scene"] = scene.name;
   page["title"] = scene.title;
@@ -122,60 +138,109 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   page["stopped_by"] = run.stopped_by;
   if (plan.search) page["search"] = search_as_json(*plan.search, run, cpu_s);
   page["checks"] = nlohmann::json::array();
-  for (const auto& check : checks)   // a value that is not finite becomes null
-    page["checks"].push_back({{"kind", check.kind}, {"subject", check.subject}, {"value", check.value}, {"threshold", check.threshold}, {"unit", check.unit},
-                              {"right_when", check.at_least ? ">=" : "<="}, {"passed", check.passed}, {"detail", check.detail}, {"why", check.why}});
+  for (const auto& check : checks)  // a value that is not finite becomes null
+    page["checks"].push_back({{"kind", check.kind},
+                              {"subject", check.subject},
+                              {"value", check.value},
+                              {"threshold", check.threshold},
+                              {"unit", check.unit},
+                              {"right_when", check.at_least ? ">=" : "<="},
+                              {"passed", check.passed},
+                              {"detail", check.detail},
+                              {"why", check.why}});
   fmt::print("{}\n", page.dump(2));
 }
 
 /// A run shorter than the scene is judged only by checks that apply until its end.
 scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
   const bool is_shorter = words.duration_s && *words.duration_s < scene.duration_s;
-  if (is_shorter) std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return !check.expected.empty(); });
+  if (is_shorter)
+    std::erase_if(scene.checks,
+                  [](const scene::CheckSpec& check) { return !check.expected.empty(); });
   return scene;
 }
 
 }  // namespace
 
 void add_run_words(Verb& verb, RunWords& words) {
-  verb.option("scene", words.scene, "A scene file, the bare name of one under assignments/*/scenes, or a .3ds file").required().type_name("SCENE");
-  verb.option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library").type_name("WORDS");
-  verb.option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd").type_name("WORD");
-  verb.option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts").type_name("WORD");
-  verb.option("--threads", words.threads, "Of --engine tw: how many; the run is the same with any number. Laws must keep nothing from one call to the next").shows_default();
-  verb.option("--most-states", words.most_states, "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many as it takes").shows_default();
-  verb.option("--n", words.n, "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche").positive();
-  verb.option("--scale", words.scale, "Of a .3ds file: length of its unit [m]: 0.001 for millimetres; default 1").positive();
-  verb.option("--density", words.density, "Of a .3ds file: density [kg/m^3]; default 1000").positive();
-  verb.flag("--drop", words.drop, "Of a .3ds file: drop it on a floor; without this word it is free in space");
-  verb.option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's").positive();
+  verb.option("scene", words.scene,
+              "A scene file, the bare name of one under assignments/*/scenes, or a .3ds file")
+      .required()
+      .type_name("SCENE");
+  verb.option("--modules", words.modules,
+              "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a "
+              "folder: in the sandbox); for all or each: a1=student,a2=library")
+      .type_name("WORDS");
+  verb.option("--engine", words.engine,
+              "rd: retroactive detection with fixed step; ca: conservative advancement; tw: "
+              "timewarp; ordered: event by event, the reference; default: the scene's own, or rd")
+      .type_name("WORD");
+  verb.option("--propagator", words.propagator,
+              "laws: bodies go by the laws' integration (rd's default); auto: in closed form where "
+              "nothing but gravity acts")
+      .type_name("WORD");
+  verb.option("--threads", words.threads,
+              "Of --engine tw: how many; the run is the same with any number. Laws must keep "
+              "nothing from one call to the next")
+      .shows_default();
+  verb.option("--most-states", words.most_states,
+              "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many "
+              "as it takes")
+      .shows_default();
+  verb.option("--n", words.n,
+              "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche")
+      .positive();
+  verb.option("--scale", words.scale,
+              "Of a .3ds file: length of its unit [m]: 0.001 for millimetres; default 1")
+      .positive();
+  verb.option("--density", words.density, "Of a .3ds file: density [kg/m^3]; default 1000")
+      .positive();
+  verb.flag("--drop", words.drop,
+            "Of a .3ds file: drop it on a floor; without this word it is free in space");
+  verb.option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")
+      .positive();
   verb.option("--png", words.png, "Write one picture").type_name("FILE");
   verb.option("--at-s", words.at_s, "Instant of the picture [s]; default the end").not_negative();
   verb.option("--sheet", words.sheet, "Write a contact sheet (.png)").type_name("FILE");
   verb.option("--video", words.video, "Write a video (.mp4)").type_name("FILE");
-  verb.option("--trajectory", words.trajectory, "Write the recorded run, every frame and event").type_name("FILE");
-  verb.option("--virtual-times", words.virtual_times, "Of a timewarp on a module's decisions: write a chart (.png) of local virtual times, rollbacks and global virtual time").type_name("FILE");
-  verb.option("--moves", words.moves, "Of --virtual-times: after which moves of the scheduler, such as 3,8,9; default: before and after the first rollbacks").separated_by(',').type_name("LIST");
-  verb.option("--chart-until-s", words.chart_until_s, "Of --virtual-times: how far it goes [s]").positive();
+  verb.option("--trajectory", words.trajectory, "Write the recorded run, every frame and event")
+      .type_name("FILE");
+  verb.option("--virtual-times", words.virtual_times,
+              "Of a timewarp on a module's decisions: write a chart (.png) of local virtual times, "
+              "rollbacks and global virtual time")
+      .type_name("FILE");
+  verb.option("--moves", words.moves,
+              "Of --virtual-times: after which moves of the scheduler, such as 3,8,9; default: "
+              "before and after the first rollbacks")
+      .separated_by(',')
+      .type_name("LIST");
+  verb.option("--chart-until-s", words.chart_until_s, "Of --virtual-times: how far it goes [s]")
+      .positive();
   add_page_words(verb, words);
-  verb.option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion").between(1e-6, 1e6).shows_default();
-  verb.option("--size", words.size, "Of pictures and video, in pixels").type_name("WxH").shows_default();
+  verb.option("--speed", words.speed,
+              "Seconds of the run in a second of video: 0.25 is slow motion")
+      .between(1e-6, 1e6)
+      .shows_default();
+  verb.option("--size", words.size, "Of pictures and video, in pixels")
+      .type_name("WxH")
+      .shows_default();
   verb.flag("--json", words.json, "For machines");
 }
 
-void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
-  const PictureSize size = parse_size(words.size);   // refused before the run, not after it
+void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                  const RunWords& words, const std::string& extra) {
+  const PictureSize size = parse_size(words.size);  // refused before the run, not after it
   engines::refuse_other_units(scene);
   check_page_words(context, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);
-  VirtualTimes times;   // of the fast scheduler; the teaching timewarp sends them to the recorder
+  VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
   if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();
   const double cpu_before = cpu_seconds();
-  std::string ended;   // why a submission gave no answer
+  std::string ended;  // why a submission gave no answer
   try {
     RunProgress progress(recorder, plan.options.duration_s.value_or(plan.scene.duration_s));
     engines::run_scene(plan.scene, plan.laws, plan.options, progress);
@@ -183,7 +248,8 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
     ended = error.what();
   }
   const double cpu_s = cpu_seconds() - cpu_before;
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Trajectory run = recorder.trajectory();
   if (!ended.empty()) run.stopped_by = ended;
   if (run.virtual_times.moves.empty()) run.virtual_times = std::move(times);
@@ -191,12 +257,15 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   // Judgement and summary.
   const auto checks = engines::judge_run(judged_part(scene, words), run);
   const std::string searched = plan.search ? search_in_words(*plan.search, run, cpu_s) : "";
-  if (words.json) print_json(scene, plan, run, checks, cpu_s);
-  else print_summary(scene, plan.laws, run, checks, extra, searched);
+  if (words.json)
+    print_json(scene, plan, run, checks, cpu_s);
+  else
+    print_summary(scene, plan.laws, run, checks, extra, searched);
   std::fflush(stdout);
 
   fmt::print(stderr, "{}\nran in {:.2f} s", record_of(run.info), seconds);
-  for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
+  for (const auto& [stage, spent] : run.counters.stage_seconds)
+    fmt::print(stderr, " · {} {:.2f} s", stage, spent);
   fmt::print(stderr, "\n");
   // Files.
   if (!words.trajectory.empty()) {

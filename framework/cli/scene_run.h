@@ -15,6 +15,7 @@ void add_run_words(Verb& verb, RunWords& words);
 
 /// Runs the scene, writes the requested files, prints the summary and sets context.exit.
 /// @param extra  a line for the summary, under the title (may be empty)
-void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra = "");
+void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                  const RunWords& words, const std::string& extra = "");
 
 }  // namespace tumble::cli

@@ -24,7 +24,8 @@ using truths::Verdict;
 
 struct TruthsOptions {
   std::filesystem::path folder;
-  std::string modules;  // as after --modules; empty: the reference where this tree has one, else the student
+  // as after --modules; empty: the reference where this tree has one, else the student
+  std::string modules;
   bool each = false;
   bool json = false;
 };
@@ -52,7 +53,8 @@ std::string word_for(const modules::ModuleKind& kind, const std::string& choice)
     return "";
   }
   // A source file includes its own module's header, which is in the assignment's folder.
-  if (path.extension() == ".cpp" && fs::exists(path)) return mentions(path, "assignments/" + kind.folder + "/") ? choice : "";
+  if (path.extension() == ".cpp" && fs::exists(path))
+    return mentions(path, "assignments/" + kind.folder + "/") ? choice : "";
   return choice;
 }
 
@@ -73,7 +75,8 @@ Chosen load_modules(const Context& context, const std::string& choice) {
       try {
         if (!word.empty()) table = load_word(context, *kind, word);
       } catch (const UserError&) {
-        if (fs::path(word).extension() != ".so" || !fs::exists(word)) throw;  // a shared object of another module: tried with the next
+        // a shared object of another module: tried with the next
+        if (fs::path(word).extension() != ".so" || !fs::exists(word)) throw;
       }
     }
     any_loaded = any_loaded || table != nullptr;
@@ -83,7 +86,8 @@ Chosen load_modules(const Context& context, const std::string& choice) {
   }
   if (!any_loaded && !choice.empty())
     throw UserError("--modules " + choice, "holds no module of any assignment",
-                    "Give student, reference, a file that implements a module's header (.cpp or .so), or a folder with such files.");
+                    "Give student, reference, a file that implements a module's header (.cpp or "
+                    ".so), or a folder with such files.");
   return chosen;
 }
 
@@ -91,7 +95,8 @@ Chosen load_modules(const Context& context, const std::string& choice) {
 std::optional<CaseResult> compute(const Context& context, const Chosen& chosen, const Case& truth) {
   Comparison comparison;
   bool known = false;
-  if (const auto family = truths::framework_families().find(truth.family); family != truths::framework_families().end()) {
+  if (const auto family = truths::framework_families().find(truth.family);
+      family != truths::framework_families().end()) {
     comparison.attempt(truth.family, [&] { family->second(truth, chosen.laws, comparison); });
     known = true;
   }
@@ -99,7 +104,8 @@ std::optional<CaseResult> compute(const Context& context, const Chosen& chosen, 
     const auto families = kind->note<truths::ModuleTruths>().families;
     const auto family = families.find(truth.family);
     if (family == families.end()) continue;
-    comparison.attempt(truth.family, [&] { family->second(chosen.tables.at(kind->id), truth, comparison); });
+    comparison.attempt(truth.family,
+                       [&] { family->second(chosen.tables.at(kind->id), truth, comparison); });
     known = true;
   }
   if (!known) return std::nullopt;
@@ -117,10 +123,12 @@ class Progress {
   explicit Progress(std::size_t count) : count_(count) {}
   /// Called before each file.
   void tell() {
-    constexpr double kEvery = 10.0;   // s
-    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    constexpr double kEvery = 10.0;  // s
+    const double now =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
     if (now - told_ >= kEvery) {
-      std::fprintf(stderr, "tumble: %zu of %zu files, about %.0f s left\n", done_, count_, now / static_cast<double>(done_) * static_cast<double>(count_ - done_));
+      std::fprintf(stderr, "tumble: %zu of %zu files, about %.0f s left\n", done_, count_,
+                   now / static_cast<double>(done_) * static_cast<double>(count_ - done_));
       told_ = now;
     }
     ++done_;
@@ -129,13 +137,14 @@ class Progress {
  private:
   std::size_t count_, done_ = 0;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
-  double told_ = 0.0;   // [s]
+  double told_ = 0.0;  // [s]
 };
 
 ExitCode exit_code(const std::vector<CaseResult>& results, const std::vector<OddFile>& odd) {
   if (count_cases(results, Verdict::kWrong) > 0) return ExitCode::kCheckFailed;
   if (!odd.empty()) return ExitCode::kUserError;
-  return count_cases(results, Verdict::kNotAttempted) > 0 ? ExitCode::kNotAttempted : ExitCode::kFine;
+  return count_cases(results, Verdict::kNotAttempted) > 0 ? ExitCode::kNotAttempted
+                                                          : ExitCode::kFine;
 }
 
 ExitCode run_truths(const Context& context, const TruthsOptions& options) {
@@ -143,7 +152,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
   const Chosen chosen = load_modules(context, options.modules);
   std::vector<CaseResult> results;
   std::map<std::string, int> skipped;
-  std::set<std::string> said;   // hints
+  std::set<std::string> said;  // hints
   if (!options.json) print_truths_head();
   std::vector<OddFile> odd;
   Progress progress(files.size());
@@ -159,7 +168,8 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
       }
       results.push_back(*result);
       if (!options.json) print_truths_case(*result, options.each, said), std::fflush(stdout);
-    } catch (const UserError& error) {   // one wrong file does not prevent the comparison of the others
+      // one wrong file does not prevent the comparison of the others
+    } catch (const UserError& error) {
       if (files.size() == 1) throw;
       odd.push_back({file.string(), error.what()});
       std::fprintf(stderr, "tumble: %s\n", error.what());
@@ -167,14 +177,19 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
   }
   // The result as JSON or as a table.
   if (options.json) {
-    nlohmann::ordered_json all{{"command", context.command_line}, {"version", kProgramVersion}, {"modules", options.modules}};
+    nlohmann::ordered_json all{{"command", context.command_line},
+                               {"version", kProgramVersion},
+                               {"modules", options.modules}};
     all.update(truths_to_json(results, skipped));
     all["odd_files"] = nlohmann::ordered_json::array();
-    for (const OddFile& one : odd) all["odd_files"].push_back({{"file", one.file}, {"problem", one.problem}});
+    for (const OddFile& one : odd)
+      all["odd_files"].push_back({{"file", one.file}, {"problem", one.problem}});
     std::printf("%s\n", all.dump(1).c_str());
   } else {
     print_truths_count(results, skipped);
-    if (!odd.empty()) std::printf("%zu file%s could not be compared, the first: %s\n", odd.size(), odd.size() == 1 ? "" : "s", odd.front().problem.c_str());
+    if (!odd.empty())
+      std::printf("%zu file%s could not be compared, the first: %s\n", odd.size(),
+                  odd.size() == 1 ? "" : "s", odd.front().problem.c_str());
   }
   return exit_code(results, odd);
 }
@@ -184,9 +199,14 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
 void add_truths(CLI::App& app, Context& context) {
   auto options = std::make_shared<TruthsOptions>();
   Verb verb(app, "truths", "Compare results with reference values of high precision");
-  verb.option("folder", options->folder, "Folder of files of reference values, or one file (tests/truths)").required();
-  verb.option("--modules", options->modules, "student, reference, PATH.cpp, PATH.so, a folder of them; or a1=WORD,a2=WORD").default_text("reference where this tree has one, else student");
-  verb.flag("--each", options->each, "Show every output, not only the one closest to its tolerance");
+  verb.option("folder", options->folder,
+              "Folder of files of reference values, or one file (tests/truths)")
+      .required();
+  verb.option("--modules", options->modules,
+              "student, reference, PATH.cpp, PATH.so, a folder of them; or a1=WORD,a2=WORD")
+      .default_text("reference where this tree has one, else student");
+  verb.flag("--each", options->each,
+            "Show every output, not only the one closest to its tolerance");
   verb.flag("--json", options->json, "The same for machines");
   verb.runs([&context, options] { context.exit = run_truths(context, *options); });
 }

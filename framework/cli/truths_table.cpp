@@ -25,8 +25,10 @@ std::string show(double x) {
 }
 
 /// Names are cut in the middle, which carries the least information.
-void print_row(const std::string& name, const std::string& output, const Line& line, const std::string& verdict) {
-  std::printf("%-40s %-20s %7s %7s %7s  %s\n", without_middle(name, kCaseWidth).c_str(), without_middle(output, kOutputWidth).c_str(), show(line.error).c_str(),
+void print_row(const std::string& name, const std::string& output, const Line& line,
+               const std::string& verdict) {
+  std::printf("%-40s %-20s %7s %7s %7s  %s\n", without_middle(name, kCaseWidth).c_str(),
+              without_middle(output, kOutputWidth).c_str(), show(line.error).c_str(),
               show(line.error_floor).c_str(), show(line.tolerance).c_str(), verdict.c_str());
 }
 
@@ -50,7 +52,9 @@ void print_output(const Line& line) {
 }
 
 /// Whether the line is the measured order of an integrator, which is also shown where all is right.
-bool is_order(const Line& line) { return line.verdict == Verdict::kRight && line.output.find("order_") != std::string::npos; }
+bool is_order(const Line& line) {
+  return line.verdict == Verdict::kRight && line.output.find("order_") != std::string::npos;
+}
 
 void print_failures(const CaseResult& result) {
   std::size_t failures = 0;
@@ -58,20 +62,23 @@ void print_failures(const CaseResult& result) {
     if (line.verdict != Verdict::kWrong) continue;
     if (++failures <= kMostFailures) print_output(line);
   }
-  if (failures > kMostFailures) std::printf("    and %zu more outputs are wrong: --each shows all\n", failures - kMostFailures);
+  if (failures > kMostFailures)
+    std::printf("    and %zu more outputs are wrong: --each shows all\n", failures - kMostFailures);
 }
 
 // Missing functions are listed once, below the first case that needs them.
 void print_stubs(const CaseResult& result, std::set<std::string>& said) {
   for (const Line& line : result.lines) {
-    if (line.verdict == Verdict::kNotAttempted && said.insert(line.note).second) print_note(line.note);
+    if (line.verdict == Verdict::kNotAttempted && said.insert(line.note).second)
+      print_note(line.note);
   }
 }
 
 }  // namespace
 
 void print_truths_head() {
-  std::printf("%-40s %-20s %7s %7s %7s  %s\n", "case", "worst output", "error", "floor", "allowed", "verdict");
+  std::printf("%-40s %-20s %7s %7s %7s  %s\n", "case", "worst output", "error", "floor", "allowed",
+              "verdict");
 }
 
 void print_truths_case(const CaseResult& result, bool each, std::set<std::string>& said) {
@@ -86,22 +93,29 @@ void print_truths_case(const CaseResult& result, bool each, std::set<std::string
   print_stubs(result, said);
   const bool about_orders = result.family == "logistic";
   for (const Line& line : result.lines) {
-    if (about_orders && is_order(line)) print_note(line.output.substr(line.output.find("order_") + 6) + ": " + line.note);
+    if (about_orders && is_order(line))
+      print_note(line.output.substr(line.output.find("order_") + 6) + ": " + line.note);
   }
 }
 
 int count_cases(const std::vector<CaseResult>& results, Verdict verdict) {
-  return static_cast<int>(std::count_if(results.begin(), results.end(), [=](const CaseResult& result) { return truths::verdict_of(result.lines) == verdict; }));
+  return static_cast<int>(std::count_if(
+      results.begin(), results.end(),
+      [=](const CaseResult& result) { return truths::verdict_of(result.lines) == verdict; }));
 }
 
-void print_truths_count(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped) {
+void print_truths_count(const std::vector<CaseResult>& results,
+                        const std::map<std::string, int>& skipped) {
   int outputs = 0;
   for (const CaseResult& result : results) {
-    for (const Line& line : result.lines) outputs += line.verdict == Verdict::kRight || line.verdict == Verdict::kWrong;
+    for (const Line& line : result.lines)
+      outputs += line.verdict == Verdict::kRight || line.verdict == Verdict::kWrong;
   }
-  std::printf("\n%zu cases, %d outputs compared: %d right, %d wrong, %d not attempted", results.size(), outputs,
-              count_cases(results, Verdict::kRight), count_cases(results, Verdict::kWrong), count_cases(results, Verdict::kNotAttempted));
-  if (const int silent = count_cases(results, Verdict::kNotCompared); silent > 0) std::printf(", %d not compared", silent);
+  std::printf("\n%zu cases, %d outputs compared: %d right, %d wrong, %d not attempted",
+              results.size(), outputs, count_cases(results, Verdict::kRight),
+              count_cases(results, Verdict::kWrong), count_cases(results, Verdict::kNotAttempted));
+  if (const int silent = count_cases(results, Verdict::kNotCompared); silent > 0)
+    std::printf(", %d not compared", silent);
   std::printf("\n");
   if (skipped.empty()) return;
   int cases = 0;
@@ -114,21 +128,32 @@ void print_truths_count(const std::vector<CaseResult>& results, const std::map<s
   print_note(families);
 }
 
-nlohmann::ordered_json truths_to_json(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped) {
+nlohmann::ordered_json truths_to_json(const std::vector<CaseResult>& results,
+                                      const std::map<std::string, int>& skipped) {
   using Json = nlohmann::ordered_json;
   const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
   Json cases = Json::array();
   for (const CaseResult& result : results) {
     Json lines = Json::array();
     for (const Line& line : result.lines) {
-      lines.push_back({{"output", line.output}, {"error", number(line.error)}, {"floor", number(line.error_floor)}, {"pass_mark", number(line.tolerance)},
-                       {"verdict", truths::word_of(line.verdict)}, {"note", line.note}});
+      lines.push_back({{"output", line.output},
+                       {"error", number(line.error)},
+                       {"floor", number(line.error_floor)},
+                       {"pass_mark", number(line.tolerance)},
+                       {"verdict", truths::word_of(line.verdict)},
+                       {"note", line.note}});
     }
-    cases.push_back({{"id", result.id}, {"verdict", truths::word_of(truths::verdict_of(result.lines))}, {"outputs", lines}});
+    cases.push_back({{"id", result.id},
+                     {"verdict", truths::word_of(truths::verdict_of(result.lines))},
+                     {"outputs", lines}});
   }
-  return {{"cases", cases}, {"skipped", skipped},
-          {"count", {{"right", count_cases(results, Verdict::kRight)}, {"wrong", count_cases(results, Verdict::kWrong)},
-                     {"not_attempted", count_cases(results, Verdict::kNotAttempted)}, {"not_compared", count_cases(results, Verdict::kNotCompared)}}}};
+  return {{"cases", cases},
+          {"skipped", skipped},
+          {"count",
+           {{"right", count_cases(results, Verdict::kRight)},
+            {"wrong", count_cases(results, Verdict::kWrong)},
+            {"not_attempted", count_cases(results, Verdict::kNotAttempted)},
+            {"not_compared", count_cases(results, Verdict::kNotCompared)}}}};
 }
 
 }  // namespace tumble::cli

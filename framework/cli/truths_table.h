@@ -25,9 +25,11 @@ void print_truths_head();
 /// @param said  hints that were printed already, not to be repeated; grows
 void print_truths_case(const CaseResult& result, bool each, std::set<std::string>& said);
 /// @param skipped  number of cases of each unknown family
-void print_truths_count(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped);
+void print_truths_count(const std::vector<CaseResult>& results,
+                        const std::map<std::string, int>& skipped);
 
-nlohmann::ordered_json truths_to_json(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped);
+nlohmann::ordered_json truths_to_json(const std::vector<CaseResult>& results,
+                                      const std::map<std::string, int>& skipped);
 
 /// Cases of one verdict.
 int count_cases(const std::vector<CaseResult>& results, truths::Verdict verdict);

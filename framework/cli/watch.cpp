@@ -23,10 +23,12 @@ namespace fs = std::filesystem;
 /// file.
 class SaveWatch {
  public:
-  explicit SaveWatch(const fs::path& file) : name_(file.filename().string()), fd_(::inotify_init1(IN_CLOEXEC)) {
+  explicit SaveWatch(const fs::path& file)
+      : name_(file.filename().string()), fd_(::inotify_init1(IN_CLOEXEC)) {
     const fs::path folder = file.parent_path();
     if (fd_ < 0 || ::inotify_add_watch(fd_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO) < 0)
-      throw UserError(folder.string(), std::string("cannot be watched: ") + std::strerror(errno), "Use ./tumble check after each change.");
+      throw UserError(folder.string(), std::string("cannot be watched: ") + std::strerror(errno),
+                      "Use ./tumble check after each change.");
   }
   ~SaveWatch() { ::close(fd_); }
   SaveWatch(const SaveWatch&) = delete;
@@ -35,8 +37,10 @@ class SaveWatch {
   /// Waits for a save, then until the file has not changed for a moment: some editors write twice.
   void wait() {
     constexpr int kForever = -1, kQuietMs = 60;
-    while (!saved(kForever)) {}
-    while (saved(kQuietMs)) {}
+    while (!saved(kForever)) {
+    }
+    while (saved(kQuietMs)) {
+    }
   }
 
  private:

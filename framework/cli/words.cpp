@@ -64,7 +64,8 @@ Word& Word::needs(const Word& other) {
   return *this;
 }
 
-Verb::Verb(CLI::App& app, const std::string& name, const std::string& help) : app_(app.add_subcommand(name, help)) {}
+Verb::Verb(CLI::App& app, const std::string& name, const std::string& help)
+    : app_(app.add_subcommand(name, help)) {}
 
 template <class Value>
 Word Verb::option(const std::string& name, Value& value, const std::string& help) {
@@ -83,7 +84,9 @@ template Word Verb::option(const std::string&, std::vector<double>&, const std::
 template Word Verb::option(const std::string&, std::vector<std::size_t>&, const std::string&);
 template Word Verb::option(const std::string&, std::filesystem::path&, const std::string&);
 
-Word Verb::flag(const std::string& name, bool& value, const std::string& help) { return Word(app_->add_flag(name, value, help)); }
+Word Verb::flag(const std::string& name, bool& value, const std::string& help) {
+  return Word(app_->add_flag(name, value, help));
+}
 
 void Verb::footer(const std::string& text) { app_->footer(text); }
 

@@ -19,16 +19,16 @@ class Word {
   explicit Word(CLI::Option* option) : option_(option) {}
 
   Word& required();
-  Word& type_name(const std::string& name);   // the name of the value in help, e.g. FILE
-  Word& positive();                            // refuses a value that is not above 0
+  Word& type_name(const std::string& name);  // the name of the value in help, e.g. FILE
+  Word& positive();                          // refuses a value that is not above 0
   Word& not_negative();
-  Word& between(int least, int most);          // both ends allowed
+  Word& between(int least, int most);  // both ends allowed
   Word& between(double least, double most);
-  Word& separated_by(char separator);          // of lists: 1,2,3
-  Word& shows_default();                       // help shows the current value of the variable
-  Word& default_text(const std::string& text); // help shows this instead
-  Word& excludes(const std::string& name);     // refused together with that word
-  Word& needs(const Word& other);              // refused without it
+  Word& separated_by(char separator);           // of lists: 1,2,3
+  Word& shows_default();                        // help shows the current value of the variable
+  Word& default_text(const std::string& text);  // help shows this instead
+  Word& excludes(const std::string& name);      // refused together with that word
+  Word& needs(const Word& other);               // refused without it
 
  private:
   CLI::Option* option_;
@@ -48,7 +48,7 @@ class Verb {
   Word flag(const std::string& name, bool& value, const std::string& help);
 
   void footer(const std::string& text);
-  void runs(std::function<void()> run);   // called after a successful parse
+  void runs(std::function<void()> run);  // called after a successful parse
 
  private:
   CLI::App* app_;

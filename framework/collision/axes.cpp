@@ -17,7 +17,8 @@ constexpr double kParallel = 1e-9;
 // separation along every axis.
 class Search {
  public:
-  Search(const PlacedPolytope& a, const PlacedPolytope& b, double size) : a_(a), b_(b), handicap_(16 * kEpsilon * size) {}
+  Search(const PlacedPolytope& a, const PlacedPolytope& b, double size)
+      : a_(a), b_(b), handicap_(16 * kEpsilon * size) {}
 
   void offer_face_of_a(int face) {
     const Vector3d m = a_.query_from_body * a_.polytope->face_normals[face];
@@ -40,7 +41,9 @@ class Search {
   }
   const Axis& best() const { return best_; }
   /// Whether a separation along n is known to be no better.
-  bool bounded(const Vector3d& n, double handicap) const { return has_corner_ && n.dot(corner_) <= best_.separation + handicap; }
+  bool bounded(const Vector3d& n, double handicap) const {
+    return has_corner_ && n.dot(corner_) <= best_.separation + handicap;
+  }
   bool too_low(double separation) const { return separation <= best_.separation + handicap_; }
 
  private:
@@ -58,13 +61,14 @@ class Search {
   double handicap_;
   Axis best_;
   bool has_corner_ = false;
-  Vector3d corner_ = Vector3d::Zero();   // of A - B, foremost along the best axis
+  Vector3d corner_ = Vector3d::Zero();  // of A - B, foremost along the best axis
 };
 
 using Indices = InlineVector<int, 24>;
 
 // Vertices at most `depth` above the lowest one along a direction.
-void foremost(const PlacedPolytope& piece, const Vector3d& direction, double depth, Indices& vertices) {
+void foremost(const PlacedPolytope& piece, const Vector3d& direction, double depth,
+              Indices& vertices) {
   const Vector3d d = piece.in_body(direction);
   double lowest;
   piece.polytope->lowest(d, lowest);
@@ -74,7 +78,7 @@ void foremost(const PlacedPolytope& piece, const Vector3d& direction, double dep
 }
 
 struct Edge {
-  Vector3d direction, start;   // frame of the query; the direction is not a unit vector
+  Vector3d direction, start;  // frame of the query; the direction is not a unit vector
 };
 using Edges = InlineVector<Edge, 32>;
 
@@ -92,8 +96,10 @@ void edges_between(const PlacedPolytope& piece, const Indices& vertices, Edges& 
 
 Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size) {
   Search search(a, b, size);
-  for (int f = 0; f < static_cast<int>(a.polytope->face_normals.size()); ++f) search.offer_face_of_a(f);
-  for (int f = 0; f < static_cast<int>(b.polytope->face_normals.size()); ++f) search.offer_face_of_b(f);
+  for (int f = 0; f < static_cast<int>(a.polytope->face_normals.size()); ++f)
+    search.offer_face_of_a(f);
+  for (int f = 0; f < static_cast<int>(b.polytope->face_normals.size()); ++f)
+    search.offer_face_of_b(f);
   InlineVector<Vector3d, 64> edges_b;
   for (const Vector3d& e : b.polytope->edge_directions) edges_b.push_back(b.query_from_body * e);
   for (const Vector3d& e : a.polytope->edge_directions) {
@@ -109,7 +115,8 @@ Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size) {
   return search.best();
 }
 
-Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction, double angle, double size) {
+Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction,
+                    double angle, double size) {
   Search search(a, b, size);
   const double least = 1.0 - 0.5 * angle * angle;
   const auto offer_faces = [&](const PlacedPolytope& piece, const Vector3d& outward, auto&& offer) {
@@ -134,7 +141,9 @@ Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vect
     for (const Edge& eb : edges_b) {
       const Vector3d across = ea.direction.cross(eb.direction);
       const double squared = across.squaredNorm();
-      if (!(squared > kParallel * kParallel * ea.direction.squaredNorm() * eb.direction.squaredNorm())) continue;
+      if (!(squared >
+            kParallel * kParallel * ea.direction.squaredNorm() * eb.direction.squaredNorm()))
+        continue;
       const double length = std::sqrt(squared);
       const Vector3d n = across / (across.dot(direction) < 0 ? -length : length);
       // The edges belong to A and B: the solids' separation along n is not larger than that of the

@@ -14,7 +14,8 @@
 namespace tumble::collision {
 
 struct Axis {
-  double separation = -std::numeric_limits<double>::infinity();   // along `normal`; negative: the overlap [m]
+  // along `normal`; negative: the overlap [m]
+  double separation = -std::numeric_limits<double>::infinity();
   Vector3d normal_b_to_a = Vector3d::UnitZ();
 };
 
@@ -25,6 +26,7 @@ Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size);
 
 /// The best of the axes within about `angle` (rad) of a direction: those of the faces, edges and
 /// corners that face each other along it. Separation -infinity where there is none.
-Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction, double angle, double size);
+Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction,
+                    double angle, double size);
 
 }  // namespace tumble::collision

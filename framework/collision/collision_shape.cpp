@@ -19,7 +19,9 @@ void add_direction(std::vector<Vector3d>& directions, Vector3d direction, bool b
   if (!(length > 0)) return;
   direction /= length;
   for (const Vector3d& known : directions) {
-    if ((known - direction).norm() < kSameDirection || (both_senses && (known + direction).norm() < kSameDirection)) return;
+    if ((known - direction).norm() < kSameDirection ||
+        (both_senses && (known + direction).norm() < kSameDirection))
+      return;
   }
   directions.push_back(direction);
 }
@@ -60,7 +62,8 @@ Polytope hull_polytope(const TriangleMesh& mesh) {
     // A diagonal between coplanar triangles is not an edge of the solid.
     if (other != normal_beside.end() && (other->second - n).norm() < kSameDirection) continue;
     hull.edges.push_back(edge);
-    add_direction(hull.edge_directions, mesh.vertices[edge.second] - mesh.vertices[edge.first], true);
+    add_direction(hull.edge_directions, mesh.vertices[edge.second] - mesh.vertices[edge.first],
+                  true);
   }
   return hull;
 }
@@ -75,7 +78,8 @@ Polytope triangle_polytope(const TriangleMesh& mesh, const Face& face) {
     const Vector3d edge = piece.vertices[(i + 1) % 3] - piece.vertices[i];
     add_direction(piece.edge_directions, edge, true);
     piece.edges.emplace_back(i, (i + 1) % 3);
-    if (flat) add_direction(piece.face_normals, edge.cross(n), false);  // normal of the triangle's side, in its plane
+    // normal of the triangle's side, in its plane
+    if (flat) add_direction(piece.face_normals, edge.cross(n), false);
   }
   return piece;
 }
@@ -98,11 +102,13 @@ CollisionShape::CollisionShape(const Shape& shape) {
     if (solid->is_convex) {
       pieces_.push_back(hull_polytope(solid->mesh_body));
     } else {
-      for (const Face& face : solid->mesh_body.faces) pieces_.push_back(triangle_polytope(solid->mesh_body, face));
+      for (const Face& face : solid->mesh_body.faces)
+        pieces_.push_back(triangle_polytope(solid->mesh_body, face));
       faces_ = solid->mesh_body.faces;
       neighbours_.resize(solid->mesh_body.vertices.size());
       for (const Face& face : faces_)
-        for (int i = 0; i < 3; ++i) neighbours_[face[i]].push_back(face[(i + 1) % 3]);   // a closed surface has each edge once in either direction
+        // a closed surface has each edge once in either direction
+        for (int i = 0; i < 3; ++i) neighbours_[face[i]].push_back(face[(i + 1) % 3]);
     }
     vertices_ = solid->mesh_body.vertices;
   } else {
@@ -132,7 +138,8 @@ int CollisionShape::build_node(std::vector<int>& order, int begin, int end) {
   node.half_extents_body = 0.5 * (high - low);
   node.radius = 0.0;
   for (int i = begin; i < end; ++i)
-    for (const Vector3d& v : pieces_[order[i]].vertices) node.radius = std::max(node.radius, (v - node.center_body).norm());
+    for (const Vector3d& v : pieces_[order[i]].vertices)
+      node.radius = std::max(node.radius, (v - node.center_body).norm());
   const int index = static_cast<int>(nodes_.size());
   nodes_.push_back(node);
   if (end - begin == 1) {
@@ -164,9 +171,11 @@ bool CollisionShape::holds_point(const Vector3d& point_body) const {
   // Source: A. Van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125.
   double angle = 0.0;
   for (const Polytope& piece : pieces_) {
-    const Vector3d a = piece.vertices[0] - point_body, b = piece.vertices[1] - point_body, c = piece.vertices[2] - point_body;
+    const Vector3d a = piece.vertices[0] - point_body, b = piece.vertices[1] - point_body,
+                   c = piece.vertices[2] - point_body;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)),
+                              la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return angle > 2.0 * std::numbers::pi;
 }

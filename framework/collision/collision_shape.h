@@ -18,16 +18,17 @@ namespace tumble::collision {
 
 /// Position and orientation of a body. World frame.
 struct Pose {
-  Vector3d com_world = Vector3d::Zero();                 // [m]
-  Quaterniond world_from_body = Quaterniond::Identity(); // unit
+  Vector3d com_world = Vector3d::Zero();                  // [m]
+  Quaterniond world_from_body = Quaterniond::Identity();  // unit
 };
 
 /// A ball and a box around some of the pieces, with a common centre.
 struct BallNode {
   Vector3d center_body;
   double radius;
-  Vector3d half_extents_body = Vector3d::Zero();   // of the box, with edges along the body's axes [m]
-  int first_child = -1;   // -1: a leaf
+  // of the box, with edges along the body's axes [m]
+  Vector3d half_extents_body = Vector3d::Zero();
+  int first_child = -1;  // -1: a leaf
   int second_child = -1;
   int piece = -1;
 };
@@ -39,14 +40,15 @@ class CollisionShape {
   bool is_half_space() const { return pieces_.empty(); }
   bool is_ball() const { return pieces_.size() == 1 && pieces_[0].vertices.size() == 1; }
   bool is_closed_surface() const { return pieces_.size() > 1; }
-  const Ellipsoid* ellipsoid() const { return ellipsoid_ ? &*ellipsoid_ : nullptr; }   // null: not an ellipsoid
+  // null: not an ellipsoid
+  const Ellipsoid* ellipsoid() const { return ellipsoid_ ? &*ellipsoid_ : nullptr; }
   /// Rounding radius around the pieces. [m]
   double radius() const { return radius_; }
   /// Radius of the smallest ball about the centre of mass that contains the solid; infinite for a
   /// half-space. [m]
   double bounding_radius() const { return bounding_radius_; }
   const std::vector<Polytope>& pieces() const { return pieces_; }
-  const std::vector<BallNode>& nodes() const { return nodes_; }   // the first is the root
+  const std::vector<BallNode>& nodes() const { return nodes_; }  // the first is the root
   const std::vector<Vector3d>& vertices() const { return vertices_; }
   /// All vertices as one polytope without faces, for tests against a half-space.
   const Polytope& corners() const { return corners_; }
@@ -64,7 +66,7 @@ class CollisionShape {
   std::vector<BallNode> nodes_;
   std::vector<Vector3d> vertices_;
   Polytope corners_;
-  std::vector<Face> faces_;                     // of a solid of flat pieces
+  std::vector<Face> faces_;  // of a solid of flat pieces
   std::vector<std::vector<int>> neighbours_;
   std::optional<Ellipsoid> ellipsoid_;
   double radius_ = 0.0;

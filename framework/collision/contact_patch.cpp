@@ -9,20 +9,22 @@ namespace {
 // contact.
 constexpr double kSamePlane = 1e-6;
 
-std::vector<Vector3d> lowest_vertices(const CollisionShape& shape, const Pose& pose, const Vector3d& n, double tolerance) {
+std::vector<Vector3d> lowest_vertices(const CollisionShape& shape, const Pose& pose,
+                                      const Vector3d& n, double tolerance) {
   const Matrix3d R = pose.world_from_body.toRotationMatrix();
   double lowest = std::numeric_limits<double>::infinity();
   for (const Vector3d& v : shape.vertices()) lowest = std::min(lowest, n.dot(R * v));
   std::vector<Vector3d> points;
   for (const Vector3d& v : shape.vertices())
-    if (n.dot(R * v) <= lowest + tolerance) points.push_back(pose.com_world + R * v - shape.radius() * n);
+    if (n.dot(R * v) <= lowest + tolerance)
+      points.push_back(pose.com_world + R * v - shape.radius() * n);
   return points;
 }
 
 }  // namespace
 
-FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, const Gap& gap,
-                       double tolerance) {
+FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                       const Pose& pose_b, const Gap& gap, double tolerance) {
   const Vector3d& n = gap.normal_b_to_a_world;
   std::vector<Vector3d> points;
   if (a.ellipsoid() || b.ellipsoid()) {
@@ -34,11 +36,14 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
   } else if (!a.is_ball() && !b.is_ball()) {
     const Query query(a, pose_a, b, pose_b);
     const double reach = std::max(gap.distance, 0.0) + tolerance;
-      for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
+    for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
       const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
-      const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
-      if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSamePlane) continue;
-      for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance)) points.push_back(pose_b.com_world + p);
+      const PolytopeGap found =
+          polytope_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
+      if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSamePlane)
+        continue;
+      for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance))
+        points.push_back(pose_b.com_world + p);
     }
   }
   if (points.empty()) points.push_back(gap.point_a_world);

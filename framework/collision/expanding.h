@@ -1,6 +1,7 @@
 /// Penetration depth of two convex polytopes: the expanding polytope algorithm (EPA) on their
 /// Minkowski difference A - B. Internal to collision.
-/// Source: G. van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game Objects, GDC 2001.
+/// Source: G. van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game
+/// Objects, GDC 2001.
 #pragma once
 
 #include <optional>
@@ -15,6 +16,7 @@ namespace tumble::collision {
 /// @param start  the last simplex of the GJK algorithm
 /// @return the separation to a few roundings of `size`, the normal less accurately; nothing where A
 ///   - B is flat or has too many faces
-std::optional<Axis> expand(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& start, double size);
+std::optional<Axis> expand(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& start,
+                           double size);
 
 }  // namespace tumble::collision

@@ -64,7 +64,8 @@ double last_instant_apart(const Search& search, double low, double high) {
   }
   for (;;) {
     const double middle = low + 0.5 * (high - low);
-    if (!(middle > low && middle < high) || high - low <= 0.5 * (next_after(high) - high)) return low;
+    if (!(middle > low && middle < high) || high - low <= 0.5 * (next_after(high) - high))
+      return low;
     (search.gap_at(middle) < 0 ? high : low) = middle;
   }
 }
@@ -75,7 +76,8 @@ Impact refine(const Search& search, double low, double high) {
     ++search.cost.root_findings;
     const double tolerance = 4 * (next_after(high) - high);
     const RootResult root = search.options.root_finder([&](double t) { return search.gap_at(t); },
-                                                       [&](double t) { return search.rate_at(t); }, low, high, tolerance);
+                                                       [&](double t) { return search.rate_at(t); },
+                                                       low, high, tolerance);
     // Only the sign of the gap at the result is used: a wrong result leaves the bracket unchanged.
     if (root.time > low && root.time < high) {
       const double behind = root.time - 2 * (next_after(root.time) - root.time);
@@ -101,13 +103,17 @@ double shorten(const Search& search, double t_apart, double t_overlap) {
   return t_apart;
 }
 
-double smaller_size(const Search& search) { return std::min(search.a.bounding_radius(), search.b.bounding_radius()); }
+double smaller_size(const Search& search) {
+  return std::min(search.a.bounding_radius(), search.b.bounding_radius());
+}
 
 // Bound on the relative acceleration of any point of A and any point of B. [m/s^2]
 double largest_acceleration(const Search& search) {
   const auto own = [](const CollisionShape& shape, const MotionBounds& m) {
     const double arm = shape.is_half_space() ? 0.0 : shape.bounding_radius() - shape.radius();
-    return m.acceleration_deviation + arm * (m.angular_acceleration + m.angular_speed * (m.angular_speed + m.angular_velocity_error));
+    return m.acceleration_deviation +
+           arm * (m.angular_acceleration +
+                  m.angular_speed * (m.angular_speed + m.angular_velocity_error));
   };
   const MotionBounds &a = search.motion_a.bounds, &b = search.motion_b.bounds;
   return (a.acceleration_world - b.acceleration_world).norm() + own(search.a, a) + own(search.b, b);
@@ -120,11 +126,16 @@ constexpr double kSmallestFeature = 1e-9;
 // True for two convex solids in almost straight relative motion: a line intersects their Minkowski
 // difference in one interval. For solids of several pieces, true only while they move past each
 // other by less than a feature.
-bool one_entry(const Search& search, const MotionState& sa, const MotionState& sb, double duration) {
+bool one_entry(const Search& search, const MotionState& sa, const MotionState& sb,
+               double duration) {
   const auto convex = [](const CollisionShape& shape) { return shape.pieces().size() <= 1; };
   if (convex(search.a) && convex(search.b)) return true;
-  const auto turning = [](const CollisionShape& shape, const MotionBounds& m) { return shape.is_half_space() ? 0.0 : m.angular_speed * shape.bounding_radius(); };
-  const double speed = (sa.velocity_world - sb.velocity_world).norm() + turning(search.a, search.motion_a.bounds) + turning(search.b, search.motion_b.bounds);
+  const auto turning = [](const CollisionShape& shape, const MotionBounds& m) {
+    return shape.is_half_space() ? 0.0 : m.angular_speed * shape.bounding_radius();
+  };
+  const double speed = (sa.velocity_world - sb.velocity_world).norm() +
+                       turning(search.a, search.motion_a.bounds) +
+                       turning(search.b, search.motion_b.bounds);
   return speed * duration <= kSmallestFeature * smaller_size(search);
 }
 
@@ -145,28 +156,41 @@ std::optional<double> behind_the_root(const Search& search, double t, double t1)
 }  // namespace
 
 double gap_rate(const Gap& gap, const MotionState& a, const MotionState& b) {
-  const Vector3d velocity_a = a.velocity_world + a.omega_world.cross(gap.point_a_world - a.pose.com_world);
-  const Vector3d velocity_b = b.velocity_world + b.omega_world.cross(gap.point_b_world - b.pose.com_world);
+  const Vector3d velocity_a =
+      a.velocity_world + a.omega_world.cross(gap.point_a_world - a.pose.com_world);
+  const Vector3d velocity_b =
+      b.velocity_world + b.omega_world.cross(gap.point_b_world - b.pose.com_world);
   return gap.normal_b_to_a_world.dot(velocity_a - velocity_b);
 }
 
-std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a, const CollisionShape& b, const Motion& motion_b,
-                                   double t0, double t1, const ImpactOptions& options, ImpactCost* cost) {
+std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a,
+                                   const CollisionShape& b, const Motion& motion_b, double t0,
+                                   double t1, const ImpactOptions& options, ImpactCost* cost) {
   ImpactCost unasked;
   PairCache own;
-  const Search search{a, b, motion_a, motion_b, options, cost ? *cost : unasked, options.cache ? options.cache : &own};
+  const Search search{a,
+                      b,
+                      motion_a,
+                      motion_b,
+                      options,
+                      cost ? *cost : unasked,
+                      options.cache ? options.cache : &own};
   double least = kLeastAdvance * (t1 - t0);
-  const double most_least = std::sqrt(8.0 * kShallow * smaller_size(search) / largest_acceleration(search));   // infinite for straight paths
+  // infinite for straight paths
+  const double most_least =
+      std::sqrt(8.0 * kShallow * smaller_size(search) / largest_acceleration(search));
   double t = t0, t_apart = t0;
   for (int round = 0;; ++round) {
     ++search.cost.gap_evaluations;
-    const TimeBound bound =
-        bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t), motion_b.bounds, t1 - t, search.cache);
-    if (bound.gap < 0) return t > t_apart ? refine(search, shorten(search, t_apart, t), t) : search.impact_at(t);
+    const TimeBound bound = bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t),
+                                             motion_b.bounds, t1 - t, search.cache);
+    if (bound.gap < 0)
+      return t > t_apart ? refine(search, shorten(search, t_apart, t), t) : search.impact_at(t);
     if (bound.duration >= t1 - t) return std::nullopt;
     t_apart = t;
     if (round > 0 && bound.gap < std::numeric_limits<double>::infinity()) {
-      if (const auto behind = behind_the_root(search, t, t1); behind && search.gap_at(*behind) < 0) return refine(search, t, *behind);
+      if (const auto behind = behind_the_root(search, t, t1); behind && search.gap_at(*behind) < 0)
+        return refine(search, t, *behind);
     }
     if (round > kPlainAdvances) least = std::max(least, std::min(kGrowth * least, most_least));
     t = std::min(t1, std::max(t + std::max(bound.duration, least), next_after(t)));

@@ -13,11 +13,12 @@ namespace tumble::collision {
 
 /// Narrows a bracket in which the gap closes, like Laws::find_impact_time.
 using RootFinder =
-    std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance)>;
+    std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                             double t_low, double t_high, double tolerance)>;
 
 struct ImpactOptions {
-  RootFinder root_finder;               // empty: bisection
-  PairCache* cache = nullptr;           // of this pair, owned by the caller; see pair_cache.h
+  RootFinder root_finder;      // empty: bisection
+  PairCache* cache = nullptr;  // of this pair, owned by the caller; see pair_cache.h
 };
 
 /// Cost of the search.
@@ -28,9 +29,10 @@ struct ImpactCost {
 
 /// The last instant at which the solids are still apart or just touch.
 struct Impact {
-  double time;      // [s]
-  Gap gap;          // at `time`; distance >= 0, and negative at the next representable time
-  double rate;      // [m/s], of the gap: n . (velocity of A's witness point - B's); negative when approaching
+  double time;  // [s]
+  Gap gap;      // at `time`; distance >= 0, and negative at the next representable time
+  // [m/s], of the gap: n . (velocity of A's witness point - B's); negative when approaching
+  double rate;
 };
 
 /// Conservative advancement by the bounds of time_bound.h to a bracket, then `options.root_finder`,
@@ -42,8 +44,10 @@ struct Impact {
 ///   be reported or not. Where solids slide along each other and 2000 advances do not reach t1, the
 ///   advances grow: then a grazing contact shallower than 1e-8 of the smaller solid's size may be
 ///   missed, and a corner clipped within one advance; a lasting overlap is never missed
-std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a, const CollisionShape& b, const Motion& motion_b,
-                                   double t0, double t1, const ImpactOptions& options = {}, ImpactCost* cost = nullptr);
+std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a,
+                                   const CollisionShape& b, const Motion& motion_b, double t0,
+                                   double t1, const ImpactOptions& options = {},
+                                   ImpactCost* cost = nullptr);
 
 /// Rate of change of a gap. [m/s]
 double gap_rate(const Gap& gap, const MotionState& a, const MotionState& b);

@@ -10,7 +10,8 @@
 namespace tumble::collision {
 namespace {
 
-constexpr double kRounding = 1e-14;   // relative to the query's size: error of a search against its limit
+// relative to the query's size: error of a search against its limit
+constexpr double kRounding = 1e-14;
 
 Gap flipped(Gap gap) {
   std::swap(gap.point_a_world, gap.point_b_world);
@@ -20,7 +21,8 @@ Gap flipped(Gap gap) {
 
 Gap gap_of_ellipsoid(const CollisionShape& a, const Pose& pose_a, const Pose& plane) {
   const Matrix3d rotation = pose_a.world_from_body.toRotationMatrix();
-  const Vector3d n = plane.world_from_body.toRotationMatrix().col(2), up_body = rotation.transpose() * n;
+  const Vector3d n = plane.world_from_body.toRotationMatrix().col(2),
+                 up_body = rotation.transpose() * n;
   Gap gap;
   gap.distance = n.dot(pose_a.com_world - plane.com_world) + lowest_height(*a.ellipsoid(), up_body);
   gap.normal_b_to_a_world = n;
@@ -46,7 +48,8 @@ Gap gap_to_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& p
   return gap;
 }
 
-Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                 const Pose& pose_b) {
   const Vector3d between = pose_a.com_world - pose_b.com_world;
   const double distance = between.norm();
   Gap gap;
@@ -57,7 +60,8 @@ Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionSha
   return gap;
 }
 
-Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query, const Vector3d& com_b_world, PairCache* cache) {
+Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query,
+                  const Vector3d& com_b_world, PairCache* cache) {
   const PolytopeGap best = nearest_pieces(query, kInfinity, cache, Points::kWanted).gap;
   Gap gap;
   gap.distance = best.distance - (a.radius() + b.radius());
@@ -67,40 +71,54 @@ Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query&
   return gap;
 }
 
-bool holds_some_point_of(const CollisionShape& outer, const Pose& outer_pose, const CollisionShape& inner, const Pose& inner_pose) {
+bool holds_some_point_of(const CollisionShape& outer, const Pose& outer_pose,
+                         const CollisionShape& inner, const Pose& inner_pose) {
   if (!outer.is_closed_surface() || inner.is_half_space()) return false;
-  const Vector3d point_world = inner_pose.com_world + inner_pose.world_from_body * inner.vertices()[0];
-  return outer.holds_point(outer_pose.world_from_body.conjugate() * (point_world - outer_pose.com_world));
+  const Vector3d point_world =
+      inner_pose.com_world + inner_pose.world_from_body * inner.vertices()[0];
+  return outer.holds_point(outer_pose.world_from_body.conjugate() *
+                           (point_world - outer_pose.com_world));
 }
 
 }  // namespace
 
-Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache) {
-  if (a.is_half_space() && b.is_half_space()) return {kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
+Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                const Pose& pose_b, PairCache* cache) {
+  if (a.is_half_space() && b.is_half_space())
+    return {kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
   if (b.is_half_space()) return gap_to_half_space(a, pose_a, pose_b);
   if (a.is_half_space()) return flipped(gap_to_half_space(b, pose_b, pose_a));
   if (a.is_ball() && b.is_ball()) return gap_of_balls(a, pose_a, b, pose_b);
   return gap_of_pieces(a, b, Query(a, pose_a, b, pose_b), pose_b.com_world, cache);
 }
 
-double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache, double limit) {
-  if (a.is_half_space() || b.is_half_space() || (a.is_ball() && b.is_ball())) return compute_gap(a, pose_a, b, pose_b).distance;
-  if (cache && cache->measured_at(pose_a, pose_b) && (cache->measured <= cache->measured_up_to || limit <= cache->measured_up_to)) return cache->measured;
+double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                    const Pose& pose_b, PairCache* cache, double limit) {
+  if (a.is_half_space() || b.is_half_space() || (a.is_ball() && b.is_ball()))
+    return compute_gap(a, pose_a, b, pose_b).distance;
+  if (cache && cache->measured_at(pose_a, pose_b) &&
+      (cache->measured <= cache->measured_up_to || limit <= cache->measured_up_to))
+    return cache->measured;
   const Query query(a, pose_a, b, pose_b);
-  const double radii = a.radius() + b.radius(), widened_limit = std::max(limit, 0.0) + radii + kRounding * query.size;
-  double distance = nearest_pieces(query, widened_limit, cache, Points::kUnwanted).gap.distance - radii;
+  const double radii = a.radius() + b.radius(),
+               widened_limit = std::max(limit, 0.0) + radii + kRounding * query.size;
+  double distance =
+      nearest_pieces(query, widened_limit, cache, Points::kUnwanted).gap.distance - radii;
   if (!(distance <= limit)) distance = std::nextafter(limit, kInfinity);
   if (cache) cache->note(pose_a, pose_b, distance, limit);
   return distance;
 }
 
-bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance) {
+bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                 const Pose& pose_b, double allowance) {
   if (gap_distance(a, pose_a, b, pose_b) < -allowance) return true;
   return holds_some_point_of(a, pose_a, b, pose_b) || holds_some_point_of(b, pose_b, a, pose_a);
 }
 
-double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
-  double scale = std::max(pose_a.com_world.cwiseAbs().maxCoeff(), pose_b.com_world.cwiseAbs().maxCoeff());
+double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                 const Pose& pose_b) {
+  double scale =
+      std::max(pose_a.com_world.cwiseAbs().maxCoeff(), pose_b.com_world.cwiseAbs().maxCoeff());
   if (!a.is_half_space()) scale += a.bounding_radius();
   if (!b.is_half_space()) scale += b.bounding_radius();
   return scale;

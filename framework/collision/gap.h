@@ -12,8 +12,8 @@ namespace tumble::collision {
 
 /// Two solids at one instant. World frame.
 struct Gap {
-  double distance;               // [m]; > 0 apart, 0 touching, < 0 overlapping
-  Vector3d point_a_world;        // witness points: the nearest points of the two surfaces [m]
+  double distance;         // [m]; > 0 apart, 0 touching, < 0 overlapping
+  Vector3d point_a_world;  // witness points: the nearest points of the two surfaces [m]
   Vector3d point_b_world;
   Vector3d normal_b_to_a_world;  // unit
 };
@@ -25,28 +25,35 @@ struct Gap {
 /// @param cache  of this pair, may be null: see pair_cache.h
 /// @return distance with an error of a few roundings of the solids' size and of the distance of
 ///   their centres. Infinite between two half-spaces.
-Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
+Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                const Pose& pose_b, PairCache* cache = nullptr);
 
 /// A cheap lower bound of the gap, by the bounding balls. [m]
-inline double least_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+inline double least_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                        const Pose& pose_b) {
   const Vector3d between = pose_a.com_world - pose_b.com_world;
-  if (b.is_half_space()) return (pose_b.world_from_body * Vector3d::UnitZ()).dot(between) - a.bounding_radius();
-  if (a.is_half_space()) return -(pose_a.world_from_body * Vector3d::UnitZ()).dot(between) - b.bounding_radius();
+  if (b.is_half_space())
+    return (pose_b.world_from_body * Vector3d::UnitZ()).dot(between) - a.bounding_radius();
+  if (a.is_half_space())
+    return -(pose_a.world_from_body * Vector3d::UnitZ()).dot(between) - b.bounding_radius();
   return between.norm() - a.bounding_radius() - b.bounding_radius();
 }
 /// The distance of compute_gap, equal to the last bit, but cheaper: without the witness points. [m]
 /// @param limit  larger distances need not be exact [m]
 /// @return the distance; where it is above the limit, a lower bound that is above the limit too
-double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr,
+double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                    const Pose& pose_b, PairCache* cache = nullptr,
                     double limit = std::numeric_limits<double>::infinity());
 
 /// Whether the interiors of two solids intersect, also when one lies entirely inside the other. For
 /// initial states.
 /// @param allowance  a penetration up to this depth counts as touching [m]
-bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance);
+bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                 const Pose& pose_b, double allowance);
 
 /// The length with which the rounding error of a gap scales: the solids' sizes and the distance of
 /// their centres. [m]
-double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b);
+double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                 const Pose& pose_b);
 
 }  // namespace tumble::collision

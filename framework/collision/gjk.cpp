@@ -11,11 +11,13 @@ namespace {
 // Where the sine between a triangle's sides is smaller, its plane is no more accurate than the
 // nearest point.
 constexpr double kSliver = 1e-6;
-constexpr int kMostIterations = 200;   // polytopes of a thousand vertices take about thirty
+constexpr int kMostIterations = 200;  // polytopes of a thousand vertices take about thirty
 
 bool holds(const Simplex& simplex, const DifferencePoint& point) {
   for (int i = 0; i < simplex.size; ++i)
-    if (simplex.points[i].vertex_a == point.vertex_a && simplex.points[i].vertex_b == point.vertex_b) return true;
+    if (simplex.points[i].vertex_a == point.vertex_a &&
+        simplex.points[i].vertex_b == point.vertex_b)
+      return true;
   return false;
 }
 
@@ -25,7 +27,8 @@ bool holds(const Simplex& simplex, const DifferencePoint& point) {
 void settle(const Vector3d& nearest, GjkResult& result) {
   const Simplex& s = result.simplex;
   if (s.size == 3) {
-    const Vector3d u = s.points[1].difference - s.points[0].difference, v = s.points[2].difference - s.points[0].difference;
+    const Vector3d u = s.points[1].difference - s.points[0].difference,
+                   v = s.points[2].difference - s.points[0].difference;
     const Vector3d across = u.cross(v);
     const double squared = across.squaredNorm();
     if (squared > kSliver * kSliver * u.squaredNorm() * v.squaredNorm()) {
@@ -41,7 +44,8 @@ void settle(const Vector3d& nearest, GjkResult& result) {
 
 }  // namespace
 
-DifferencePoint lowest_difference(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction) {
+DifferencePoint lowest_difference(const PlacedPolytope& a, const PlacedPolytope& b,
+                                  const Vector3d& direction) {
   const int i = a.lowest(direction), j = b.lowest(-direction);
   return {a.vertex(i) - b.vertex(j), i, j};
 }

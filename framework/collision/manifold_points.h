@@ -9,10 +9,10 @@
 namespace tumble::collision {
 
 struct ManifoldPoint {
-  Vector3d point_a_world;         // on A's surface [m]
-  Vector3d point_b_world;         // on B's surface, opposite along the normal [m]
-  Vector3d normal_b_to_a_world;   // unit
-  double gap;                     // along the normal [m]
+  Vector3d point_a_world;        // on A's surface [m]
+  Vector3d point_b_world;        // on B's surface, opposite along the normal [m]
+  Vector3d normal_b_to_a_world;  // unit
+  double gap;                    // along the normal [m]
 };
 
 /// Corners of the regions in which A and B are less than `reach` apart, each with its own gap.
@@ -24,7 +24,8 @@ struct ManifoldPoint {
 /// faces lie on each other the normal is that of a face, exact however small the gap.
 /// @param cache  of this pair, may be null: see pair_cache.h
 /// @return empty where the solids are farther apart than `reach`
-std::vector<ManifoldPoint> manifold_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach,
-                                   PairCache* cache = nullptr);
+std::vector<ManifoldPoint> manifold_points(const CollisionShape& a, const Pose& pose_a,
+                                           const CollisionShape& b, const Pose& pose_b,
+                                           double reach, PairCache* cache = nullptr);
 
 }  // namespace tumble::collision

@@ -17,11 +17,14 @@ struct MotionState {
 
 /// Bounds that hold during the whole interval.
 struct MotionBounds {
-  Vector3d acceleration_world = Vector3d::Zero();  // constant part of the centre's acceleration, exact [m/s^2]
-  double acceleration_deviation = 0.0;             // largest length of the rest of the acceleration [m/s^2]
-  double angular_speed = 0.0;                      // largest |omega| [rad/s]
-  double angular_acceleration = 0.0;               // largest |d omega/dt| [rad/s^2]
-  double angular_velocity_error = 0.0;             // largest |omega of the state - angular velocity of the path| (numerical paths) [rad/s]
+  // constant part of the centre's acceleration, exact [m/s^2]
+  Vector3d acceleration_world = Vector3d::Zero();
+  // largest length of the rest of the acceleration [m/s^2]
+  double acceleration_deviation = 0.0;
+  double angular_speed = 0.0;         // largest |omega| [rad/s]
+  double angular_acceleration = 0.0;  // largest |d omega/dt| [rad/s^2]
+  // largest |omega of the state - angular velocity of the path| (numerical paths) [rad/s]
+  double angular_velocity_error = 0.0;
 };
 
 struct Motion {

@@ -18,20 +18,26 @@ namespace tumble::collision {
 struct PairCache {
   struct Near {
     int piece_a, piece_b;
-    double distance;   // when the cache was filled [m]
+    double distance;  // when the cache was filled [m]
   };
-  std::vector<Near> near;                      // all pairs of pieces closer than `reach` when the cache was filled, sorted
-  double reach = -1.0;                         // [m]; negative: empty
-  Matrix3d a_from_b = Matrix3d::Identity();    // relative poses when the cache was filled
-  Vector3d b_in_a = Vector3d::Zero(), a_in_b = Vector3d::Zero();   // [m]
-  int served = 0, unused = 0;                  // queries answered from it; queries to wait until it is filled again
-  Vector3d apart_along_body_a = Vector3d::Zero();   // separating axis of two convex solids; zero: not known
-  double measured = 0.0, measured_up_to = -1.0;     // the last gap_distance and its limit [m]; limit < 0: none yet
-  Pose measured_a, measured_b;                      // the poses of the last gap_distance
+  // all pairs of pieces closer than `reach` when the cache was filled, sorted
+  std::vector<Near> near;
+  double reach = -1.0;                       // [m]; negative: empty
+  Matrix3d a_from_b = Matrix3d::Identity();  // relative poses when the cache was filled
+  Vector3d b_in_a = Vector3d::Zero(), a_in_b = Vector3d::Zero();  // [m]
+  // queries answered from it; queries to wait until it is filled again
+  int served = 0, unused = 0;
+  // separating axis of two convex solids; zero: not known
+  Vector3d apart_along_body_a = Vector3d::Zero();
+  // the last gap_distance and its limit [m]; limit < 0: none yet
+  double measured = 0.0, measured_up_to = -1.0;
+  Pose measured_a, measured_b;  // the poses of the last gap_distance
 
   /// Whether the last gap_distance was for exactly these poses.
   bool measured_at(const Pose& a, const Pose& b) const {
-    const auto same = [](const Pose& p, const Pose& q) { return p.com_world == q.com_world && p.world_from_body.coeffs() == q.world_from_body.coeffs(); };
+    const auto same = [](const Pose& p, const Pose& q) {
+      return p.com_world == q.com_world && p.world_from_body.coeffs() == q.world_from_body.coeffs();
+    };
     return measured_up_to >= 0.0 && same(a, measured_a) && same(b, measured_b);
   }
   void note(const Pose& a, const Pose& b, double distance, double limit) {

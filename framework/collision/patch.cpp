@@ -10,7 +10,7 @@ namespace {
 
 struct FlatPoint {
   Vector2d p;
-  int index;   // in the original list; -1: a new point
+  int index;  // in the original list; -1: a new point
 };
 using Polygon = InlineVector<FlatPoint, 16>;
 
@@ -39,7 +39,8 @@ Polygon distinct_of(const Polygon& sorted, double same) {
   Polygon distinct;
   for (const FlatPoint& q : sorted) {
     bool known = false;
-    for (int k = distinct.size() - 1; k >= 0 && q.p.x() - distinct[k].p.x() <= same && !known; --k) known = (q.p - distinct[k].p).norm() <= same;
+    for (int k = distinct.size() - 1; k >= 0 && q.p.x() - distinct[k].p.x() <= same && !known; --k)
+      known = (q.p - distinct[k].p).norm() <= same;
     if (!known) distinct.push_back(q);
   }
   return distinct;
@@ -65,7 +66,9 @@ Polygon hull_of(Polygon points) {
   std::sort(ordered.begin(), ordered.end(), comes_before);
   Polygon hull;
   const auto grow = [&](const FlatPoint& q, int base) {
-    while (hull.size() >= base + 2 && cross2(hull.back().p - hull[hull.size() - 2].p, q.p - hull.back().p) <= same * size) hull.shrink(hull.size() - 1);
+    while (hull.size() >= base + 2 &&
+           cross2(hull.back().p - hull[hull.size() - 2].p, q.p - hull.back().p) <= same * size)
+      hull.shrink(hull.size() - 1);
     hull.push_back(q);
   };
   for (const FlatPoint& q : ordered) grow(q, 0);
@@ -87,8 +90,10 @@ Polygon crossing_of_segments(const Polygon& a, const Polygon& b) {
   }
   // Parallel: the common segment.
   const double length = along_a.squaredNorm();
-  const double first = along_a.dot(b[0].p - a[0].p) / length, second = along_a.dot(b[1].p - a[0].p) / length;
-  const double low = std::clamp(std::min(first, second), 0.0, 1.0), high = std::clamp(std::max(first, second), 0.0, 1.0);
+  const double first = along_a.dot(b[0].p - a[0].p) / length,
+               second = along_a.dot(b[1].p - a[0].p) / length;
+  const double low = std::clamp(std::min(first, second), 0.0, 1.0),
+               high = std::clamp(std::max(first, second), 0.0, 1.0);
   crossing.push_back({a[0].p + low * along_a, -1});
   crossing.push_back({a[0].p + high * along_a, -1});
   return crossing;
@@ -106,7 +111,8 @@ Polygon clip(const Polygon& cut, const Polygon& window) {
       const FlatPoint &q = subject[k], &next = subject[(k + 1) % subject.size()];
       const double s = side(q), s_next = side(next);
       if (s >= 0) kept.push_back(q);
-      if ((s > 0 && s_next < 0) || (s < 0 && s_next > 0)) kept.push_back({q.p + (s / (s - s_next)) * (next.p - q.p), -1});
+      if ((s > 0 && s_next < 0) || (s < 0 && s_next > 0))
+        kept.push_back({q.p + (s / (s - s_next)) * (next.p - q.p), -1});
     }
     std::swap(subject, kept);
   }
@@ -119,7 +125,8 @@ Polygon shared_region(const Polygon& a, const Polygon& b) {
   if (b.size() == 2) return crossing_of_segments(a, b);
   Polygon region = clip(a, b);
   if (!region.empty()) return region;
-  Vector2d middle = Vector2d::Zero();  // they touch only at their boundaries, and rounding separates them
+  // they touch only at their boundaries, and rounding separates them
+  Vector2d middle = Vector2d::Zero();
   for (const FlatPoint& q : a) middle += q.p / static_cast<double>(a.size());
   region.push_back({middle, -1});
   return region;
@@ -127,20 +134,23 @@ Polygon shared_region(const Polygon& a, const Polygon& b) {
 
 // The facing part of a piece: the hull of its foremost vertices, projected along n. `side` is +1
 // for A, whose lowest vertices face B.
-Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side, double tolerance, double& height) {
+Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side,
+               double tolerance, double& height) {
   const Vector3d d = piece.in_body(side * n);
   double lowest;
   const int foremost = piece.polytope->lowest(d, lowest);
   const auto& vertices = piece.polytope->vertices;
   Polygon points;
   for (int i = 0; i < piece.size(); ++i)
-    if (i == foremost || d.dot(vertices[i]) <= lowest + tolerance) points.push_back({axes.flatten(piece.vertex(i)), -1});
+    if (i == foremost || d.dot(vertices[i]) <= lowest + tolerance)
+      points.push_back({axes.flatten(piece.vertex(i)), -1});
   height = side * lowest + n.dot(piece.translation);
   return hull_of(points);
 }
 
 template <class Add>
-void add_vertices_inside(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side, double tolerance, const Polygon& region, const Add& add) {
+void add_vertices_inside(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n,
+                         double side, double tolerance, const Polygon& region, const Add& add) {
   const Vector3d d = piece.in_body(side * n);
   double lowest;
   piece.polytope->lowest(d, lowest);
@@ -148,12 +158,14 @@ void add_vertices_inside(const PlacedPolytope& piece, const PlaneAxes& axes, con
     if (d.dot(piece.polytope->vertices[i]) > lowest + tolerance) continue;
     const Vector2d p = axes.flatten(piece.vertex(i));
     bool inside = true;
-    for (int k = 0; k < region.size() && inside; ++k) inside = cross2(region[(k + 1) % region.size()].p - region[k].p, p - region[k].p) > 0;
+    for (int k = 0; k < region.size() && inside; ++k)
+      inside = cross2(region[(k + 1) % region.size()].p - region[k].p, p - region[k].p) > 0;
     if (inside) add(p);
   }
 }
 
-Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneAxes& axes, const Vector3d& n, double tolerance, double& height) {
+Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneAxes& axes,
+                  const Vector3d& n, double tolerance, double& height) {
   double height_b;
   const Polygon of_a = facing(a, axes, n, 1.0, tolerance, height);
   if (of_a.size() == 1) return of_a;
@@ -165,19 +177,23 @@ Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneA
 class Slopes {
  public:
   explicit Slopes(double steepest) {
-    for (const Vector2d& corner : {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)}) corners_.push_back({steepest * corner, -1});
+    for (const Vector2d& corner :
+         {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)})
+      corners_.push_back({steepest * corner, -1});
     find_circle();
   }
   /// Keeps the slopes with  d . s <= room. @return whether any is left
   bool keep(const Vector2d& d, double room) {
     const double middle = d.dot(middle_) - room;
-    if (middle <= 0 && middle * middle >= square_ * d.squaredNorm()) return true;   // the whole circle
+    // the whole circle
+    if (middle <= 0 && middle * middle >= square_ * d.squaredNorm()) return true;
     Polygon kept;
     for (int k = 0; k < corners_.size(); ++k) {
       const FlatPoint &q = corners_[k], &next = corners_[(k + 1) % corners_.size()];
       const double over = d.dot(q.p) - room, over_next = d.dot(next.p) - room;
       if (over <= 0) kept.push_back(q);
-      if ((over < 0 && over_next > 0) || (over > 0 && over_next < 0)) kept.push_back({q.p + (over / (over - over_next)) * (next.p - q.p), -1});
+      if ((over < 0 && over_next > 0) || (over > 0 && over_next < 0))
+        kept.push_back({q.p + (over / (over - over_next)) * (next.p - q.p), -1});
     }
     corners_ = std::move(kept);
     if (corners_.empty()) return false;
@@ -195,7 +211,7 @@ class Slopes {
 
   Polygon corners_;
   Vector2d middle_;
-  double square_ = 0.0;   // of the radius
+  double square_ = 0.0;  // of the radius
 };
 
 // Whether all other points lie above some plane through point i: a slope s exists with
@@ -203,21 +219,25 @@ class Slopes {
 // The nearest points come first: they leave few slopes, which most other points allow without a
 // cut.
 // Points are sorted by height: of two with the same projection the first is the lower.
-bool lies_below_others(const Polygon& points, const std::vector<double>& heights, int i, double same, double tolerance, std::vector<std::pair<double, int>>& others) {
-  constexpr double kSteepest = 1e3;   // steeper planes are walls
+bool lies_below_others(const Polygon& points, const std::vector<double>& heights, int i,
+                       double same, double tolerance, std::vector<std::pair<double, int>>& others) {
+  constexpr double kSteepest = 1e3;  // steeper planes are walls
   constexpr std::ptrdiff_t kNearest = 8;
   others.clear();
   for (int j = 0; j < points.size(); ++j) {
     const double square = (points[j].p - points[i].p).squaredNorm();
-    if (square > same * same) others.emplace_back(square, j);
-    else if (j < i) return false;
+    if (square > same * same)
+      others.emplace_back(square, j);
+    else if (j < i)
+      return false;
   }
   const auto near = others.begin() + std::min(kNearest, static_cast<std::ptrdiff_t>(others.size()));
   std::nth_element(others.begin(), near, others.end());
   Slopes slopes(kSteepest);
   return std::all_of(others.begin(), others.end(), [&](const auto& other) {
     const std::size_t j = static_cast<std::size_t>(other.second);
-    return slopes.keep(points[other.second].p - points[i].p, heights[j] - heights[static_cast<std::size_t>(i)] - tolerance);
+    return slopes.keep(points[other.second].p - points[i].p,
+                       heights[j] - heights[static_cast<std::size_t>(i)] - tolerance);
   });
 }
 
@@ -238,12 +258,15 @@ Vector2d middle_of(const Polygon& hull) {
 
 }  // namespace
 
-Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double tolerance) {
+Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n,
+                      double tolerance) {
   const PlaneAxes axes(n);
   double height;
   Corners corners;
   const Polygon region = region_of(a, b, axes, n, tolerance, height);
-  const auto add = [&](const Vector2d& p) { corners.push_back(p.x() * axes.u + p.y() * axes.v + height * n); };
+  const auto add = [&](const Vector2d& p) {
+    corners.push_back(p.x() * axes.u + p.y() * axes.v + height * n);
+  };
   for (const FlatPoint& q : region) add(q.p);
   if (region.size() < 3) return corners;
   add_vertices_inside(a, axes, n, 1.0, tolerance, region, add);
@@ -251,7 +274,8 @@ Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Ve
   return corners;
 }
 
-Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double tolerance) {
+Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b,
+                                 const Vector3d& n, double tolerance) {
   const PlaneAxes axes(n);
   double height;
   const Vector2d middle = middle_of(hull_of(region_of(a, b, axes, n, tolerance, height)));
@@ -263,7 +287,9 @@ FlatHull flat_hull(const std::vector<Vector3d>& points, const Vector3d& n) {
   Polygon flat;
   for (const Vector3d& p : points) flat.push_back({axes.flatten(p - points[0]), -1});
   const Polygon hull = hull_of(flat);
-  const auto lift = [&](const Vector2d& p) -> Vector3d { return points[0] + p.x() * axes.u + p.y() * axes.v; };
+  const auto lift = [&](const Vector2d& p) -> Vector3d {
+    return points[0] + p.x() * axes.u + p.y() * axes.v;
+  };
   FlatHull result;
   for (const FlatPoint& q : hull) result.corners.push_back(lift(q.p));
   result.middle = lift(middle_of(hull));
@@ -279,14 +305,17 @@ InlineVector<int, 16> hull_corners(const Corners& points, const Vector3d& n) {
   return corners;
 }
 
-InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<double, 16>& heights, const Vector3d& n, double tolerance) {
+InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<double, 16>& heights,
+                                    const Vector3d& n, double tolerance) {
   const PlaneAxes axes(n);
   Polygon flat;
   for (int i = 0; i < points.size(); ++i) flat.push_back({axes.flatten(points[i] - points[0]), i});
   std::sort(flat.begin(), flat.end(), [&](const FlatPoint& p, const FlatPoint& q) {
-    return heights[p.index] != heights[q.index] ? heights[p.index] < heights[q.index] : p.index < q.index;
+    return heights[p.index] != heights[q.index] ? heights[p.index] < heights[q.index]
+                                                : p.index < q.index;
   });
-  Polygon renamed = flat;   // by place in the order of heights: of points that coincide the lowest counts
+  // by place in the order of heights: of points that coincide the lowest counts
+  Polygon renamed = flat;
   for (int i = 0; i < renamed.size(); ++i) renamed[i].index = i;
   InlineVector<int, 16> corners;
   std::vector<char> outer(static_cast<std::size_t>(flat.size()), 0);
@@ -300,7 +329,9 @@ InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<do
   for (const FlatPoint& q : flat) ordered.push_back(heights[q.index]);
   std::vector<std::pair<double, int>> others;
   for (int i = 0; i < flat.size(); ++i)
-    if (!outer[static_cast<std::size_t>(i)] && lies_below_others(flat, ordered, i, 1e-12 * size, tolerance, others)) corners.push_back(flat[i].index);
+    if (!outer[static_cast<std::size_t>(i)] &&
+        lies_below_others(flat, ordered, i, 1e-12 * size, tolerance, others))
+      corners.push_back(flat[i].index);
   return corners;
 }
 

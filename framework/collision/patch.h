@@ -14,10 +14,12 @@ using Corners = InlineVector<Vector3d, 16>;
 /// the normal; then vertices of either inside that region. At least one point.
 /// @param tolerance  a vertex belongs to the facing part up to this distance behind the foremost
 ///   one [m]
-Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a, double tolerance);
+Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b,
+                      const Vector3d& normal_b_to_a, double tolerance);
 
 /// The centroid of that region.
-Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a, double tolerance);
+Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b,
+                                 const Vector3d& normal_b_to_a, double tolerance);
 
 /// Corners of the convex hull of points in a plane, and its centroid: of its area, of its length,
 /// or the point itself.
@@ -36,6 +38,7 @@ InlineVector<int, 16> hull_corners(const Corners& points, const Vector3d& normal
 /// of points with the same projection the lowest counts.
 /// @param heights    along `normal`, by point [m]
 /// @param tolerance  a point less than this below the hull of the others is not a corner [m]
-InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<double, 16>& heights, const Vector3d& normal, double tolerance);
+InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<double, 16>& heights,
+                                    const Vector3d& normal, double tolerance);
 
 }  // namespace tumble::collision

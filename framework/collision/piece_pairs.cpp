@@ -25,17 +25,23 @@ double rounding(const Query& query) { return kRoundings * kEpsilon * query.size;
 class NodeDistance {
  public:
   explicit NodeDistance(const Query& query)
-      : nodes_a_(query.a.nodes()), nodes_b_(query.b.nodes()), a_from_b_(query.rotation_a.transpose() * query.rotation_b),
-        absolute_(a_from_b_.cwiseAbs()), offset_a_(query.rotation_a.transpose() * query.offset) {}
+      : nodes_a_(query.a.nodes()),
+        nodes_b_(query.b.nodes()),
+        a_from_b_(query.rotation_a.transpose() * query.rotation_b),
+        absolute_(a_from_b_.cwiseAbs()),
+        offset_a_(query.rotation_a.transpose() * query.offset) {}
 
   double operator()(int i, int j, double enough) const {
     const BallNode &a = nodes_a_[i], &b = nodes_b_[j];
-    const Vector3d between = offset_a_ + a.center_body - a_from_b_ * b.center_body;   // axes of A
+    const Vector3d between = offset_a_ + a.center_body - a_from_b_ * b.center_body;  // axes of A
     const double balls = between.norm() - a.radius - b.radius;
     if (balls > enough) return balls;
     // To the box with A's axes around B's box, and vice versa.
-    const Vector3d out_a = (between.cwiseAbs() - a.half_extents_body - absolute_ * b.half_extents_body).cwiseMax(0.0);
-    const Vector3d out_b = ((a_from_b_.transpose() * between).cwiseAbs() - b.half_extents_body - absolute_.transpose() * a.half_extents_body).cwiseMax(0.0);
+    const Vector3d out_a =
+        (between.cwiseAbs() - a.half_extents_body - absolute_ * b.half_extents_body).cwiseMax(0.0);
+    const Vector3d out_b = ((a_from_b_.transpose() * between).cwiseAbs() - b.half_extents_body -
+                            absolute_.transpose() * a.half_extents_body)
+                               .cwiseMax(0.0);
     return std::max(balls, std::sqrt(std::max(out_a.squaredNorm(), out_b.squaredNorm())));
   }
 
@@ -82,14 +88,17 @@ void visit(const Query& query, Reach&& reach, Visit&& visit_pair) {
 // Keeps the nearest of the pairs tested, independent of their order.
 class Nearest {
  public:
-  Nearest(const Query& query, double limit, Points points) : query_(query), limit_(limit), rounding_(rounding(query)), points_(points) {}
+  Nearest(const Query& query, double limit, Points points)
+      : query_(query), limit_(limit), rounding_(rounding(query)), points_(points) {}
 
   double reach() const { return std::max(std::min(limit_, best_.gap.distance), 0.0) + rounding_; }
   void test(int i, int j) {
-    const PolytopeGap found = polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach(), points_);
+    const PolytopeGap found =
+        polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach(), points_);
     if (found.beyond || found.distance > limit_) return;
     const bool first = std::pair(i, j) < std::pair(best_.piece_a, best_.piece_b);
-    if (found.distance < best_.gap.distance || (found.distance == best_.gap.distance && first)) best_ = {i, j, found};
+    if (found.distance < best_.gap.distance || (found.distance == best_.gap.distance && first))
+      best_ = {i, j, found};
   }
   const NearestPieces& best() const { return best_; }
 
@@ -103,13 +112,18 @@ class Nearest {
 // Bound on the decrease of any distance between points of the solids since the cache was filled.
 double moved_since(const Query& query, const PairCache& cache) {
   const Matrix3d a_from_b = query.rotation_a.transpose() * query.rotation_b;
-  const double turn = (a_from_b - cache.a_from_b).norm() / std::sqrt(2.0);   // largest |(R - R') x| / |x|
-  const double of_b = (query.rotation_a.transpose() * -query.offset - cache.b_in_a).norm() + turn * query.b.bounding_radius();
-  const double of_a = (query.rotation_b.transpose() * query.offset - cache.a_in_b).norm() + turn * query.a.bounding_radius();
+  // largest |(R - R') x| / |x|
+  const double turn = (a_from_b - cache.a_from_b).norm() / std::sqrt(2.0);
+  const double of_b = (query.rotation_a.transpose() * -query.offset - cache.b_in_a).norm() +
+                      turn * query.b.bounding_radius();
+  const double of_a = (query.rotation_b.transpose() * query.offset - cache.a_in_b).norm() +
+                      turn * query.a.bounding_radius();
   return std::min(of_a, of_b) + rounding(query);
 }
 
-bool one_pair(const Query& query) { return query.a.pieces().size() == 1 && query.b.pieces().size() == 1; }
+bool one_pair(const Query& query) {
+  return query.a.pieces().size() == 1 && query.b.pieces().size() == 1;
+}
 
 // Fills the cache, unless it did not pay the last time.
 void fill(const Query& query, double reach, PairCache& cache) {
@@ -123,16 +137,24 @@ void fill(const Query& query, double reach, PairCache& cache) {
     return;
   }
   const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
-  const double apart = reach - query.a.radius() - query.b.radius();   // pieces are cores without the rounding radius
+  // pieces are cores without the rounding radius
+  const double apart = reach - query.a.radius() - query.b.radius();
   cache.reach = reach + std::max(kSkin * size, 0.5 * apart);
   cache.served = 0;
   cache.near.clear();
   const double widened_reach = cache.reach + rounding(query);
-  visit(query, [&] { return widened_reach; }, [&](int i, int j) {
-    const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, widened_reach, Points::kUnwanted);
-    if (!gap.beyond && gap.distance <= widened_reach) cache.near.push_back({i, j, gap.distance});
-  });
-  std::sort(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return std::pair(p.piece_a, p.piece_b) < std::pair(q.piece_a, q.piece_b); });
+  visit(
+      query, [&] { return widened_reach; },
+      [&](int i, int j) {
+        const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size,
+                                             widened_reach, Points::kUnwanted);
+        if (!gap.beyond && gap.distance <= widened_reach)
+          cache.near.push_back({i, j, gap.distance});
+      });
+  std::sort(cache.near.begin(), cache.near.end(),
+            [](const PairCache::Near& p, const PairCache::Near& q) {
+              return std::pair(p.piece_a, p.piece_b) < std::pair(q.piece_a, q.piece_b);
+            });
   cache.a_from_b = query.rotation_a.transpose() * query.rotation_b;
   cache.b_in_a = query.rotation_a.transpose() * -query.offset;
   cache.a_in_b = query.rotation_b.transpose() * query.offset;
@@ -144,10 +166,13 @@ bool search_cache(const Query& query, double limit, PairCache& cache, Nearest& n
   if (cache.reach < 0) return false;
   const double moved = moved_since(query, cache), certain = cache.reach - moved;
   if (certain < 0) return false;
-  const auto first = std::min_element(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return p.distance < q.distance; });
+  const auto first = std::min_element(
+      cache.near.begin(), cache.near.end(),
+      [](const PairCache::Near& p, const PairCache::Near& q) { return p.distance < q.distance; });
   if (first != cache.near.end()) nearest.test(first->piece_a, first->piece_b);
   for (auto near = cache.near.begin(); near != cache.near.end(); ++near)
-    if (near != first && near->distance - moved <= nearest.reach()) nearest.test(near->piece_a, near->piece_b);
+    if (near != first && near->distance - moved <= nearest.reach())
+      nearest.test(near->piece_a, near->piece_b);
   return std::min(limit, nearest.best().gap.distance) + rounding(query) < certain;
 }
 
@@ -159,10 +184,12 @@ PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Point
   const double certain = std::max(limit, 0.0) + rounding(query);
   if (cache && !cache->apart_along_body_a.isZero(0.0)) {
     const Vector3d axis = query.rotation_a * cache->apart_along_body_a;
-    if (const double apart = separation_along(a, b, axis); apart > certain) return {apart, Vector3d::Zero(), Vector3d::Zero(), axis, true};
+    if (const double apart = separation_along(a, b, axis); apart > certain)
+      return {apart, Vector3d::Zero(), Vector3d::Zero(), axis, true};
   }
   const PolytopeGap gap = polytope_gap(a, b, query.size, limit, points);
-  if (cache) cache->apart_along_body_a = gap.beyond ? a.in_body(gap.normal_b_to_a) : Vector3d::Zero();
+  if (cache)
+    cache->apart_along_body_a = gap.beyond ? a.in_body(gap.normal_b_to_a) : Vector3d::Zero();
   return gap;
 }
 
@@ -176,9 +203,12 @@ NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache,
     ++cache->served;
     return nearest.best();
   }
-  visit(query, [&] { return nearest.reach(); }, [&](int i, int j) { nearest.test(i, j); });
-  const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius()), touch = query.a.radius() + query.b.radius();
-  if (cache && nearest.best().gap.distance < touch + kSkin * size) fill(query, std::max(nearest.best().gap.distance, touch), *cache);
+  visit(
+      query, [&] { return nearest.reach(); }, [&](int i, int j) { nearest.test(i, j); });
+  const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius()),
+               touch = query.a.radius() + query.b.radius();
+  if (cache && nearest.best().gap.distance < touch + kSkin * size)
+    fill(query, std::max(nearest.best().gap.distance, touch), *cache);
   return nearest.best();
 }
 
@@ -202,11 +232,12 @@ std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach,
   if (cache) {
     fill(query, reach, *cache);
     if (from_cache()) {
-      cache->served = 0;   // the query that filled it does not count
+      cache->served = 0;  // the query that filled it does not count
       return pairs;
     }
   }
-  visit(query, [&] { return widened_reach; }, [&](int i, int j) { pairs.emplace_back(i, j); });
+  visit(
+      query, [&] { return widened_reach; }, [&](int i, int j) { pairs.emplace_back(i, j); });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

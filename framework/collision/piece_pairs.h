@@ -17,13 +17,18 @@ struct Query {
   const CollisionShape& a;
   const CollisionShape& b;
   Matrix3d rotation_a, rotation_b;
-  Vector3d offset;   // centre of A minus centre of B [m]
-  double size;       // [m]
+  Vector3d offset;  // centre of A minus centre of B [m]
+  double size;      // [m]
 
-  Query(const CollisionShape& shape_a, const Pose& pose_a, const CollisionShape& shape_b, const Pose& pose_b)
-      : a(shape_a), b(shape_b), rotation_a(pose_a.world_from_body.toRotationMatrix()),
-        rotation_b(pose_b.world_from_body.toRotationMatrix()), offset(pose_a.com_world - pose_b.com_world),
-        size(offset.norm() + (a.is_half_space() ? 0.0 : a.bounding_radius()) + (b.is_half_space() ? 0.0 : b.bounding_radius())) {}
+  Query(const CollisionShape& shape_a, const Pose& pose_a, const CollisionShape& shape_b,
+        const Pose& pose_b)
+      : a(shape_a),
+        b(shape_b),
+        rotation_a(pose_a.world_from_body.toRotationMatrix()),
+        rotation_b(pose_b.world_from_body.toRotationMatrix()),
+        offset(pose_a.com_world - pose_b.com_world),
+        size(offset.norm() + (a.is_half_space() ? 0.0 : a.bounding_radius()) +
+             (b.is_half_space() ? 0.0 : b.bounding_radius())) {}
 
   PlacedPolytope piece_of_a(int i) const { return {&a.pieces()[i], rotation_a, offset}; }
   PlacedPolytope piece_of_b(int j) const { return {&b.pieces()[j], rotation_b, Vector3d::Zero()}; }
@@ -32,8 +37,9 @@ struct Query {
 /// The nearest pair of pieces; of equals, the first.
 /// @pre neither solid is a half-space
 struct NearestPieces {
-  int piece_a = -1, piece_b = -1;   // -1: all are farther apart than the limit
-  PolytopeGap gap{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
+  int piece_a = -1, piece_b = -1;  // -1: all are farther apart than the limit
+  PolytopeGap gap{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero(),
+                  Vector3d::UnitZ()};
 };
 /// @param limit  pairs farther apart are ignored [m]
 /// @param cache  may be null

@@ -35,7 +35,8 @@ void Polytope::prepare() {
 }
 
 int Polytope::lowest(const Vector3d& direction, double& height) const {
-  const Lanes x = {direction.x(), direction.x()}, y = {direction.y(), direction.y()}, z = {direction.z(), direction.z()};
+  const Lanes x = {direction.x(), direction.x()}, y = {direction.y(), direction.y()},
+              z = {direction.z(), direction.z()};
   const auto heights = [&](const Columns& c) { return c[0] * x + c[1] * y + c[2] * z; };
   // First the lowest height, then its index: four vertices at a time, with no data dependence
   // between iterations.
@@ -58,7 +59,7 @@ int Polytope::lowest(const Vector3d& direction, double& height) const {
     if (kept[k][0] == height) return static_cast<int>(2 * k);
     if (kept[k][1] == height) return static_cast<int>(2 * k + 1);
   }
-  return 0;   // all heights are NaN
+  return 0;  // all heights are NaN
 }
 
 int Polytope::lowest_of_many(const Vector3d& direction, double& height) const {

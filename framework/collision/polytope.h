@@ -12,18 +12,20 @@ namespace tumble::collision {
 
 /// The convex hull of a few points, with its possible separating axes. Body frame.
 struct Polytope {
-  std::vector<Vector3d> vertices;          // at least one [m]
-  std::vector<Vector3d> face_normals;      // unit, outward; a flat triangle has its two faces and its three sides
+  std::vector<Vector3d> vertices;  // at least one [m]
+  // unit, outward; a flat triangle has its two faces and its three sides
+  std::vector<Vector3d> face_normals;
   std::vector<Vector3d> edge_directions;   // unit, each direction once
   std::vector<std::pair<int, int>> edges;  // of vertices, each once
 
   // Computed from these by `prepare`.
   using Lanes = double __attribute__((vector_size(16)));
-  using Columns = std::array<Lanes, 3>;     // x, y and z of two vertices, for SIMD instructions
-  std::vector<Columns> columns;            // padded with the last vertex to a multiple of four
-  std::vector<double> arms;                // distance of each vertex from the origin [m]
-  std::vector<double> face_offsets;        // largest normal . vertex [m]
-  std::vector<int> first_neighbour;        // neighbours of vertex i: from first_neighbour[i] to first_neighbour[i + 1]
+  using Columns = std::array<Lanes, 3>;  // x, y and z of two vertices, for SIMD instructions
+  std::vector<Columns> columns;          // padded with the last vertex to a multiple of four
+  std::vector<double> arms;              // distance of each vertex from the origin [m]
+  std::vector<double> face_offsets;      // largest normal . vertex [m]
+  // neighbours of vertex i: from first_neighbour[i] to first_neighbour[i + 1]
+  std::vector<int> first_neighbour;
   std::vector<int> neighbours;
 
   void prepare();
@@ -43,7 +45,10 @@ struct PlacedPolytope {
 
   Vector3d vertex(int i) const { return query_from_body * polytope->vertices[i] + translation; }
   int size() const { return static_cast<int>(polytope->vertices.size()); }
-  Vector3d in_body(const Vector3d& d) const { return {query_from_body.col(0).dot(d), query_from_body.col(1).dot(d), query_from_body.col(2).dot(d)}; }
+  Vector3d in_body(const Vector3d& d) const {
+    return {query_from_body.col(0).dot(d), query_from_body.col(1).dot(d),
+            query_from_body.col(2).dot(d)};
+  }
   /// Index of the lowest vertex along a direction.
   int lowest(const Vector3d& direction) const {
     double height;
@@ -57,6 +62,7 @@ struct PlacedPolytope {
 };
 
 /// Separation along `n`: min over A of n.a minus max over B of n.b. [m]
-double separation_along(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a);
+double separation_along(const PlacedPolytope& a, const PlacedPolytope& b,
+                        const Vector3d& normal_b_to_a);
 
 }  // namespace tumble::collision

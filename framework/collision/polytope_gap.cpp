@@ -39,7 +39,8 @@ PolytopeGap from_simplex(const PlacedPolytope& a, const PlacedPolytope& b, const
   return gap;
 }
 
-PolytopeGap from_axis(const PlacedPolytope& a, const PlacedPolytope& b, const Axis& axis, double size, Points points) {
+PolytopeGap from_axis(const PlacedPolytope& a, const PlacedPolytope& b, const Axis& axis,
+                      double size, Points points) {
   PolytopeGap gap{axis.separation, Vector3d::Zero(), Vector3d::Zero(), axis.normal_b_to_a};
   if (points == Points::kUnwanted) return gap;
   gap.point_a = middle_of_facing_region(a, b, axis.normal_b_to_a, kFacing * size);
@@ -53,7 +54,8 @@ bool has_few_axes(const PlacedPolytope& a, const PlacedPolytope& b) {
 
 // For touching or overlapping solids. The nearest face of A - B is an upper bound of the
 // separation.
-Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& simplex, double size) {
+Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& simplex,
+                     double size) {
   if (has_few_axes(a, b)) return best_axis(a, b, size);
   if (const auto bound = expand(a, b, simplex, size)) {
     for (const double look : kSearchAngles) {
@@ -66,16 +68,19 @@ Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Sim
 
 }  // namespace
 
-PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit, Points points) {
+PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size,
+                         double limit, Points points) {
   const GjkResult found = gjk(a, b, size, limit);
-  if (found.verdict == Apartness::kBeyond) return {found.lower_bound, Vector3d::Zero(), Vector3d::Zero(), found.normal, true};
+  if (found.verdict == Apartness::kBeyond)
+    return {found.lower_bound, Vector3d::Zero(), Vector3d::Zero(), found.normal, true};
   if (found.verdict == Apartness::kApart) {
     const PolytopeGap gap = from_simplex(a, b, found);
     if (gap.distance > kNearZone * size) return gap;
     // Rounding error of the direction between the nearest points.
     const double angle = std::min(1e-2, std::max(1e-7, 16 * kEpsilon * size / gap.distance));
     const Axis axis = best_axis_near(a, b, gap.normal_b_to_a, angle, size);
-    if (axis.separation * (1 + 1e-9) + 16 * kEpsilon * size >= gap.distance) return from_axis(a, b, axis, size, points);
+    if (axis.separation * (1 + 1e-9) + 16 * kEpsilon * size >= gap.distance)
+      return from_axis(a, b, axis, size, points);
     // Corner against corner, or corner against edge: their distance lies along no axis of faces and
     // edges, so the GJK distance is used.
     if (gap.distance > kTrusted * size) return gap;

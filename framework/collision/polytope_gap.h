@@ -15,10 +15,13 @@ namespace tumble::collision {
 
 /// Signed distance and witness points.
 struct PolytopeGap {
-  double distance;        // > 0 apart; <= 0: largest separation over all axes, the negative penetration depth [m]
+  // > 0 apart; <= 0: largest separation over all axes, the negative penetration depth [m]
+  double distance;
   Vector3d point_a, point_b;
-  Vector3d normal_b_to_a; // unit
-  bool beyond = false;    // farther apart than the limit: `distance` is a lower bound, along the normal, and the points are not set
+  Vector3d normal_b_to_a;  // unit
+  // farther apart than the limit: `distance` is a lower bound, along the normal, and the points are
+  // not set
+  bool beyond = false;
 };
 
 enum class Points { kWanted, kUnwanted };
@@ -28,7 +31,8 @@ enum class Points { kWanted, kUnwanted };
 /// @param limit  larger distances need not be exact [m]
 /// Error: a few roundings of `size`.
 /// @param points whether the nearest points are needed too
-PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit = std::numeric_limits<double>::infinity(),
+PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size,
+                         double limit = std::numeric_limits<double>::infinity(),
                          Points points = Points::kWanted);
 
 }  // namespace tumble::collision

@@ -13,7 +13,9 @@ struct Part {
   Vector3d point;
 };
 
-Part corner(const Simplex& s, int i) { return {1, {i, 0, 0}, {1.0, 0.0, 0.0}, s.points[i].difference}; }
+Part corner(const Simplex& s, int i) {
+  return {1, {i, 0, 0}, {1.0, 0.0, 0.0}, s.points[i].difference};
+}
 
 Part nearest_on_segment(const Simplex& s, int i, int j) {
   const Vector3d& a = s.points[i].difference;
@@ -26,13 +28,15 @@ Part nearest_on_segment(const Simplex& s, int i, int j) {
   return {2, {i, j, 0}, {u, v, 0.0}, u * a + v * b};
 }
 
-// Ericson 5.1.5 with the query point at the origin: by the Voronoi regions of corners, then edges, then the face.
+// Ericson 5.1.5 with the query point at the origin: by the Voronoi regions of corners, then edges,
+// then the face.
 Part nearest_on_triangle(const Simplex& s, int i, int j, int k) {
   const Vector3d& a = s.points[i].difference;
   const Vector3d& b = s.points[j].difference;
   const Vector3d& c = s.points[k].difference;
   const Vector3d ab = b - a, ac = c - a;
-  const double d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c), d6 = -ac.dot(c);
+  const double d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c),
+               d6 = -ac.dot(c);
   if (d1 <= 0 && d2 <= 0) return corner(s, i);
   if (d3 >= 0 && d4 <= d3) return corner(s, j);
   if (d6 >= 0 && d5 <= d6) return corner(s, k);
@@ -83,7 +87,8 @@ Vector3d reduce_to_nearest(Simplex& simplex) {
   }
   // The indices of a tetrahedron's face may not ascend: copy the points before they are
   // overwritten.
-  const std::array<DifferencePoint, 3> kept{simplex.points[part.at[0]], simplex.points[part.at[1]], simplex.points[part.at[2]]};
+  const std::array<DifferencePoint, 3> kept{simplex.points[part.at[0]], simplex.points[part.at[1]],
+                                            simplex.points[part.at[2]]};
   simplex.size = part.size;
   for (int i = 0; i < part.size; ++i) {
     simplex.points[i] = kept[i];

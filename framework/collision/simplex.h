@@ -1,4 +1,5 @@
-/// The point of a simplex of up to four points that is nearest to the origin: the inner step of the GJK algorithm.
+/// The point of a simplex of up to four points that is nearest to the origin: the inner step of the
+/// GJK algorithm.
 #pragma once
 
 #include <array>
@@ -9,13 +10,13 @@ namespace tumble::collision {
 
 /// A corner of the Minkowski difference, and the vertices of A and B that it comes from.
 struct DifferencePoint {
-  Vector3d difference;   // a - b
+  Vector3d difference;  // a - b
   int vertex_a, vertex_b;
 };
 
 struct Simplex {
   std::array<DifferencePoint, 4> points;
-  std::array<double, 4> weights;   // barycentric, of the nearest point
+  std::array<double, 4> weights;  // barycentric, of the nearest point
   int size = 0;
 };
 

@@ -7,7 +7,7 @@
 namespace tumble::collision {
 namespace {
 
-constexpr int kLeaf = 4;   // boxes in a leaf: testing so few is faster than another split
+constexpr int kLeaf = 4;  // boxes in a leaf: testing so few is faster than another split
 
 struct Leaf {
   Vector3d low, high;
@@ -15,16 +15,19 @@ struct Leaf {
   bool can_move;
 };
 
-bool share_a_point(const Vector3d& low_a, const Vector3d& high_a, const Vector3d& low_b, const Vector3d& high_b) {
+bool share_a_point(const Vector3d& low_a, const Vector3d& high_a, const Vector3d& low_b,
+                   const Vector3d& high_b) {
   // All six comparisons without a branch, because a branch could not be predicted.
-  return (low_a.x() <= high_b.x()) & (low_b.x() <= high_a.x()) & (low_a.y() <= high_b.y()) & (low_b.y() <= high_a.y()) & (low_a.z() <= high_b.z()) & (low_b.z() <= high_a.z());
+  return (low_a.x() <= high_b.x()) & (low_b.x() <= high_a.x()) & (low_a.y() <= high_b.y()) &
+         (low_b.y() <= high_a.y()) & (low_a.z() <= high_b.z()) & (low_b.z() <= high_a.z());
 }
 
 // A tree of bounding boxes, rebuilt for each query: split in halves along the axis of largest
 // extent of the centres.
 class BoxTree {
  public:
-  BoxTree(std::vector<Leaf>& leaves, std::vector<std::pair<int, int>>& pairs) : leaves_(leaves), pairs_(pairs) {
+  BoxTree(std::vector<Leaf>& leaves, std::vector<std::pair<int, int>>& pairs)
+      : leaves_(leaves), pairs_(pairs) {
     if (leaves.empty()) return;
     nodes_.reserve(leaves.size());
     build(0, static_cast<int>(leaves.size()));
@@ -35,13 +38,13 @@ class BoxTree {
   struct Node {
     Vector3d low, high;
     int begin, end;
-    int second_child;   // 0: a leaf. The first child follows its parent
+    int second_child;  // 0: a leaf. The first child follows its parent
     bool can_move;
   };
 
   int build(int begin, int end) {
     Node node{leaves_[begin].low, leaves_[begin].high, begin, end, 0, false};
-    Vector3d first = node.low + node.high, last = first;   // twice the centres
+    Vector3d first = node.low + node.high, last = first;  // twice the centres
     for (int k = begin; k < end; ++k) {
       const Leaf& leaf = leaves_[k];
       node.low = node.low.cwiseMin(leaf.low);
@@ -58,14 +61,17 @@ class BoxTree {
     (last - first).maxCoeff(&axis);
     const int half = (begin + end) / 2;
     std::nth_element(leaves_.begin() + begin, leaves_.begin() + half, leaves_.begin() + end,
-                     [axis](const Leaf& a, const Leaf& b) { return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis]; });
+                     [axis](const Leaf& a, const Leaf& b) {
+                       return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis];
+                     });
     build(begin, half);
     nodes_[at].second_child = build(half, end);
     return at;
   }
 
   void offer(const Leaf& a, const Leaf& b) {
-    if ((a.can_move || b.can_move) && share_a_point(a.low, a.high, b.low, b.high)) pairs_.emplace_back(std::min(a.index, b.index), std::max(a.index, b.index));
+    if ((a.can_move || b.can_move) && share_a_point(a.low, a.high, b.low, b.high))
+      pairs_.emplace_back(std::min(a.index, b.index), std::max(a.index, b.index));
   }
 
   void within(int n) {
@@ -105,7 +111,8 @@ class BoxTree {
 
 // Counting sort by the first index, then an ordinary sort by the second: the pairs of one box are
 // few.
-std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& pairs, std::size_t n) {
+std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& pairs,
+                                        std::size_t n) {
   std::vector<int> place(n + 1, 0);
   for (const auto& pair : pairs) ++place[pair.first + 1];
   for (std::size_t i = 0; i < n; ++i) place[i + 1] += place[i];
@@ -114,7 +121,8 @@ std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& 
   for (std::size_t begin = 0; begin < result.size();) {
     std::size_t end = begin + 1;
     while (end < result.size() && result[end].first == result[begin].first) ++end;
-    std::sort(result.begin() + static_cast<std::ptrdiff_t>(begin), result.begin() + static_cast<std::ptrdiff_t>(end));
+    std::sort(result.begin() + static_cast<std::ptrdiff_t>(begin),
+              result.begin() + static_cast<std::ptrdiff_t>(end));
     begin = end;
   }
   return result;
@@ -131,14 +139,17 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& 
   std::vector<int> infinite;
   leaves.reserve(boxes.size());
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-    if (is_finite(boxes[i])) leaves.push_back({boxes[i].low, boxes[i].high, i, boxes[i].can_move});
-    else infinite.push_back(i);
+    if (is_finite(boxes[i]))
+      leaves.push_back({boxes[i].low, boxes[i].high, i, boxes[i].can_move});
+    else
+      infinite.push_back(i);
   }
   for (const int i : infinite)
     for (int j = 0; j < static_cast<int>(boxes.size()); ++j) {
       const SweptBox &a = boxes[i], &b = boxes[j];
       if (j == i || (j < i && !is_finite(b)) || !(a.can_move || b.can_move)) continue;
-      if (share_a_point(a.low, a.high, b.low, b.high)) pairs.emplace_back(std::min(i, j), std::max(i, j));
+      if (share_a_point(a.low, a.high, b.low, b.high))
+        pairs.emplace_back(std::min(i, j), std::max(i, j));
     }
   BoxTree(leaves, pairs);
   return sorted(pairs, boxes.size());

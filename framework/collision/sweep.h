@@ -10,8 +10,8 @@ namespace tumble::collision {
 
 /// Axis-aligned box around the volume that a body sweeps in a step. World frame.
 struct SweptBox {
-  Vector3d low, high;   // [m]
-  bool can_move;        // two bodies that cannot move are not a pair
+  Vector3d low, high;  // [m]
+  bool can_move;       // two bodies that cannot move are not a pair
 };
 
 /// Pairs (i, j), i < j, of overlapping or touching boxes, at least one of which can move; sorted.

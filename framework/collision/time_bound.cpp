@@ -12,7 +12,6 @@
 namespace tumble::collision {
 namespace {
 
-
 // One vertex of (E.1): height over the supporting plane, rate along the normal, and half the bound
 // on its acceleration.
 struct VertexLine {
@@ -23,23 +22,32 @@ struct VertexLine {
 using VertexLines = InlineVector<VertexLine, 32>;
 
 // Largest acceleration by rotation, per length of the arm. [1/s^2]
-double acceleration_by_rotation(const MotionBounds& bounds) { return bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error); }
+double acceleration_by_rotation(const MotionBounds& bounds) {
+  return bounds.angular_acceleration +
+         bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error);
+}
 
-// Lines of all vertices of a piece of a body. `side` is +1 for A (heights along n) and -1 for B (heights along -n).
-void collect_lines(const PlacedPolytope& piece, const MotionState& state, const MotionBounds& bounds, const Vector3d& n, double side, VertexLines& lines) {
+// Lines of all vertices of a piece of a body. `side` is +1 for A (heights along n) and -1 for B
+// (heights along -n).
+void collect_lines(const PlacedPolytope& piece, const MotionState& state,
+                   const MotionBounds& bounds, const Vector3d& n, double side, VertexLines& lines) {
   lines.clear();
   const Polytope& p = *piece.polytope;
   const double half_acceleration_of_arm = 0.5 * acceleration_by_rotation(bounds);
-  const Vector3d up = piece.in_body(side * n), turn = piece.in_body(side * n.cross(state.omega_world));  // n . (w x r) = (n x w) . r
+  // n . (w x r) = (n x w) . r
+  const Vector3d up = piece.in_body(side * n),
+                 turn = piece.in_body(side * n.cross(state.omega_world));
   double lowest;
   p.lowest(up, lowest);
   for (int i = 0; i < piece.size(); ++i)
-    lines.push_back({up.dot(p.vertices[i]) - lowest, turn.dot(p.vertices[i]) - bounds.angular_velocity_error * p.arms[i], half_acceleration_of_arm * p.arms[i]});
+    lines.push_back({up.dot(p.vertices[i]) - lowest,
+                     turn.dot(p.vertices[i]) - bounds.angular_velocity_error * p.arms[i],
+                     half_acceleration_of_arm * p.arms[i]});
 }
 
 double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
   double lowest = kInfinity;
-  line = lines.begin();   // kept where all heights are NaN
+  line = lines.begin();  // kept where all heights are NaN
   for (const VertexLine& candidate : lines) {
     const double value = candidate.at(t);
     if (value < lowest) {
@@ -56,15 +64,19 @@ double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
 double duration_of_lines(double gap, double rate, double half_acceleration, const VertexLines& a,
                          const VertexLines& b, double horizon) {
   if (a.size() == 1 && b.size() == 1) {
-    return std::min(horizon, first_root_of_quadratic(gap, rate + a[0].rate + b[0].rate, half_acceleration - a[0].half_acceleration - b[0].half_acceleration));
+    return std::min(horizon, first_root_of_quadratic(gap, rate + a[0].rate + b[0].rate,
+                                                     half_acceleration - a[0].half_acceleration -
+                                                         b[0].half_acceleration));
   }
   half_acceleration = std::min(half_acceleration, 0.0);
   double t = horizon;
   while (t > 0) {
     const VertexLine *va, *vb;
-    if (gap + lowest_at(a, t, va) + lowest_at(b, t, vb) + (rate + half_acceleration * t) * t > 0) return t;
-    const double root = first_root_of_quadratic(gap + va->height + vb->height, rate + va->rate + vb->rate,
-                                                half_acceleration - va->half_acceleration - vb->half_acceleration);
+    if (gap + lowest_at(a, t, va) + lowest_at(b, t, vb) + (rate + half_acceleration * t) * t > 0)
+      return t;
+    const double root =
+        first_root_of_quadratic(gap + va->height + vb->height, rate + va->rate + vb->rate,
+                                half_acceleration - va->half_acceleration - vb->half_acceleration);
     if (!(root < t)) return t;
     t = root;
   }
@@ -82,7 +94,7 @@ double duration_of_balls(const Vector3d& d, const Vector3d& u, double gap, doubl
 
 struct Relative {
   Vector3d velocity, acceleration;
-  double deviation, turning_reach;   // [m/s^2], [m/s]
+  double deviation, turning_reach;  // [m/s^2], [m/s]
 
   double reach(double t) const {
     return ((velocity.norm() + turning_reach) + 0.5 * (acceleration.norm() + deviation) * t) * t;
@@ -99,26 +111,31 @@ double first_root_of_quadratic(double g, double c, double q) {
   return (c + std::sqrt(discriminant)) / (-2 * q);
 }
 
-TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, const MotionBounds& bounds_a, const CollisionShape& b,
-                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon, PairCache* cache) {
-  if (a.is_half_space()) return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon, cache);
+TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
+                           const MotionBounds& bounds_a, const CollisionShape& b,
+                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon,
+                           PairCache* cache) {
+  if (a.is_half_space())
+    return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon, cache);
   const double radius = a.radius() + b.radius();
   if (a.is_ball() && b.is_ball() && bounds_a.acceleration_world == bounds_b.acceleration_world &&
       bounds_a.acceleration_deviation + bounds_b.acceleration_deviation == 0.0) {
     const Vector3d between = state_a.pose.com_world - state_b.pose.com_world;
     const double gap = between.norm() - radius;
-    const double duration = duration_of_balls(between, state_a.velocity_world - state_b.velocity_world, std::max(gap, 0.0), radius);
+    const double duration = duration_of_balls(
+        between, state_a.velocity_world - state_b.velocity_world, std::max(gap, 0.0), radius);
     return {std::min(horizon, duration), gap};
   }
   const Query query(a, state_a.pose, b, state_b.pose);
-  Relative relative{state_a.velocity_world - state_b.velocity_world, bounds_a.acceleration_world - bounds_b.acceleration_world,
+  Relative relative{state_a.velocity_world - state_b.velocity_world,
+                    bounds_a.acceleration_world - bounds_b.acceleration_world,
                     bounds_a.acceleration_deviation + bounds_b.acceleration_deviation, 0.0};
   TimeBound bound{horizon, kInfinity};
   VertexLines lines_a, lines_b;
   const auto along = [&](double gap, const Vector3d& n, const VertexLines& of_b) {
     const double half_acceleration = 0.5 * (n.dot(relative.acceleration) - relative.deviation);
-    const double duration =
-        duration_of_lines(std::max(gap, 0.0), n.dot(relative.velocity), half_acceleration, lines_a, of_b, bound.duration);
+    const double duration = duration_of_lines(std::max(gap, 0.0), n.dot(relative.velocity),
+                                              half_acceleration, lines_a, of_b, bound.duration);
     bound.duration = std::min(bound.duration, duration);
     bound.gap = std::min(bound.gap, gap);
   };
@@ -129,34 +146,43 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
       const Matrix3d body_from_world = query.rotation_a.transpose();
       const double arm = a.bounding_radius();
       bound.gap = gap_distance(a, state_a.pose, b, state_b.pose);
-      bound.duration = duration_of_ellipsoid(*a.ellipsoid(), body_from_world * n, body_from_world * n.cross(state_a.omega_world),
-                                             {std::max(bound.gap, 0.0), n.dot(relative.velocity) - bounds_a.angular_velocity_error * arm,
-                                              0.5 * (n.dot(relative.acceleration) - relative.deviation - acceleration_by_rotation(bounds_a) * arm)},
-                                             horizon);
+      bound.duration = duration_of_ellipsoid(
+          *a.ellipsoid(), body_from_world * n, body_from_world * n.cross(state_a.omega_world),
+          {std::max(bound.gap, 0.0),
+           n.dot(relative.velocity) - bounds_a.angular_velocity_error * arm,
+           0.5 * (n.dot(relative.acceleration) - relative.deviation -
+                  acceleration_by_rotation(bounds_a) * arm)},
+          horizon);
       return bound;
     }
-    collect_lines({&a.corners(), query.rotation_a, query.offset}, state_a, bounds_a, n, 1.0, lines_a);
-    lines_b.push_back({0.0, 0.0, 0.0});   // a half-space does not rotate
+    collect_lines({&a.corners(), query.rotation_a, query.offset}, state_a, bounds_a, n, 1.0,
+                  lines_a);
+    lines_b.push_back({0.0, 0.0, 0.0});  // a half-space does not rotate
     along(gap_distance(a, state_a.pose, b, state_b.pose), n, lines_b);
     return bound;
   }
   const double turning = 1.0 + 1e-12;  // the bounding radii are rounded
-  relative.turning_reach = turning * ((a.bounding_radius() - a.radius()) * (bounds_a.angular_speed + bounds_a.angular_velocity_error) +
-                                      (b.bounding_radius() - b.radius()) * (bounds_b.angular_speed + bounds_b.angular_velocity_error));
+  relative.turning_reach =
+      turning * ((a.bounding_radius() - a.radius()) *
+                     (bounds_a.angular_speed + bounds_a.angular_velocity_error) +
+                 (b.bounding_radius() - b.radius()) *
+                     (bounds_b.angular_speed + bounds_b.angular_velocity_error));
   const auto shorten_by_pair = [&](int i, int j, const PolytopeGap& found) {
     collect_lines(query.piece_of_a(i), state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
     collect_lines(query.piece_of_b(j), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
     along(found.distance - radius, found.normal_b_to_a, lines_b);
   };
   // The nearest pair first: the shorter its bound, the fewer other pairs can touch before.
-  const NearestPieces nearest = nearest_pieces(query, relative.reach(horizon) + radius, cache, Points::kUnwanted);
+  const NearestPieces nearest =
+      nearest_pieces(query, relative.reach(horizon) + radius, cache, Points::kUnwanted);
   if (nearest.piece_a < 0) return bound;
   shorten_by_pair(nearest.piece_a, nearest.piece_b, nearest.gap);
   if (!a.is_closed_surface() && !b.is_closed_surface()) return bound;
   for (const auto& [i, j] : pieces_within(query, relative.reach(bound.duration) + radius, cache)) {
     if (i == nearest.piece_a && j == nearest.piece_b) continue;
     const double limit = relative.reach(bound.duration) + radius;
-    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, limit, Points::kUnwanted);
+    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size,
+                                           limit, Points::kUnwanted);
     if (!found.beyond && found.distance <= limit) shorten_by_pair(i, j, found);
   }
   return bound;

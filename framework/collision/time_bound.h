@@ -2,7 +2,8 @@
 ///
 /// For a pair of convex pieces at the distance `gap` along the unit normal n (from B to A), every
 /// vertex a of A stays above every vertex b of B along the fixed direction n while
-///   gap + h_a + h_b + (n.u + n.(w_A x r_a) - n.(w_B x r_b)) tau + (n.a_rel - A_a - A_b) tau^2 / 2 > 0        (E.1)
+///   gap + h_a + h_b + (n.u + n.(w_A x r_a) - n.(w_B x r_b)) tau + (n.a_rel - A_a
+///       - A_b) tau^2 / 2 > 0                                                                 (E.1)
 /// where h are the heights of the vertices over the supporting planes, u and a_rel the relative
 /// velocity and acceleration of the centres, r the arms from them, and A = (|alpha| + |w| (|w| +
 /// e)) |r| the largest acceleration of a vertex by rotation. A numerical path rotates at w + e,
@@ -11,8 +12,8 @@
 /// solids that are not convex, every pair of pieces that can come near within the bound is tested.
 /// For an ellipsoid over a half-space, the support function covers all points of the surface at
 /// once (ellipsoid.h).
-/// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996, ch. 2, extended to
-/// arms of single vertices.
+/// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley
+/// 1996, ch. 2, extended to arms of single vertices.
 #pragma once
 
 #include "framework/collision/gap.h"
@@ -21,16 +22,21 @@
 namespace tumble::collision {
 
 struct TimeBound {
-  double duration;   // [s], in [0, horizon]: no contact before; exactly the horizon where none is possible before it
-  double gap;        // [m]: of the nearest pieces; infinite where all are too far apart to touch before the horizon
+  // [s], in [0, horizon]: no contact before; exactly the horizon where none is possible before it
+  double duration;
+  // [m]: of the nearest pieces; infinite where all are too far apart to touch before the horizon
+  double gap;
 };
 
 /// @param horizon  [s], >= 0: how far ahead to look; the motion bounds must hold that long
 /// @param cache    of this pair, may be null
-TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, const MotionBounds& bounds_a, const CollisionShape& b,
-                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon, PairCache* cache = nullptr);
+TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
+                           const MotionBounds& bounds_a, const CollisionShape& b,
+                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon,
+                           PairCache* cache = nullptr);
 
-/// First t >= 0 at which g + c t + q t^2 falls below zero, given g >= 0; infinite where it never does.
+/// First t >= 0 at which g + c t + q t^2 falls below zero, given g >= 0; infinite where it never
+/// does.
 double first_root_of_quadratic(double g, double c, double q);
 
 }  // namespace tumble::collision

@@ -14,7 +14,9 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-Matrix3d symmetric_root(const Matrix3d& matrix) { return Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix).operatorSqrt(); }
+Matrix3d symmetric_root(const Matrix3d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix).operatorSqrt();
+}
 
 VectorXd tridiagonal_eigenvalues(const VectorXd& diagonal, const VectorXd& beside) {
   Eigen::SelfAdjointEigenSolver<MatrixXd> solver;

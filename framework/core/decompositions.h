@@ -31,13 +31,15 @@ Matrix3d symmetric_root(const Matrix3d& matrix);
 MatrixXd pseudo_inverse(const MatrixXd& matrix);
 
 /// The X of least norm that minimises |A X - B|, (columns of A) x (columns of B).
-/// @param threshold  what is smaller, relative to the largest pivot, counts as zero; nothing: round-off of A's size
+/// @param threshold  what is smaller, relative to the largest pivot, counts as zero; nothing:
+///                   round-off of A's size
 MatrixXd least_squares(const MatrixXd& A, const MatrixXd& B, std::optional<double> threshold = {});
 
 /// The x with A x = b of a symmetric matrix, by L D L^T. Only the lower triangle is read.
 VectorXd solve_symmetric(const MatrixXd& A, const VectorXd& b);
 
-/// The eigenvalues, ascending, of the symmetric matrix (n,n) with this diagonal (n) and these numbers (n-1) beside it. Cost: O(n^2)
+/// The eigenvalues, ascending, of the symmetric matrix (n,n) with this diagonal (n) and these
+/// numbers (n-1) beside it. Cost: O(n^2)
 VectorXd tridiagonal_eigenvalues(const VectorXd& diagonal, const VectorXd& beside);
 
 }  // namespace tumble

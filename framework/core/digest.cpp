@@ -21,15 +21,18 @@ using Bytes = std::array<unsigned char, EVP_MAX_MD_SIZE>;
 class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) throw std::runtime_error("libcrypto has no SHA-256");
+    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
+      throw std::runtime_error("libcrypto has no SHA-256");
   }
   void add(std::string_view bytes) {
-    if (EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) != 1) throw std::runtime_error("SHA-256 failed");
+    if (EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) != 1)
+      throw std::runtime_error("SHA-256 failed");
   }
   std::string end() {
     Bytes bytes{};
     unsigned size = 0;
-    if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1) throw std::runtime_error("SHA-256 failed");
+    if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
+      throw std::runtime_error("SHA-256 failed");
     return hex({reinterpret_cast<const char*>(bytes.data()), size});
   }
 
@@ -58,24 +61,30 @@ std::string digest(std::string_view bytes) {
 
 std::string digest_of_file(const std::filesystem::path& file) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(file, failed)) return "missing";   // a pipe would wait for a writer
+  // a pipe would wait for a writer
+  if (!std::filesystem::is_regular_file(file, failed)) return "missing";
   std::ifstream in(file, std::ios::binary);
   if (!in) return "missing";
   Sha256 hash;
   std::array<char, 1 << 16> piece;
-  while (in.read(piece.data(), piece.size()) || in.gcount() > 0) hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
+  while (in.read(piece.data(), piece.size()) || in.gcount() > 0)
+    hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
   return in.bad() ? "missing" : hash.end();
 }
 
 std::string authentication_code(std::string_view key, std::string_view bytes) {
   Bytes code{};
   unsigned size = 0;
-  if (HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), code.data(), &size) == nullptr)
+  if (HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
+           reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), code.data(),
+           &size) == nullptr)
     throw std::runtime_error("libcrypto has no HMAC-SHA-256");
   return hex({reinterpret_cast<const char*>(code.data()), size});
 }
 
-bool is_same_code(std::string_view a, std::string_view b) { return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0; }
+bool is_same_code(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
 
 std::string random_bytes(std::size_t count) {
   std::string bytes(count, '\0');

@@ -12,7 +12,9 @@ namespace tumble {
 /// before a name can be relied on.
 class DisjointSets {
  public:
-  explicit DisjointSets(int size) : parent_(static_cast<std::size_t>(size)) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit DisjointSets(int size) : parent_(static_cast<std::size_t>(size)) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
 
   /// The smallest member of the set of i. Cost: O(log n), amortised (path halving)
   int find(int i) {

@@ -3,7 +3,8 @@
 namespace tumble {
 namespace {
 
-std::string sentence(const std::string& where, const std::string& problem, const std::string& remedy) {
+std::string sentence(const std::string& where, const std::string& problem,
+                     const std::string& remedy) {
   std::string text = where.empty() ? problem : where + ": " + problem;
   const bool is_ended = text.ends_with('.') || text.ends_with('?') || text.ends_with('!');
   if (!remedy.empty()) text += (is_ended ? " " : ". ") + remedy;

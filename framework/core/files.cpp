@@ -31,11 +31,13 @@ struct Draft {
 
 }  // namespace
 
-void make_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& make) {
+void make_whole(const std::filesystem::path& file,
+                const std::function<void(const std::filesystem::path&)>& make) {
   std::error_code failed;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failed);
   if (failed) throw cannot_write(file, failed.message());
-  const std::string name = '.' + file.stem().string() + ".draft" + std::to_string(::getpid()) + file.extension().string();
+  const std::string name = '.' + file.stem().string() + ".draft" + std::to_string(::getpid()) +
+                           file.extension().string();
   const Draft draft{file.parent_path() / name};
   make(draft.path);
   std::filesystem::rename(draft.path, file, failed);
@@ -64,12 +66,13 @@ void sweep_folders_of_the_dead(const std::filesystem::path& where, const std::st
     if (!folder.starts_with(name)) continue;
     char* rest = nullptr;
     const long maker = std::strtol(folder.c_str() + name.size(), &rest, 10);
-    if (maker <= 0 || *rest != '-' || ::kill(static_cast<pid_t>(maker), 0) == 0 || errno != ESRCH) continue;
+    if (maker <= 0 || *rest != '-' || ::kill(static_cast<pid_t>(maker), 0) == 0 || errno != ESRCH)
+      continue;
     // Neither a link nor locked: a maker in another container has a process id that does not exist
     // here, but it holds the lock.
     const int fd = ::open(it->path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd < 0) continue;
-    std::error_code ignored;   // a folder of another user cannot be removed, and stays
+    std::error_code ignored;  // a folder of another user cannot be removed, and stays
     if (::flock(fd, LOCK_EX | LOCK_NB) == 0) fs::remove_all(it->path(), ignored);
     ::close(fd);
   }
@@ -81,7 +84,9 @@ PrivateFolder::PrivateFolder() {
   static const bool swept = (sweep_folders_of_the_dead(where, kName), true);
   (void)swept;
   std::string name = (where / (kName + std::to_string(::getpid()) + "-XXXXXX")).string();
-  if (::mkdtemp(name.data()) == nullptr) throw UserError(where.string(), "no folder can be made there", "Free some space, or name another place in TMPDIR.");
+  if (::mkdtemp(name.data()) == nullptr)
+    throw UserError(where.string(), "no folder can be made there",
+                    "Free some space, or name another place in TMPDIR.");
   path_ = name;
   alive_ = hold_folder(path_);
 }
@@ -97,13 +102,17 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::optional<std::string> read_plain_file(const std::filesystem::path& file, std::uint64_t most_bytes, std::string& why) {
+std::optional<std::string> read_plain_file(const std::filesystem::path& file,
+                                           std::uint64_t most_bytes, std::string& why) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   struct stat about {};
   const bool opened = fd >= 0;
-  if (!opened) why = errno == ELOOP ? "is a link; hand in the file itself" : "cannot be read";
-  else if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) why = "is not a file";
-  else if (static_cast<std::uint64_t>(about.st_size) > most_bytes) why = "is larger than " + std::to_string(most_bytes >> 10) + " KiB";
+  if (!opened)
+    why = errno == ELOOP ? "is a link; hand in the file itself" : "cannot be read";
+  else if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode))
+    why = "is not a file";
+  else if (static_cast<std::uint64_t>(about.st_size) > most_bytes)
+    why = "is larger than " + std::to_string(most_bytes >> 10) + " KiB";
   std::string text(why.empty() ? static_cast<std::size_t>(about.st_size) : 0, '\0');
   std::size_t got = 0;
   while (got < text.size()) {

@@ -15,7 +15,8 @@ namespace tumble {
 /// reader sees the old file or the new one, never half of one. The draft keeps the file's
 /// extension. Creates missing folders; leaves no draft behind when `make` throws.
 /// @throws UserError when the file cannot be put in place, and whatever `make` throws
-void make_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& draft)>& make);
+void make_whole(const std::filesystem::path& file,
+                const std::function<void(const std::filesystem::path& draft)>& make);
 
 /// The same, for bytes in memory.
 /// @throws UserError when the file cannot be written
@@ -29,7 +30,8 @@ std::string text_of(const std::filesystem::path& file);
 /// @param why  [out] why the file is refused, to follow its name in a message: "is a link; hand in
 ///   the file itself"
 /// @return nothing where `why` was set
-std::optional<std::string> read_plain_file(const std::filesystem::path& file, std::uint64_t most_bytes, std::string& why);
+std::optional<std::string> read_plain_file(const std::filesystem::path& file,
+                                           std::uint64_t most_bytes, std::string& why);
 
 /// A folder that only this user can enter (mode 0700, an unpredictable name), removed with this
 /// object. It holds what two of our processes exchange: in a shared /tmp every user can write a
@@ -46,7 +48,9 @@ class PrivateFolder {
 
  private:
   std::filesystem::path path_;
-  int alive_ = -1;   // holds a lock on the folder, which the kernel releases when the last process that shares the descriptor ends
+  // holds a lock on the folder, which the kernel releases when the last process that shares the
+  // descriptor ends
+  int alive_ = -1;
 };
 
 /// Locks a folder of this process, so that sweep_folders_of_the_dead leaves it alone.

@@ -22,21 +22,21 @@ struct LargePages {
 
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
-    if (bytes < kPage) return static_cast<T*>(::operator new(bytes, std::align_val_t{alignof(T)}));
+    if (bytes < kPage) return static_cast<T*>(::operator new (bytes, std::align_val_t{alignof(T)}));
     const std::size_t whole = (bytes + kPage - 1) / kPage * kPage;
-    void* memory = ::operator new(whole, std::align_val_t{kPage});
-    madvise(memory, whole, MADV_HUGEPAGE);   // a request: where it is refused, pages are small
+    void* memory = ::operator new (whole, std::align_val_t{kPage});
+    madvise(memory, whole, MADV_HUGEPAGE);  // a request: where it is refused, pages are small
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
-    ::operator delete(memory, std::align_val_t{bytes < kPage ? alignof(T) : kPage});
+    ::operator delete (memory, std::align_val_t{bytes < kPage ? alignof(T) : kPage});
   }
 
   bool operator==(const LargePages&) const { return true; }
 
  private:
-  static constexpr std::size_t kPage = std::size_t{2} << 20;   // [bytes]
+  static constexpr std::size_t kPage = std::size_t{2} << 20;  // [bytes]
 };
 
 }  // namespace tumble

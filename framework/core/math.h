@@ -1,4 +1,5 @@
-/// The few Eigen names that every folder and every student's file uses. Core and Geometry only: they compile quickly.
+/// The few Eigen names that every folder and every student's file uses. Core and Geometry only:
+/// they compile quickly.
 #pragma once
 
 #include <limits>
@@ -15,6 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-inline constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();  // an unset number is loud
+// an unset number is loud
+inline constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace tumble

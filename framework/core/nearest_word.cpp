@@ -8,7 +8,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t corner = row[0];   // of the row above, one to the left
+    std::size_t corner = row[0];  // of the row above, one to the left
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t above = row[j];
@@ -27,8 +27,10 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     const bool is_cut = candidate.starts_with(word);
     const bool unit_differs = word.starts_with(candidate.substr(0, candidate.find('_')) + '_');
     const std::size_t letters = edit_distance(word, candidate);
-    const std::size_t distance = is_cut || unit_differs ? std::min<std::size_t>(letters, 1) : letters;
-    if (distance >= least || letters >= std::max(word.size(), candidate.size())) continue;   // nothing in common: not a typing error
+    const std::size_t distance =
+        is_cut || unit_differs ? std::min<std::size_t>(letters, 1) : letters;
+    // nothing in common: not a typing error
+    if (distance >= least || letters >= std::max(word.size(), candidate.size())) continue;
     least = distance;
     nearest = candidate;
   }

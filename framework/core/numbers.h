@@ -6,6 +6,7 @@
 namespace tumble {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();   // spacing of doubles at 1: 2.2e-16
+// spacing of doubles at 1: 2.2e-16
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace tumble

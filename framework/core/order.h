@@ -7,9 +7,10 @@
 namespace tumble {
 
 struct FittedOrder {
-  double order;      // p of  error ~ C h^p
-  double spread;     // between the two closest slopes behind the order: small where the order has settled
-  int pairs;         // number of slopes, at most 3
+  double order;  // p of  error ~ C h^p
+  // between the two closest slopes behind the order: small where the order has settled
+  double spread;
+  int pairs;  // number of slopes, at most 3
 };
 
 /// Slope of log(error) over log(h) at the fine end of a refinement sequence: the median over the
@@ -22,7 +23,9 @@ struct FittedOrder {
 ///   are not used
 /// @param largest  errors above it are not used
 /// @return nothing where no two neighbouring errors can be used
-/// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4 (numerical determination of the order).
-std::optional<FittedOrder> fit_order(const std::vector<double>& h, const std::vector<double>& error, double floor, double largest);
+/// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4 (numerical determination of
+/// the order).
+std::optional<FittedOrder> fit_order(const std::vector<double>& h, const std::vector<double>& error,
+                                     double floor, double largest);
 
 }  // namespace tumble

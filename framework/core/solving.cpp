@@ -5,7 +5,9 @@
 
 namespace tumble {
 
-MatrixXd pseudo_inverse(const MatrixXd& matrix) { return matrix.completeOrthogonalDecomposition().pseudoInverse(); }
+MatrixXd pseudo_inverse(const MatrixXd& matrix) {
+  return matrix.completeOrthogonalDecomposition().pseudoInverse();
+}
 
 MatrixXd least_squares(const MatrixXd& A, const MatrixXd& B, std::optional<double> threshold) {
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;

@@ -47,17 +47,19 @@ class StableTable {
   std::size_t taken() const { return count_ - free_.size(); }
 
  private:
-  static constexpr std::size_t kFirst = 64;   // a power of two
+  static constexpr std::size_t kFirst = 64;  // a power of two
   struct Where {
     std::size_t block, place;
   };
   // Block b holds kFirst 2^b entries, from number kFirst (2^b - 1) on.
   static Where where(std::size_t number) {
-    const std::size_t shifted = number + kFirst, block = static_cast<std::size_t>(std::bit_width(shifted) - std::bit_width(kFirst));
+    const std::size_t shifted = number + kFirst,
+                      block = static_cast<std::size_t>(std::bit_width(shifted) -
+                                                       std::bit_width(kFirst));
     return {block, shifted - (kFirst << block)};
   }
 
-  std::array<std::unique_ptr<Thing[]>, 26> blocks_;   // enough for every int
+  std::array<std::unique_ptr<Thing[]>, 26> blocks_;  // enough for every int
   std::vector<int> free_;
   std::size_t count_ = 0;
 };

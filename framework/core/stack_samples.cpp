@@ -23,37 +23,41 @@
 namespace tumble {
 namespace {
 
-constexpr int kDeepest = 64;                  // stack frames kept, from the innermost
-constexpr std::size_t kMostSamples = 1 << 15; // minutes of CPU time; later samples are dropped
-constexpr int kSignalFrames = 2;              // innermost frames, which belong to the signal's delivery
-constexpr suseconds_t kInterval_us = 1000;    // requested; the system rounds it up to its own tick
+constexpr int kDeepest = 64;                   // stack frames kept, from the innermost
+constexpr std::size_t kMostSamples = 1 << 15;  // minutes of CPU time; later samples are dropped
+// innermost frames, which belong to the signal's delivery
+constexpr int kSignalFrames = 2;
+constexpr suseconds_t kInterval_us = 1000;  // requested; the system rounds it up to its own tick
 
 struct Stack {
   int depth = 0;
   std::array<void*, kDeepest> functions;
 };
 
-// ---- Names of functions ----------------------------------------------------------------------------------------------------
+// ---- Names of functions -------------------------------------------------------------------------
 
 struct Function {
-  std::uintptr_t begin, end;   // as loaded
+  std::uintptr_t begin, end;  // as loaded
   std::string name;
 };
 
 // "void a::(unnamed)::f<b>(c)" is "a::f".
 std::string plain_name(const char* symbol) {
   int status = 0;
-  const std::unique_ptr<char, decltype(&std::free)> whole(abi::__cxa_demangle(symbol, nullptr, nullptr, &status), &std::free);
+  const std::unique_ptr<char, decltype(&std::free)> whole(
+      abi::__cxa_demangle(symbol, nullptr, nullptr, &status), &std::free);
   std::string name = status == 0 ? whole.get() : symbol;
   const std::string unnamed = "(anonymous namespace)::";
-  for (std::size_t at; (at = name.find(unnamed)) != std::string::npos;) name.erase(at, unnamed.size());
+  for (std::size_t at; (at = name.find(unnamed)) != std::string::npos;)
+    name.erase(at, unnamed.size());
   name.erase(std::min(name.find_first_of("(<"), name.size()));
   return name.substr(name.rfind(' ') + 1);
 }
 
 template <class Record>
 const Record* records(const std::string& file, std::size_t offset, std::size_t bytes) {
-  return offset + bytes <= file.size() ? reinterpret_cast<const Record*>(file.data() + offset) : nullptr;
+  return offset + bytes <= file.size() ? reinterpret_cast<const Record*>(file.data() + offset)
+                                       : nullptr;
 }
 
 // Functions of one ELF file, local ones included, sorted by address.
@@ -62,23 +66,33 @@ std::vector<Function> functions_of(const std::filesystem::path& path, std::uintp
   const std::string file((std::istreambuf_iterator<char>(in)), {});
   std::vector<Function> found;
   const auto* head = records<Elf64_Ehdr>(file, 0, sizeof(Elf64_Ehdr));
-  if (head == nullptr || std::memcmp(head->e_ident, ELFMAG, SELFMAG) != 0 || head->e_ident[EI_CLASS] != ELFCLASS64) return found;
-  const auto* sections = records<Elf64_Shdr>(file, head->e_shoff, std::size_t{head->e_shnum} * sizeof(Elf64_Shdr));
+  if (head == nullptr || std::memcmp(head->e_ident, ELFMAG, SELFMAG) != 0 ||
+      head->e_ident[EI_CLASS] != ELFCLASS64)
+    return found;
+  const auto* sections =
+      records<Elf64_Shdr>(file, head->e_shoff, std::size_t{head->e_shnum} * sizeof(Elf64_Shdr));
   if (sections == nullptr) return found;
   const std::uintptr_t shift = head->e_type == ET_DYN ? loaded_at : 0;
   for (int k = 0; k < head->e_shnum; ++k) {
     const Elf64_Shdr& table = sections[k];
-    if ((table.sh_type != SHT_SYMTAB && table.sh_type != SHT_DYNSYM) || table.sh_link >= head->e_shnum) continue;
+    if ((table.sh_type != SHT_SYMTAB && table.sh_type != SHT_DYNSYM) ||
+        table.sh_link >= head->e_shnum)
+      continue;
     const Elf64_Shdr& names = sections[table.sh_link];
     const auto* symbols = records<Elf64_Sym>(file, table.sh_offset, table.sh_size);
-    if (symbols == nullptr || records<char>(file, names.sh_offset, names.sh_size) == nullptr) continue;
+    if (symbols == nullptr || records<char>(file, names.sh_offset, names.sh_size) == nullptr)
+      continue;
     for (std::size_t i = 0; i < table.sh_size / sizeof(Elf64_Sym); ++i) {
       const Elf64_Sym& symbol = symbols[i];
-      if (ELF64_ST_TYPE(symbol.st_info) != STT_FUNC || symbol.st_size == 0 || symbol.st_name >= names.sh_size) continue;
-      found.push_back({shift + symbol.st_value, shift + symbol.st_value + symbol.st_size, file.data() + names.sh_offset + symbol.st_name});
+      if (ELF64_ST_TYPE(symbol.st_info) != STT_FUNC || symbol.st_size == 0 ||
+          symbol.st_name >= names.sh_size)
+        continue;
+      found.push_back({shift + symbol.st_value, shift + symbol.st_value + symbol.st_size,
+                       file.data() + names.sh_offset + symbol.st_name});
     }
   }
-  std::sort(found.begin(), found.end(), [](const Function& x, const Function& y) { return x.begin < y.begin; });
+  std::sort(found.begin(), found.end(),
+            [](const Function& x, const Function& y) { return x.begin < y.begin; });
   return found;
 }
 
@@ -87,16 +101,19 @@ std::vector<std::vector<Function>> functions_of_all() {
   dl_iterate_phdr(
       [](dl_phdr_info* info, std::size_t, void* to) {
         const bool is_program = info->dlpi_name[0] == '\0';
-        static_cast<std::vector<std::vector<Function>>*>(to)->push_back(functions_of(is_program ? "/proc/self/exe" : info->dlpi_name, info->dlpi_addr));
+        static_cast<std::vector<std::vector<Function>>*>(to)->push_back(
+            functions_of(is_program ? "/proc/self/exe" : info->dlpi_name, info->dlpi_addr));
         return 0;
       },
       &files);
   return files;
 }
 
-const Function* function_at(const std::vector<std::vector<Function>>& files, std::uintptr_t address) {
+const Function* function_at(const std::vector<std::vector<Function>>& files,
+                            std::uintptr_t address) {
   for (const auto& functions : files) {
-    auto after = std::upper_bound(functions.begin(), functions.end(), address, [](std::uintptr_t x, const Function& f) { return x < f.begin; });
+    auto after = std::upper_bound(functions.begin(), functions.end(), address,
+                                  [](std::uintptr_t x, const Function& f) { return x < f.begin; });
     if (after != functions.begin() && address < std::prev(after)->end) return &*std::prev(after);
   }
   return nullptr;
@@ -140,7 +157,8 @@ void set_timer(suseconds_t interval_us) {
 }  // namespace
 
 StackSamples::StackSamples() : stacks_(std::make_unique<Stacks>()) {
-  std::array<void*, 4> unused;   // the first call of backtrace loads a library, which a signal handler must not do
+  // the first call of backtrace loads a library, which a signal handler must not do
+  std::array<void*, 4> unused;
   backtrace(unused.data(), static_cast<int>(unused.size()));
 }
 
@@ -152,7 +170,7 @@ void StackSamples::begin() {
   require(writing.load() == nullptr, "only one StackSamples may take samples at a time");
   writing_at = &stacks_->taken;
   writing.store(&stacks_->all, std::memory_order_release);
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = take_sample;
   action.sa_flags = SA_RESTART;
   sigaction(SIGPROF, &action, nullptr);
@@ -165,22 +183,25 @@ void StackSamples::end() {
   writing.store(nullptr, std::memory_order_release);
 }
 
-StackSamples::Shares StackSamples::shares(const std::vector<Part>& parts, const std::vector<std::string>& without) const {
+StackSamples::Shares StackSamples::shares(const std::vector<Part>& parts,
+                                          const std::vector<std::string>& without) const {
   const auto files = functions_of_all();
   constexpr int kNone = -1, kLeftOut = -2;
-  std::map<void*, int> known;   // part by address
+  std::map<void*, int> known;  // part by address
   const auto part_at = [&](void* address, bool is_innermost) {
     const auto [place, is_new] = known.try_emplace(address, kNone);
     if (!is_new) return place->second;
     // A caller's frame holds its return address, which may already belong to the next function:
     // look one byte before it.
-    const Function* function = function_at(files, reinterpret_cast<std::uintptr_t>(address) - (is_innermost ? 0 : 1));
+    const Function* function =
+        function_at(files, reinterpret_cast<std::uintptr_t>(address) - (is_innermost ? 0 : 1));
     if (function == nullptr) return kNone;
     const std::string name = plain_name(function->name.c_str());
     if (matching_prefix(without, name) > 0) return place->second = kLeftOut;
     std::size_t longest = 0;
     for (std::size_t p = 0; p < parts.size(); ++p)
-      if (const std::size_t letters = matching_prefix(parts[p].functions, name); letters > longest) {
+      if (const std::size_t letters = matching_prefix(parts[p].functions, name);
+          letters > longest) {
         longest = letters;
         place->second = static_cast<int>(p);
       }
@@ -192,7 +213,9 @@ StackSamples::Shares StackSamples::shares(const std::vector<Part>& parts, const 
     const Stack& stack = stacks_->all[k];
     int part = kNone;
     for (int i = kSignalFrames; i < stack.depth && part != kLeftOut; ++i)
-      if (const int its = part_at(stack.functions[static_cast<std::size_t>(i)], i == kSignalFrames); its == kLeftOut || part == kNone) part = its;
+      if (const int its = part_at(stack.functions[static_cast<std::size_t>(i)], i == kSignalFrames);
+          its == kLeftOut || part == kNone)
+        part = its;
     if (part == kLeftOut) continue;
     ++shares.samples;
     (part == kNone ? shares.rest : shares.of_part[static_cast<std::size_t>(part)]) += 1.0;

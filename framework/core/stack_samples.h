@@ -2,7 +2,8 @@
 ///
 ///   StackSamples samples;
 ///   samples.begin();  work();  samples.end();
-///   const auto shares = samples.shares({{"search", {"tumble::collision::"}}, {"contacts", {"tumble::solve_contacts"}}}, {"tumble::build_world"});
+///   const auto shares = samples.shares({{"search", {"tumble::collision::"}}, {"contacts",
+///   {"tumble::solve_contacts"}}}, {"tumble::build_world"});
 ///
 /// The overhead is under one percent, and the profiled code needs no change; short functions can be
 /// measured that a clock around each call would distort. An inlined function counts as its caller.
@@ -31,9 +32,10 @@ class StackSamples {
     std::vector<std::string> functions;
   };
   struct Shares {
-    std::vector<double> of_part;   // share of the counted samples, by part; all 0 where there is no sample
-    double rest = 0.0;             // share in no part
-    std::size_t samples = 0;       // number of counted samples
+    // share of the counted samples, by part; all 0 where there is no sample
+    std::vector<double> of_part;
+    double rest = 0.0;        // share in no part
+    std::size_t samples = 0;  // number of counted samples
   };
 
   StackSamples();

@@ -1,5 +1,5 @@
-/// Lists of plain data, one for each type that is kept here. A scene and a world hold the entries of their effects in it without knowing one
-/// of these types: each effect keeps its own.
+/// Lists of plain data, one for each type that is kept here. A scene and a world hold the entries
+/// of their effects in it without knowing one of these types: each effect keeps its own.
 #pragma once
 
 #include <any>
@@ -15,7 +15,9 @@ class TypedLists {
   std::vector<Entry>& of() {
     for (List& list : lists_)
       if (list.type == typeid(Entry)) return *std::any_cast<std::vector<Entry>>(&list.entries);
-    lists_.push_back({typeid(Entry), std::vector<Entry>{}, [](const std::any& entries) { return std::any_cast<std::vector<Entry>>(&entries)->empty(); }});
+    lists_.push_back({typeid(Entry), std::vector<Entry>{}, [](const std::any& entries) {
+                        return std::any_cast<std::vector<Entry>>(&entries)->empty();
+                      }});
     return *std::any_cast<std::vector<Entry>>(&lists_.back().entries);
   }
   template <class Entry>
@@ -37,10 +39,10 @@ class TypedLists {
  private:
   struct List {
     std::type_index type;
-    std::any entries;                    // a vector of the type
+    std::any entries;  // a vector of the type
     bool (*is_empty)(const std::any&);
   };
-  std::vector<List> lists_;              // a handful: looking through all of them is quickest
+  std::vector<List> lists_;  // a handful: looking through all of them is quickest
 };
 
 }  // namespace tumble

@@ -25,16 +25,20 @@ inline Vector3d coulomb_projection(const Vector3d& z, double friction) {
 struct LocalContact {
   double w_nn = 0;
   Matrix3d w = Matrix3d::Zero();
-  double stiff_1 = 0, stiff_2 = 0;                            // eigenvalues of S = W_tt - w_tn w_tn^T / w_nn
-  double cosine = 1, sine = 0;                                // first eigenvector in the tangent plane
-  double coupling_1 = 0, coupling_2 = 0;                      // w_tn along the eigenvectors
-  double slide = 0;                                           // s of (C.5) in the last answer; 0: it did not slide
+  // eigenvalues of S = W_tt - w_tn w_tn^T / w_nn
+  double stiff_1 = 0, stiff_2 = 0;
+  // first eigenvector in the tangent plane
+  double cosine = 1, sine = 0;
+  double coupling_1 = 0, coupling_2 = 0;  // w_tn along the eigenvectors
+  // s of (C.5) in the last answer; 0: it did not slide
+  double slide = 0;
 };
 
 LocalContact prepare_local(const Matrix3d& w);
 
 /// The impulse p of a contact whose velocity is  W p + free  : (C.1) and (C.2) to round-off.
-///   sliding:  (W_tt + s I) p_t + w_tn p_n + free_t = 0,   v_n = 0,   |p_t| = mu p_n,   s >= 0                               (C.5)
+///   sliding:  (W_tt + s I) p_t + w_tn p_n + free_t = 0,   v_n = 0,   |p_t| = mu p_n,
+///       s >= 0                                                                               (C.5)
 /// One equation in s after p_n is eliminated; |p_t(s)| - mu p_n(s) changes its sign between 0 and a
 /// closed bound, so there is always an answer (with strong coupling up to three: the one that
 /// Newton's iteration, kept in the bracket, reaches from the last answer's s, which it leaves in

@@ -12,12 +12,13 @@
 namespace tumble::contacts {
 namespace {
 
-constexpr double kTie = 1e-9;   // of the problem's speed: a contact this near to opening or sliding is taken as closed, or sticking
+// of the problem's speed: a contact this near to opening or sliding is taken as closed, or sticking
+constexpr double kTie = 1e-9;
 
-/// delta, the compliance of a step over the inverse effective mass of the contact. A full step takes the error in the
-/// stiffest direction down by delta over the smallest eigenvalue of W (N^-4 in a stack of N); the
-/// rounding of the linear equations grows with 1 / delta. So it is lessened where steps are slow
-/// and the equations were solved well, and raised where they were not.
+/// delta, the compliance of a step over the inverse effective mass of the contact. A full step
+/// takes the error in the stiffest direction down by delta over the smallest eigenvalue of W (N^-4
+/// in a stack of N); the rounding of the linear equations grows with 1 / delta. So it is lessened
+/// where steps are slow and the equations were solved well, and raised where they were not.
 constexpr double kFirstFade = 1e-8, kLeastFade = 1e-11, kMostFade = 1e-4;
 
 /// dp = f - D dv: how one contact's impulse answers.
@@ -34,7 +35,8 @@ Response sticking_response(const ContactBlock& c, const Vector3d& v, double fade
 }
 
 /// Linearised p = P(p - v / r):  (I - (1 - delta) P') dp = F - P' dv / r,   F = P(z) - p.
-Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& v, double r, double fade, double tie) {
+Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& v, double r,
+                      double fade, double tie) {
   const Vector3d z = p - v / r;
   Response response{-p, Matrix3d::Zero()};
   if (z[0] < -tie) return response;  // open
@@ -64,7 +66,8 @@ class StepEquations {
  public:
   /// @param held  contacts that stick, where the others are open, whatever Coulomb's law has them
   /// do; null: the law. False where the matrix fails.
-  bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now, const std::vector<bool>* held = nullptr);
+  bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now,
+               const std::vector<bool>* held = nullptr);
   /// The change of all impulses, refined until what is left of the equations is small beside
   /// `violation`. True if it got so far.
   bool solve(const BodyMatrix& matrix, double violation, Impulses& change);
@@ -76,13 +79,14 @@ class StepEquations {
   const System* system_ = nullptr;
   double fade_ = 0;
   std::vector<Response> responses_;
-  std::vector<double> row_pushes_;           // f of the rows; their D is 1 / (fade give)
-  std::vector<Vector3d> rest_;               // what the equations still lack
+  std::vector<double> row_pushes_;  // f of the rows; their D is 1 / (fade give)
+  std::vector<Vector3d> rest_;      // what the equations still lack
   std::vector<double> row_rest_;
   std::vector<Vector6d> x_;
 };
 
-bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now, const std::vector<bool>* held) {
+bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matrix,
+                            const Impulses& now, const std::vector<bool>* held) {
   system_ = &system;
   fade_ = fade;
   responses_.assign(system.contacts.size(), Response{Vector3d::Zero(), Matrix3d::Zero()});
@@ -93,7 +97,9 @@ bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matri
     if (!(c.inverse_effective_mass > 0)) continue;
     const Vector3d v = contact_velocity(c, now.y);
     if (held && !(*held)[i]) continue;
-    responses_[i] = held ? sticking_response(c, v, fade) : law_response(c, now.contacts[i], v, c.inverse_effective_mass, fade, kTie * system.speed / c.inverse_effective_mass);
+    responses_[i] = held ? sticking_response(c, v, fade)
+                         : law_response(c, now.contacts[i], v, c.inverse_effective_mass, fade,
+                                        kTie * system.speed / c.inverse_effective_mass);
     if (responses_[i].d(0, 0) != 0) matrix.add(c, responses_[i].d);
   }
   for (std::size_t i = 0; i < row_pushes_.size(); ++i) {
@@ -112,9 +118,12 @@ void StepEquations::add_solution(const BodyMatrix& matrix, Impulses& change) {
   for (std::size_t i = 0; i < rest_.size(); ++i) push(system.contacts[i], rest_[i], x_);
   for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], row_rest_[i], x_);
   matrix.solve(x_);
-  for (std::size_t i = 0; i < rest_.size(); ++i) change.contacts[i] += rest_[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
+  for (std::size_t i = 0; i < rest_.size(); ++i)
+    change.contacts[i] += rest_[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
   for (std::size_t i = 0; i < row_rest_.size(); ++i)
-    if (system.rows[i].inverse_effective_mass > 0) change.rows[i] += row_rest_[i] - velocity_change(system.rows[i], x_) / (fade_ * system.rows[i].inverse_effective_mass);
+    if (system.rows[i].inverse_effective_mass > 0)
+      change.rows[i] += row_rest_[i] - velocity_change(system.rows[i], x_) /
+                                           (fade_ * system.rows[i].inverse_effective_mass);
 }
 
 /// rest := f - dp - D G G^T dp; returns its largest part as a velocity.
@@ -125,13 +134,16 @@ double StepEquations::renew_rest(const Impulses& change) {
   for (std::size_t i = 0; i < rest_.size(); ++i) push(system.contacts[i], change.contacts[i], x_);
   for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], change.rows[i], x_);
   for (std::size_t i = 0; i < rest_.size(); ++i) {
-    rest_[i] = responses_[i].f - change.contacts[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
-    largest = std::max(largest, fade_ * system.contacts[i].inverse_effective_mass * rest_[i].norm());
+    rest_[i] = responses_[i].f - change.contacts[i] -
+               responses_[i].d * velocity_change(system.contacts[i], x_);
+    largest =
+        std::max(largest, fade_ * system.contacts[i].inverse_effective_mass * rest_[i].norm());
   }
   for (std::size_t i = 0; i < row_rest_.size(); ++i) {
     if (!(system.rows[i].inverse_effective_mass > 0)) continue;
     const double stiffness = 1 / (fade_ * system.rows[i].inverse_effective_mass);
-    row_rest_[i] = row_pushes_[i] - change.rows[i] - stiffness * velocity_change(system.rows[i], x_);
+    row_rest_[i] =
+        row_pushes_[i] - change.rows[i] - stiffness * velocity_change(system.rows[i], x_);
     largest = std::max(largest, std::abs(row_rest_[i]) / stiffness);
   }
   return largest;
@@ -157,10 +169,12 @@ bool StepEquations::solve(const BodyMatrix& matrix, double violation, Impulses& 
 }
 
 /// impulses + share * change, back into the law's set.
-Impulses moved(const System& system, const Impulses& impulses, const Impulses& change, double share) {
+Impulses moved(const System& system, const Impulses& impulses, const Impulses& change,
+               double share) {
   Impulses next = impulses;
   for (std::size_t i = 0; i < next.contacts.size(); ++i) {
-    next.contacts[i] = coulomb_projection(impulses.contacts[i] + share * change.contacts[i], system.contacts[i].friction);
+    next.contacts[i] = coulomb_projection(impulses.contacts[i] + share * change.contacts[i],
+                                          system.contacts[i].friction);
   }
   for (std::size_t i = 0; i < next.rows.size(); ++i) next.rows[i] += share * change.rows[i];
   sum_impulses(system, next);
@@ -174,7 +188,8 @@ namespace {
 /// The impulses that hold these contacts, and all rows, in all directions, whatever they have to
 /// be. False where the equations cannot be solved.
 bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, Progress& trial) {
-  constexpr double kFade = 1e-6;   // not as small as later: nothing is known yet of how well these equations can be solved
+  // not as small as later: nothing is known yet of how well these equations can be solved
+  constexpr double kFade = 1e-6;
   constexpr int kMostSteps = 6;
   StepEquations equations;
   Impulses change;
@@ -182,16 +197,22 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
   for (int i = 0; i < kMostSteps; ++i) {
     double largest = 0;
     for (std::size_t k = 0; k < held.size(); ++k)
-      if (held[k]) largest = std::max(largest, contact_velocity(goal.system.contacts[k], trial.impulses.y).norm());
+      if (held[k])
+        largest =
+            std::max(largest, contact_velocity(goal.system.contacts[k], trial.impulses.y).norm());
     for (const RowBlock& row : goal.system.rows)
-      if (row.inverse_effective_mass > 0) largest = std::max(largest, std::abs(row_velocity(row, trial.impulses.y)));
+      if (row.inverse_effective_mass > 0)
+        largest = std::max(largest, std::abs(row_velocity(row, trial.impulses.y)));
     if (goal.accepts(trial.impulses, largest)) return true;
-    if (!(largest < 0.5 * before) || !equations.prepare(goal.system, kFade, matrix, trial.impulses, &held)) return false;
+    if (!(largest < 0.5 * before) ||
+        !equations.prepare(goal.system, kFade, matrix, trial.impulses, &held))
+      return false;
     before = largest;
     ++trial.factorisations;
     equations.solve(matrix, largest, change);
     for (std::size_t k = 0; k < held.size(); ++k) trial.impulses.contacts[k] += change.contacts[k];
-    for (std::size_t k = 0; k < goal.system.rows.size(); ++k) trial.impulses.rows[k] += change.rows[k];
+    for (std::size_t k = 0; k < goal.system.rows.size(); ++k)
+      trial.impulses.rows[k] += change.rows[k];
     sum_impulses(goal.system, trial.impulses);
   }
   return false;
@@ -202,10 +223,14 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
 bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
   constexpr int kMostRounds = 8;
   const System& system = goal.system;
-  const auto is_smooth = [](const ContactBlock& c) { return !c.is_frictional() && c.inverse_effective_mass > 0; };
+  const auto is_smooth = [](const ContactBlock& c) {
+    return !c.is_frictional() && c.inverse_effective_mass > 0;
+  };
   if (std::any_of(system.contacts.begin(), system.contacts.end(), is_smooth)) return false;
   std::vector<bool> held(system.contacts.size());
-  for (std::size_t i = 0; i < held.size(); ++i) held[i] = system.contacts[i].inverse_effective_mass > 0 && system.contacts[i].base[0] <= goal.violation;
+  for (std::size_t i = 0; i < held.size(); ++i)
+    held[i] = system.contacts[i].inverse_effective_mass > 0 &&
+              system.contacts[i].base[0] <= goal.violation;
   for (int round = 0; round < kMostRounds; ++round) {
     Progress trial;
     trial.impulses.contacts.assign(system.contacts.size(), Vector3d::Zero());
@@ -217,14 +242,20 @@ bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
     bool changed = false;
     for (std::size_t i = 0; i < held.size(); ++i) {
       const double v = contact_velocity(system.contacts[i], trial.impulses.y)[0];
-      const bool next = held[i] ? trial.impulses.contacts[i][0] >= 0 : system.contacts[i].inverse_effective_mass > 0 && v < -goal.violation;
+      const bool next = held[i]
+                            ? trial.impulses.contacts[i][0] >= 0
+                            : system.contacts[i].inverse_effective_mass > 0 && v < -goal.violation;
       changed = changed || next != held[i];
       held[i] = next;
     }
     if (changed) continue;
-    trial.impulses = moved(system, trial.impulses, Impulses{std::vector<Vector3d>(held.size(), Vector3d::Zero()), std::vector<double>(system.rows.size(), 0.0), {}}, 0.0);
+    trial.impulses = moved(system, trial.impulses,
+                           Impulses{std::vector<Vector3d>(held.size(), Vector3d::Zero()),
+                                    std::vector<double>(system.rows.size(), 0.0),
+                                    {}},
+                           0.0);
     goal.measure(trial);
-    if (!trial.accepted) return false;   // one leaves its cone
+    if (!trial.accepted) return false;  // one leaves its cone
     trial.sweeps = progress.sweeps;
     trial.factorisations = progress.factorisations;
     progress = std::move(trial);
@@ -234,10 +265,11 @@ bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
 }
 
 void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress) {
-  constexpr double kHelps = 0.5;      // a step that leaves more of the sum of squares is shortened
+  constexpr double kHelps = 0.5;  // a step that leaves more of the sum of squares is shortened
   constexpr double kShortest = 0.03;
-  constexpr double kSlow = 1e-4;      // of the sum of squares: a full step that leaves more may owe it to the fade
-  constexpr int kMostPoorSteps = 3;   // in a row
+  // of the sum of squares: a full step that leaves more may owe it to the fade
+  constexpr double kSlow = 1e-4;
+  constexpr int kMostPoorSteps = 3;  // in a row
   double fade = kFirstFade;
   StepEquations equations;
   Impulses change;

@@ -21,7 +21,8 @@ void sort_unique(std::vector<int>& list) {
 int least_degree(const std::vector<std::vector<int>>& neighbours, const std::vector<char>& open) {
   int best = -1;
   for (std::size_t i = 0; i < neighbours.size(); ++i)
-    if (open[i] && (best < 0 || neighbours[i].size() < neighbours[best].size())) best = static_cast<int>(i);
+    if (open[i] && (best < 0 || neighbours[i].size() < neighbours[best].size()))
+      best = static_cast<int>(i);
   return best;
 }
 
@@ -76,7 +77,8 @@ void BodyMatrix::find_order(std::vector<std::vector<int>> neighbours) {
   std::vector<char> open(neighbours.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = step_of_body_[i] == 0;
   std::vector<std::vector<int>> couples;  // by step, as bodies
-  for (int body = least_degree(neighbours, open); body >= 0; body = least_degree(neighbours, open)) {
+  for (int body = least_degree(neighbours, open); body >= 0;
+       body = least_degree(neighbours, open)) {
     open[body] = 0;
     step_of_body_[body] = static_cast<int>(body_of_step_.size());
     body_of_step_.push_back(body);
@@ -109,7 +111,8 @@ void BodyMatrix::set_identity() {
 void BodyMatrix::add_pair(int body_a, int body_b, const Block6& ab, const Block6& ba) {
   const int a = step_of_body_[body_a], b = step_of_body_[body_b];
   Column& column = columns_[std::min(a, b)];
-  const auto place = std::lower_bound(column.rows.begin(), column.rows.end(), std::max(a, b)) - column.rows.begin();
+  const auto place = std::lower_bound(column.rows.begin(), column.rows.end(), std::max(a, b)) -
+                     column.rows.begin();
   column.upper[place] += a < b ? ab : ba;
   column.lower[place] += a < b ? ba : ab;
 }
@@ -125,14 +128,16 @@ void BodyMatrix::add(const ContactBlock& contact, const Matrix3d& d) {
 template <int kRows>
 void BodyMatrix::add_product(const ContactBlock& contact, const Matrix3d& d) {
   using Tall = Eigen::Matrix<double, 6, kRows>;
-  const Tall g_a = contact.g_a.topRows<kRows>().transpose(), g_b = contact.g_b.topRows<kRows>().transpose();
+  const Tall g_a = contact.g_a.topRows<kRows>().transpose(),
+             g_b = contact.g_b.topRows<kRows>().transpose();
   const auto small = d.topLeftCorner<kRows, kRows>();
   if (contact.body_a != kFixed) {
     const Tall left = g_a.lazyProduct(small);
     columns_[step_of_body_[contact.body_a]].diagonal += left.lazyProduct(g_a.transpose());
     if (contact.body_b != kFixed) {
       const Tall right = g_b.lazyProduct(small);
-      add_pair(contact.body_a, contact.body_b, left.lazyProduct(g_b.transpose()), right.lazyProduct(g_a.transpose()));
+      add_pair(contact.body_a, contact.body_b, left.lazyProduct(g_b.transpose()),
+               right.lazyProduct(g_a.transpose()));
     }
   }
   if (contact.body_b == kFixed) return;
@@ -141,10 +146,13 @@ void BodyMatrix::add_product(const ContactBlock& contact, const Matrix3d& d) {
 }
 
 void BodyMatrix::add(const RowBlock& row, double d) {
-  if (row.body_a != kFixed) columns_[step_of_body_[row.body_a]].diagonal += d * row.g_a * row.g_a.transpose();
-  if (row.body_b != kFixed) columns_[step_of_body_[row.body_b]].diagonal += d * row.g_b * row.g_b.transpose();
+  if (row.body_a != kFixed)
+    columns_[step_of_body_[row.body_a]].diagonal += d * row.g_a * row.g_a.transpose();
+  if (row.body_b != kFixed)
+    columns_[step_of_body_[row.body_b]].diagonal += d * row.g_b * row.g_b.transpose();
   if (row.body_a != kFixed && row.body_b != kFixed)
-    add_pair(row.body_a, row.body_b, d * row.g_a * row.g_b.transpose(), d * row.g_b * row.g_a.transpose());
+    add_pair(row.body_a, row.body_b, d * row.g_a * row.g_b.transpose(),
+             d * row.g_b * row.g_a.transpose());
 }
 
 void BodyMatrix::eliminate(std::size_t step) {
@@ -154,7 +162,8 @@ void BodyMatrix::eliminate(std::size_t step) {
     const int row = column.rows[i];
     columns_[row].diagonal.noalias() -= column.lower[i] * column.upper[i];
   }
-  for (std::size_t j = 0; j < column.rows.size(); ++j) {  // blocks (row_i, row_j), i > j, and their mirror images
+  // blocks (row_i, row_j), i > j, and their mirror images
+  for (std::size_t j = 0; j < column.rows.size(); ++j) {
     Column& target = columns_[column.rows[j]];
     std::size_t place = 0;
     for (std::size_t i = j + 1; i < column.rows.size(); ++i) {
@@ -179,12 +188,14 @@ void BodyMatrix::solve(std::vector<Vector6d>& x) const {
   for (std::size_t step = 0; step < columns_.size(); ++step) {
     const Column& column = columns_[step];
     const Vector6d& here = x[body_of_step_[step]];
-    for (std::size_t i = 0; i < column.rows.size(); ++i) x[body_of_step_[column.rows[i]]].noalias() -= column.lower[i] * here;
+    for (std::size_t i = 0; i < column.rows.size(); ++i)
+      x[body_of_step_[column.rows[i]]].noalias() -= column.lower[i] * here;
   }
   for (std::size_t step = columns_.size(); step-- > 0;) {
     const Column& column = columns_[step];
     Vector6d here = x[body_of_step_[step]];
-    for (std::size_t i = 0; i < column.rows.size(); ++i) here.noalias() -= column.upper[i] * x[body_of_step_[column.rows[i]]];
+    for (std::size_t i = 0; i < column.rows.size(); ++i)
+      here.noalias() -= column.upper[i] * x[body_of_step_[column.rows[i]]];
     x[body_of_step_[step]].noalias() = column.diagonal * here;
   }
 }

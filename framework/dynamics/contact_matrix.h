@@ -38,12 +38,12 @@ class BodyMatrix {
   void add_pair(int body_a, int body_b, const Block6& ab, const Block6& ba);
   void eliminate(std::size_t step);
 
-  struct Column {                    // of one step of the elimination
-    Block6 diagonal;                 // after factorise(): its inverse
-    std::vector<int> rows;           // later steps that it couples to, ascending
+  struct Column {                      // of one step of the elimination
+    Block6 diagonal;                   // after factorise(): its inverse
+    std::vector<int> rows;             // later steps that it couples to, ascending
     std::vector<Block6> lower, upper;  // blocks (rows[i], step) and (step, rows[i])
   };
-  std::vector<int> step_of_body_;    // -1: not in the matrix
+  std::vector<int> step_of_body_;  // -1: not in the matrix
   std::vector<int> body_of_step_;
   std::vector<Column> columns_;
 };

@@ -3,15 +3,17 @@
 ///
 /// Three, which take turns, and before them `stick`:
 /// - `finish`: semismooth Newton on Coulomb's law itself, p = P(p - v / r) for all contacts, r =
-///   inverse effective mass. Near the answer its error squares at each step; far from it, it may wander, so a step
-///   that does not lessen the violation ends it. With the modes found (open, stick, slide) the
-///   equations of redundant contacts are singular; a compliance delta r keeps them regular and
-///   fades as the steps repeat (a proximal method), so that nothing of it stays in the answer.
+///   inverse effective mass. Near the answer its error squares at each step; far from it, it may
+///   wander, so a step that does not lessen the violation ends it. With the modes found (open,
+///   stick, slide) the equations of redundant contacts are singular; a compliance delta r keeps
+///   them regular and fades as the steps repeat (a proximal method), so that nothing of it stays in
+///   the answer.
 /// - `soften`: with De Saxce's shift g_i = mu |v_t,i| held, the law is convex: p in the friction
 ///   cone K, v + g n in its dual. With a compliance eps its velocities minimise
-///     1/2 |y|^2 + sum eps_i / 2 |Pi_K(p_i - (v_i(y) + g_i n) / eps_i)|^2                                             (C.6)
-///   a smooth convex function: Newton's method with an exact line search gets there from anywhere. Then p := Pi_K(..), g := mu |v_t|, and
-///   again with less compliance (an augmented Lagrangian with Cadoux's fixed point on g).
+///     1/2 |y|^2 + sum eps_i / 2 |Pi_K(p_i - (v_i(y) + g_i n) / eps_i)|^2                     (C.6)
+///   a smooth convex function: Newton's method with an exact line search gets there from anywhere.
+///   Then p := Pi_K(..), g := mu |v_t|, and again with less compliance (an augmented Lagrangian
+///   with Cadoux's fixed point on g).
 /// - `follow`: contacts with compliance eps obey  y = sum G_i^T P(-v_i(y) / (eps_i))  (C.7),  which
 ///   has an answer for any eps, an easy one where eps is large; from there to small eps along the
 ///   path of answers. Where sliding contacts jam each other the fixed point on g does not settle;
@@ -32,7 +34,7 @@ namespace tumble::contacts {
 /// What an iteration works on and what it has reached.
 struct Progress {
   Impulses impulses;
-  Violation violation;                                        // of the impulses
+  Violation violation;  // of the impulses
   bool accepted = false;
   int sweeps = 0, factorisations = 0;
 };
@@ -40,8 +42,10 @@ struct Progress {
 /// When it is good enough.
 struct Goal {
   const System& system;
-  double violation = 0;                                       // [m/s]
-  bool accepts(const Impulses& impulses, double now) const { return now <= violation || now <= rounding_floor(system, impulses); }
+  double violation = 0;  // [m/s]
+  bool accepts(const Impulses& impulses, double now) const {
+    return now <= violation || now <= rounding_floor(system, impulses);
+  }
   /// Measures what `progress` has reached.
   void measure(Progress& progress) const {
     progress.violation = measure_violation(system, progress.impulses);

@@ -47,7 +47,8 @@ ConeProjection project_on_law(const Vector3d& z, double mu) {
   } else if (mu > 0) {
     const Vector2d t = z.tail<2>() / length;
     result.slope.block<2, 1>(1, 0) = mu * t;
-    result.slope.block<2, 2>(1, 1) = radius / length * (Eigen::Matrix2d::Identity() - t * t.transpose());
+    result.slope.block<2, 2>(1, 1) =
+        radius / length * (Eigen::Matrix2d::Identity() - t * t.transpose());
   }
   return result;
 }
@@ -55,10 +56,11 @@ ConeProjection project_on_law(const Vector3d& z, double mu) {
 /// The problem (C.6), or with `law` (C.7), and its derivatives at y.
 struct SoftProblem {
   const System& system;
-  const Impulses& before;            // p_i
-  std::vector<double> shifts;        // g_i
-  double compliance;                 // eps over give
-  bool law = false;                  // (C.7): project on Coulomb's law instead of the cone; no shifts
+  const Impulses& before;      // p_i
+  std::vector<double> shifts;  // g_i
+  double compliance;           // eps over give
+  // (C.7): project on Coulomb's law instead of the cone; no shifts
+  bool law = false;
 
   Vector3d argument(std::size_t i, const std::vector<Vector6d>& y) const {
     const ContactBlock& c = system.contacts[i];
@@ -67,12 +69,14 @@ struct SoftProblem {
     return before.contacts[i] - v / (compliance * c.inverse_effective_mass);
   }
   double row_argument(std::size_t i, const std::vector<Vector6d>& y) const {
-    return before.rows[i] - row_velocity(system.rows[i], y) / (compliance * system.rows[i].inverse_effective_mass);
+    return before.rows[i] -
+           row_velocity(system.rows[i], y) / (compliance * system.rows[i].inverse_effective_mass);
   }
 
   ConeProjection project(std::size_t i, const std::vector<Vector6d>& y) const {
     const Vector3d z = argument(i, y);
-    return law ? project_on_law(z, system.contacts[i].friction) : project_on_cone(z, system.contacts[i].friction);
+    return law ? project_on_law(z, system.contacts[i].friction)
+               : project_on_cone(z, system.contacts[i].friction);
   }
 
   /// y - sum G^T Pi(z); with a matrix, its derivative too.
@@ -84,7 +88,8 @@ struct SoftProblem {
       if (!(c.inverse_effective_mass > 0)) continue;
       const ConeProjection projection = project(i, y);
       if (projection.p[0] > 0) push(c, -projection.p, result);
-      if (matrix && projection.p[0] > 0) matrix->add(c, projection.slope / (compliance * c.inverse_effective_mass));
+      if (matrix && projection.p[0] > 0)
+        matrix->add(c, projection.slope / (compliance * c.inverse_effective_mass));
     }
     for (std::size_t i = 0; i < system.rows.size(); ++i) {
       const RowBlock& row = system.rows[i];
@@ -102,7 +107,8 @@ double dot(const std::vector<Vector6d>& a, const std::vector<Vector6d>& b) {
   return sum;
 }
 
-std::vector<Vector6d> along(const std::vector<Vector6d>& y, double share, const std::vector<Vector6d>& direction) {
+std::vector<Vector6d> along(const std::vector<Vector6d>& y, double share,
+                            const std::vector<Vector6d>& direction) {
   std::vector<Vector6d> result = y;
   for (std::size_t i = 0; i < y.size(); ++i) result[i] += share * direction[i];
   return result;
@@ -110,10 +116,13 @@ std::vector<Vector6d> along(const std::vector<Vector6d>& y, double share, const 
 
 /// The step along `direction` at which the slope of (C.6), rising from `slope_0` < 0, has nearly
 /// gone. Bracketed secants (Illinois).
-double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y, const std::vector<Vector6d>& direction, double slope_0) {
+double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y,
+                   const std::vector<Vector6d>& direction, double slope_0) {
   constexpr double kSmall = 0.1;
   constexpr int kMost = 30;
-  const auto slope = [&](double share) { return dot(problem.gradient(along(y, share, direction), nullptr), direction); };
+  const auto slope = [&](double share) {
+    return dot(problem.gradient(along(y, share, direction), nullptr), direction);
+  };
   double low = 0, high = 1, at_low = slope_0, at_high = slope(1);
   if (at_high <= kSmall * std::abs(slope_0)) return 1;
   double share = 1;
@@ -135,12 +144,15 @@ double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y, c
 }
 
 /// The impulses that belong to y become those of `progress`.
-void take_over(const SoftProblem& problem, const std::vector<Vector6d>& y, const Goal& goal, Progress& progress) {
+void take_over(const SoftProblem& problem, const std::vector<Vector6d>& y, const Goal& goal,
+               Progress& progress) {
   Impulses next = progress.impulses;
   for (std::size_t i = 0; i < next.contacts.size(); ++i)
-    if (problem.system.contacts[i].inverse_effective_mass > 0) next.contacts[i] = problem.project(i, y).p;
+    if (problem.system.contacts[i].inverse_effective_mass > 0)
+      next.contacts[i] = problem.project(i, y).p;
   for (std::size_t i = 0; i < next.rows.size(); ++i)
-    if (problem.system.rows[i].inverse_effective_mass > 0) next.rows[i] = problem.row_argument(i, y);
+    if (problem.system.rows[i].inverse_effective_mass > 0)
+      next.rows[i] = problem.row_argument(i, y);
   sum_impulses(problem.system, next);
   progress.impulses = std::move(next);
   goal.measure(progress);
@@ -150,12 +162,16 @@ void take_over(const SoftProblem& problem, const std::vector<Vector6d>& y, const
 
 bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress) {
   constexpr int kMostSteps = 40;
-  constexpr double kSmall = 1e-6;  // gradient over the size of y: the rounds that follow renew the problem anyway
+  // gradient over the size of y: the rounds that follow renew the problem anyway
+  constexpr double kSmall = 1e-6;
   const System& system = goal.system;
-  SoftProblem problem{system, progress.impulses, std::vector<double>(system.contacts.size(), 0.0), compliance_over_give};
+  SoftProblem problem{system, progress.impulses, std::vector<double>(system.contacts.size(), 0.0),
+                      compliance_over_give};
   std::vector<Vector6d> y = progress.impulses.y;
   for (std::size_t i = 0; i < system.contacts.size(); ++i)
-    if (system.contacts[i].is_frictional()) problem.shifts[i] = system.contacts[i].friction * contact_velocity(system.contacts[i], y).tail<2>().norm();
+    if (system.contacts[i].is_frictional())
+      problem.shifts[i] =
+          system.contacts[i].friction * contact_velocity(system.contacts[i], y).tail<2>().norm();
   bool there = false;
   for (int i = 0; i < kMostSteps && !there; ++i) {
     const std::vector<Vector6d> gradient = problem.gradient(y, &matrix);
@@ -176,12 +192,14 @@ bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, P
 
 void follow(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress) {
   constexpr int kMostSteps = 15;
-  constexpr double kSmall = 1e-12;    // of |y|^2: this is one point of a path, no answer
+  constexpr double kSmall = 1e-12;  // of |y|^2: this is one point of a path, no answer
   constexpr double kShortest = 1e-3;
   Impulses nothing = progress.impulses;
   for (Vector3d& p : nothing.contacts) p.setZero();
   for (double& p : nothing.rows) p = 0;
-  const SoftProblem problem{goal.system, nothing, std::vector<double>(goal.system.contacts.size(), 0.0), compliance_over_give, true};
+  const SoftProblem problem{goal.system, nothing,
+                            std::vector<double>(goal.system.contacts.size(), 0.0),
+                            compliance_over_give, true};
   std::vector<Vector6d> y = progress.impulses.y;
   std::vector<Vector6d> direction = problem.gradient(y, &matrix);
   double square = dot(direction, direction);

@@ -12,7 +12,8 @@ double normal_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
   return v;
 }
 
-double relax_contact(const ContactBlock& block, LocalContact& local, Vector3d& impulse, std::vector<Vector6d>& y) {
+double relax_contact(const ContactBlock& block, LocalContact& local, Vector3d& impulse,
+                     std::vector<Vector6d>& y) {
   if (!(block.inverse_effective_mass > 0)) return 0;
   if (!block.is_frictional()) {
     const double before = impulse[0];
@@ -55,12 +56,15 @@ std::vector<LocalContact> prepare_locals(const System& system) {
   return locals;
 }
 
-double sweep(const System& system, std::vector<LocalContact>& locals, bool forward, Impulses& impulses) {
+double sweep(const System& system, std::vector<LocalContact>& locals, bool forward,
+             Impulses& impulses) {
   const std::size_t contacts = system.contacts.size(), rows = system.rows.size();
   double largest = 0;
   const auto relax = [&](std::size_t i) {
-    largest = std::max(largest, i < rows ? relax_row(system.rows[i], impulses.rows[i], impulses.y)
-                                         : relax_contact(system.contacts[i - rows], locals[i - rows], impulses.contacts[i - rows], impulses.y));
+    largest =
+        std::max(largest, i < rows ? relax_row(system.rows[i], impulses.rows[i], impulses.y)
+                                   : relax_contact(system.contacts[i - rows], locals[i - rows],
+                                                   impulses.contacts[i - rows], impulses.y));
   };
   for (std::size_t i = 0; i < rows + contacts; ++i) relax(forward ? i : rows + contacts - 1 - i);
   return largest;

@@ -18,6 +18,7 @@ std::vector<LocalContact> prepare_locals(const System& system);
 
 /// One sweep, forward or backward (alternate: together they treat no contact as the last). Returns
 /// the largest change of an impulse, as a velocity.
-double sweep(const System& system, std::vector<LocalContact>& locals, bool forward, Impulses& impulses);
+double sweep(const System& system, std::vector<LocalContact>& locals, bool forward,
+             Impulses& impulses);
 
 }  // namespace tumble::contacts

@@ -2,7 +2,7 @@
 /// a contact. Internal to dynamics.
 ///
 /// With M^-1 = L L^T body by body, the velocities are u = u_free + L y. Then
-///   v_i = base_i + G_i y,     y = sum G_i^T p_i,     G_i = J_i L,     W_ij = G_i G_j^T                                    (C.4)
+///   v_i = base_i + G_i y,     y = sum G_i^T p_i,     G_i = J_i L,     W_ij = G_i G_j^T       (C.4)
 /// where v_i is (normal, tangent 1, tangent 2), the target already taken off the normal. Bodies
 /// that cannot be pushed have no part of y; directions in which a body cannot move (zero inverse
 /// inertia) have a zero row of L. No mass is ever divided by.
@@ -18,21 +18,25 @@ namespace tumble::contacts {
 
 using Jacobian = Eigen::Matrix<double, 3, 6, Eigen::RowMajor>;
 
-inline constexpr int kFixed = -1;                             // in place of the index of a body that cannot be pushed
+// in place of the index of a body that cannot be pushed
+inline constexpr int kFixed = -1;
 
 struct ContactBlock {
   int body_a = kFixed, body_b = kFixed;
   double friction = 0;
-  double inverse_effective_mass = 0;                                            // mean of W_ii's diagonal: velocity per impulse [1/kg]; 0: nothing moves
-  Jacobian g_a, g_b;                                          // G_i; rows n, t1, t2; without friction only the first is set
-  Vector3d base = Vector3d::Zero();                           // v_i without impulses [m/s]
-  Matrix3d contact_from_world;                                // rows n, t1, t2
+  // mean of W_ii's diagonal: velocity per impulse [1/kg]; 0: nothing moves
+  double inverse_effective_mass = 0;
+  // G_i; rows n, t1, t2; without friction only the first is set
+  Jacobian g_a, g_b;
+  Vector3d base = Vector3d::Zero();  // v_i without impulses [m/s]
+  Matrix3d contact_from_world;       // rows n, t1, t2
   bool is_frictional() const { return friction > 0; }
 };
 
 struct RowBlock {
   int body_a = kFixed, body_b = kFixed;
-  double inverse_effective_mass = 0;                                            // W_ii [1/kg, or what the row's units make of it]
+  // W_ii [1/kg, or what the row's units make of it]
+  double inverse_effective_mass = 0;
   Vector6d g_a, g_b;
   double base = 0;
 };
@@ -41,16 +45,18 @@ struct RowBlock {
 struct System {
   std::vector<ContactBlock> contacts;
   std::vector<RowBlock> rows;
-  std::vector<double> root_inverse_mass;                      // by body: L = diag(this, root_inverse_inertia)
-  std::vector<Matrix3d> root_inverse_inertia;                 // by body, lower triangular
-  double speed = 0;                                           // largest speed of a touching point or of a target [m/s]
+  // by body: L = diag(this, root_inverse_inertia)
+  std::vector<double> root_inverse_mass;
+  std::vector<Matrix3d> root_inverse_inertia;  // by body, lower triangular
+  // largest speed of a touching point or of a target [m/s]
+  double speed = 0;
 };
 
 /// The unknowns. The velocities follow from the impulses; y keeps their sum.
 struct Impulses {
-  std::vector<Vector3d> contacts;                             // (n, t1, t2) [N s]
+  std::vector<Vector3d> contacts;  // (n, t1, t2) [N s]
   std::vector<double> rows;
-  std::vector<Vector6d> y;                                    // by body
+  std::vector<Vector6d> y;  // by body
 };
 
 System build_system(const ContactProblem& problem);
@@ -84,10 +90,13 @@ inline Vector3d velocity_change(const ContactBlock& c, const std::vector<Vector6
 }
 
 inline double velocity_change(const RowBlock& r, const std::vector<Vector6d>& y) {
-  return (r.body_a != kFixed ? r.g_a.dot(y[r.body_a]) : 0.0) + (r.body_b != kFixed ? r.g_b.dot(y[r.body_b]) : 0.0);
+  return (r.body_a != kFixed ? r.g_a.dot(y[r.body_a]) : 0.0) +
+         (r.body_b != kFixed ? r.g_b.dot(y[r.body_b]) : 0.0);
 }
 
-inline double row_velocity(const RowBlock& r, const std::vector<Vector6d>& y) { return r.base + velocity_change(r, y); }
+inline double row_velocity(const RowBlock& r, const std::vector<Vector6d>& y) {
+  return r.base + velocity_change(r, y);
+}
 
 inline void push(const ContactBlock& c, const Vector3d& impulse, std::vector<Vector6d>& y) {
   if (!c.is_frictional()) {
@@ -107,8 +116,8 @@ inline void push(const RowBlock& r, double impulse, std::vector<Vector6d>& y) {
 /// How far the impulses are from (C.1) to (C.3), as velocities:  give |p - P(p - v / give)|,  P as
 /// in contact_cone.h.
 struct Violation {
-  double largest = 0;                                         // [m/s]
-  double squares = 0;                                         // sum of their squares [m^2/s^2]
+  double largest = 0;  // [m/s]
+  double squares = 0;  // sum of their squares [m^2/s^2]
 };
 Violation measure_violation(const System& system, const Impulses& impulses);
 

@@ -4,7 +4,7 @@
 /// Frames: `body` has its origin at the centre of mass; its axes need not be principal. `world` is
 /// inertial. Quaternions are unit, Hamilton, body to world. Spherical and symmetric tops are turned
 /// in closed form; the others by a Taylor series.
-///   I w' = (I w) x w   in the body frame,     q' = 1/2 q (0, w)                                                (F.1)
+///   I w' = (I w) x w   in the body frame,     q' = 1/2 q (0, w)                              (F.1)
 /// Source: L. Landau, E. Lifshitz, Mechanics, sections 35 to 37.
 #pragma once
 
@@ -23,7 +23,8 @@ struct Spin {
 /// How an asymmetric top tumbles (Landau and Lifshitz, section 37).
 struct Tumbling {
   double modulus_m = kUnset;  // of the elliptic functions: in [0, 1]; 1 on the separatrix
-  double period = kUnset;     // of the angular velocity seen by the body [s]; infinite on the separatrix
+  // of the angular velocity seen by the body [s]; infinite on the separatrix
+  double period = kUnset;
 };
 
 /// The free rotation of one body: made once, asked for any time.
@@ -60,10 +61,10 @@ class FreeRotation {
 
   Spin after_in_principal_frame(const Spin& start, double t) const;
 
-  Vector3d moments_;                     // principal, in the order of the principal frame's axes
-  Quaterniond body_from_principal_;      // identity for a diagonal tensor
+  Vector3d moments_;                 // principal, in the order of the principal frame's axes
+  Quaterniond body_from_principal_;  // identity for a diagonal tensor
   Kind kind_ = Kind::kAsymmetric;
-  int axis_ = 0;                         // of symmetry, where kSymmetric
+  int axis_ = 0;  // of symmetry, where kSymmetric
 };
 
 /// A whole body that nothing pushes: the centre of mass goes straight, momenta stay bit for bit,

@@ -21,49 +21,63 @@ namespace tumble {
 struct Laws {
   // Impulses and point forces (assignment a1).
   std::function<double(const Contact&, const Body& a, const Body& b)> relative_normal_velocity;
-  std::function<double(const Contact&, const Body& a, const Body& b, double restitution)> collision_impulse;
-  std::function<Velocity(const Body&, const Vector3d& impulse_world, const Vector3d& point_world)> apply_impulse;
-  std::function<Wrench(const Vector3d& force_world, const Vector3d& point_world, const Vector3d& com_world)> wrench_of_point_force;
+  std::function<double(const Contact&, const Body& a, const Body& b, double restitution)>
+      collision_impulse;
+  std::function<Velocity(const Body&, const Vector3d& impulse_world, const Vector3d& point_world)>
+      apply_impulse;
+  std::function<Wrench(const Vector3d& force_world, const Vector3d& point_world,
+                       const Vector3d& com_world)>
+      wrench_of_point_force;
   std::function<std::optional<RayHit>(const Ray&, const Triangle&)> intersect_ray_triangle;
 
   // Motion (assignment a2).
   /// One step of the method: y(t) to y(t + h).
-  std::function<VectorXd(const OdeFunction& f, double t, const VectorXd& y, double h)> integrate_step;
+  std::function<VectorXd(const OdeFunction& f, double t, const VectorXd& y, double h)>
+      integrate_step;
   /// d/dt of a rigid body's packed state (13) under a wrench.
   std::function<VectorXd(const RigidBodyState&, const Inertia&, const Wrench&)> state_derivative;
   /// Brings the quaternion back to unit length after a step.
   std::function<Quaterniond(const Quaterniond&)> renormalize;
   /// A time of impact in [t_low, t_high], where the gap changes from + to -.
-  std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance)>
+  std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low,
+                           double t_high, double tolerance)>
       find_impact_time;
 
   // Springs, rods, resting contact (assignment a3).
   /// Force of a spring on the body at its end A; on B acts the opposite. World frame. [N]
   std::function<Vector3d(const Spring&, const AnchorState& a, const AnchorState& b)> spring_force;
   /// The distance constraint between a point of A and a point of B (body frames).
-  std::function<ConstraintRow(const Body& a, const Vector3d& point_a_body, const Body& b, const Vector3d& point_b_body, double length)> rod_row;
+  std::function<ConstraintRow(const Body& a, const Vector3d& point_a_body, const Body& b,
+                              const Vector3d& point_b_body, double length)>
+      rod_row;
   /// The C'' that brings a constraint back (Baumgarte). [m/s^2]
   std::function<double(double value, double rate, double time_constant_s)> baumgarte_acceleration;
   /// lambda (m) at which every C'' is what is wanted, (m).
-  std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& wanted_acceleration)>
+  std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&,
+                         const VectorXd& wanted_acceleration)>
       constraint_multipliers;
   /// The change (6n) of places or velocities, smallest in the measure of the masses, with J change
   /// = -error.
-  std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& error)> constraint_correction;
+  std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&,
+                         const VectorXd& error)>
+      constraint_correction;
   /// f (m) >= 0 with a = A f + b >= 0 and f . a = 0.
   std::function<VectorXd(const MatrixXd& A, const VectorXd& b)> contact_forces;
   /// Impulses of contacts with friction. Empty: the framework's own solve_contacts.
   std::function<ContactSolution(const ContactProblem&, const ContactOptions&)> friction_impulses;
   /// Whether a collision that came in this slowly is the beginning of a persistent contact.
-  std::function<bool(double approach_speed, double restitution, double restitution_threshold)> ends_in_contact;
+  std::function<bool(double approach_speed, double restitution, double restitution_threshold)>
+      ends_in_contact;
 
   // Decisions of a timewarp scheduler (assignment a4). Filled: --engine tw asks them.
   Scheduling scheduling;
 
-  std::string impulse_source = "none";      // which module provides the impulse laws, for pictures and records
-  std::string integrator_source = "none";   // which module provides integration
-  std::string constraint_source = "none";   // which module provides springs, rods and contact forces
-  std::string scheduling_source = "none";   // which module provides the scheduler
+  // which module provides the impulse laws, for pictures and records
+  std::string impulse_source = "none";
+  std::string integrator_source = "none";  // which module provides integration
+  // which module provides springs, rods and contact forces
+  std::string constraint_source = "none";
+  std::string scheduling_source = "none";  // which module provides the scheduler
 };
 
 /// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing);

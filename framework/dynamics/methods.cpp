@@ -30,12 +30,16 @@ using State = std::vector<double>;          // Odeint's range algebra needs no a
 using UblasVector = ublas::vector<double>;  // what its Rosenbrock method solves with
 using UblasMatrix = ublas::matrix<double>;
 
-constexpr int kFirstMomentum = 7;           // of the 13 numbers of a body
-constexpr long kMostParts = 1000000;        // of one step, by a controlled method
-constexpr double kShortestPart = 1e-12;     // of one step: shorter ones do not end within kMostParts, nor do they move its time much beyond rounding
+constexpr int kFirstMomentum = 7;     // of the 13 numbers of a body
+constexpr long kMostParts = 1000000;  // of one step, by a controlled method
+// of one step: shorter ones do not end within kMostParts, nor do they move its time much beyond
+// rounding
+constexpr double kShortestPart = 1e-12;
 
 template <class Container>
-VectorXd vector_of(const Container& state) { return Eigen::Map<const VectorXd>(&state[0], static_cast<Eigen::Index>(state.size())); }
+VectorXd vector_of(const Container& state) {
+  return Eigen::Map<const VectorXd>(&state[0], static_cast<Eigen::Index>(state.size()));
+}
 
 auto system_of(const OdeFunction& f) {
   return [&f](const State& at, State& derivative, double time) {
@@ -51,17 +55,20 @@ VectorXd one_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
   return vector_of(state);
 }
 
-VectorXd midpoint(const OdeFunction& f, double t, const VectorXd& y, double h) { return y + h * f(t + 0.5 * h, y + 0.5 * h * f(t, y)); }
+VectorXd midpoint(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  return y + h * f(t + 0.5 * h, y + 0.5 * h * f(t, y));
+}
 
 // Adds h dy to the places, or to the momenta.
 void add(const VectorXd& dy, double h, bool momenta, VectorXd& y) {
-  if (y.size() % kStateSize != 0) {   // a swing: places, then velocities
+  if (y.size() % kStateSize != 0) {  // a swing: places, then velocities
     const Eigen::Index half = y.size() / 2;
     (momenta ? y.tail(half) : y.head(half)) += h * (momenta ? dy.tail(half) : dy.head(half));
     return;
   }
   for (Eigen::Index body = 0; body < y.size(); body += kStateSize) {
-    const Eigen::Index first = momenta ? body + kFirstMomentum : body, count = momenta ? kStateSize - kFirstMomentum : kFirstMomentum;
+    const Eigen::Index first = momenta ? body + kFirstMomentum : body,
+                       count = momenta ? kStateSize - kFirstMomentum : kFirstMomentum;
     y.segment(first, count) += h * dy.segment(first, count);
   }
 }
@@ -114,20 +121,26 @@ std::optional<std::string> what_went_wrong(const Trial& trial) {
 }
 
 template <class Container>
-bool is_finite(const Container& state) { return std::all_of(state.begin(), state.end(), [](double value) { return std::isfinite(value); }); }
+bool is_finite(const Container& state) {
+  return std::all_of(state.begin(), state.end(), [](double value) { return std::isfinite(value); });
+}
 
 /// Steps as long as the control allows, from t to t + h. A trial step that fails was too long: it
 /// is rejected, and a quarter of it tried.
 /// @throws std::runtime_error where no step will do: a solution that grows without bound asks for
 /// ever shorter steps
 template <class Controlled, class System, class Container>
-void advance(const Controlled& fresh, const System& system, Container& state, double t, double h, double first) {
+void advance(const Controlled& fresh, const System& system, Container& state, double t, double h,
+             double first) {
   std::optional<Controlled> stepper(fresh);
   const double end = t + h;
   double part = first;
   long parts = 0;
   for (double time = t; odeint::detail::less_with_sign(time, end, part);) {
-    if (++parts > kMostParts) throw std::runtime_error("a tolerance too small to be reached: more than a million steps inside one, at t = " + std::to_string(time) + " s");
+    if (++parts > kMostParts)
+      throw std::runtime_error(
+          "a tolerance too small to be reached: more than a million steps inside one, at t = " +
+          std::to_string(time) + " s");
     if (odeint::detail::less_with_sign(end, time + part, part)) part = end - time;
     for (bool taken = false; !taken;) {
       Container next = state;
@@ -138,7 +151,7 @@ void advance(const Controlled& fresh, const System& system, Container& state, do
       });
       if (wrong) {
         taken = false;
-        stepper.emplace(fresh);   // what it remembers of the trial is as wrong
+        stepper.emplace(fresh);  // what it remembers of the trial is as wrong
         part *= 0.25;
       } else {
         part = next_part;
@@ -147,7 +160,8 @@ void advance(const Controlled& fresh, const System& system, Container& state, do
       // What is taken may be shorter: a cautious beginning, or what rounding has left of the step.
       if (taken || std::abs(part) >= kShortestPart * std::abs(h)) continue;
       const std::string at = " at t = " + std::to_string(time) + " s";
-      throw std::runtime_error(wrong ? "no step is short enough" + at + ": " + *wrong : "no step is short enough for the tolerance" + at);
+      throw std::runtime_error(wrong ? "no step is short enough" + at + ": " + *wrong
+                                     : "no step is short enough for the tolerance" + at);
     }
   }
 }
@@ -158,19 +172,27 @@ void advance(const Controlled& fresh, const System& system, Container& state, do
 // Source: Hairer, Norsett, Wanner, "Solving ODEs I", II.4 (starting step size), with the sizes of y
 // in place of tolerances.
 double first_part(const OdeFunction& f, double t, const VectorXd& y, double h) {
-  const auto size = [&](const VectorXd& v) { return (v.array() / (1.0 + y.array().abs())).matrix().norm(); };
+  const auto size = [&](const VectorXd& v) {
+    return (v.array() / (1.0 + y.array().abs())).matrix().norm();
+  };
   const VectorXd slope = f(t, y);
   const double speed = size(slope), most = std::abs(h);
   if (!(speed > 0.0)) return h;
   const double first = std::min(most, 0.01 / speed);
   VectorXd beyond;
-  if (what_went_wrong([&] { return (beyond = f(t + std::copysign(first, h), y + std::copysign(first, h) * slope)).allFinite(); })) return std::copysign(0.25 * first, h);
+  if (what_went_wrong([&] {
+        return (beyond = f(t + std::copysign(first, h), y + std::copysign(first, h) * slope))
+            .allFinite();
+      }))
+    return std::copysign(0.25 * first, h);
   const double bend = size(beyond - slope) / first;
-  return std::copysign(std::min({most, 100.0 * first, std::sqrt(0.02 / std::max(bend, 0.02 / (most * most)))}), h);
+  return std::copysign(
+      std::min({most, 100.0 * first, std::sqrt(0.02 / std::max(bend, 0.02 / (most * most)))}), h);
 }
 
 template <class Controlled>
-VectorXd adaptive(const Controlled& stepper, const OdeFunction& any, double t, const VectorXd& y, double h) {
+VectorXd adaptive(const Controlled& stepper, const OdeFunction& any, double t, const VectorXd& y,
+                  double h) {
   if (h == 0.0) return y;
   const OdeFunction f = with_finite_slopes(any);
   State state(y.data(), y.data() + y.size());
@@ -183,7 +205,8 @@ VectorXd adaptive(const Controlled& stepper, const OdeFunction& any, double t, c
 class DifferencedJacobian {
  public:
   explicit DifferencedJacobian(const OdeFunction& f) : f_(f) {}
-  void operator()(const UblasVector& at, UblasMatrix& jacobian, double t, UblasVector& by_time) const {
+  void operator()(const UblasVector& at, UblasMatrix& jacobian, double t,
+                  UblasVector& by_time) const {
     const VectorXd y = vector_of(at);
     const double part = std::cbrt(std::numeric_limits<double>::epsilon());
     for (Eigen::Index column = 0; column < y.size(); ++column) {
@@ -192,18 +215,21 @@ class DifferencedJacobian {
       before[column] -= step;
       after[column] += step;
       const VectorXd slope = (f_(t, after) - f_(t, before)) / (after[column] - before[column]);
-      for (Eigen::Index row = 0; row < y.size(); ++row) jacobian(static_cast<std::size_t>(row), static_cast<std::size_t>(column)) = slope[row];
+      for (Eigen::Index row = 0; row < y.size(); ++row)
+        jacobian(static_cast<std::size_t>(row), static_cast<std::size_t>(column)) = slope[row];
     }
     const double step = part * std::max(1.0, std::abs(t));
     const VectorXd slope = (f_(t + step, y) - f_(t - step, y)) / (2.0 * step);
-    for (Eigen::Index row = 0; row < y.size(); ++row) by_time(static_cast<std::size_t>(row)) = slope[row];
+    for (Eigen::Index row = 0; row < y.size(); ++row)
+      by_time(static_cast<std::size_t>(row)) = slope[row];
   }
 
  private:
   const OdeFunction& f_;
 };
 
-VectorXd rosenbrock(const OdeFunction& any, double t, const VectorXd& y, double h, double tolerance) {
+VectorXd rosenbrock(const OdeFunction& any, double t, const VectorXd& y, double h,
+                    double tolerance) {
   if (h == 0.0) return y;
   const OdeFunction f = with_finite_slopes(any);
   UblasVector state(static_cast<std::size_t>(y.size()));
@@ -213,22 +239,24 @@ VectorXd rosenbrock(const OdeFunction& any, double t, const VectorXd& y, double 
     std::copy(dy.data(), dy.data() + dy.size(), derivative.begin());
   };
   const auto with_jacobian = std::make_pair(system, DifferencedJacobian(f));
-  advance(odeint::rosenbrock4_controller<odeint::rosenbrock4<double>>(tolerance, tolerance), with_jacobian, state, t, h, h);
+  advance(odeint::rosenbrock4_controller<odeint::rosenbrock4<double>>(tolerance, tolerance),
+          with_jacobian, state, t, h, h);
   return vector_of(state);
 }
 
 }  // namespace
 
 const std::vector<Method>& methods() {
-  static const std::vector<Method> all = {{"euler", "Euler", 1, false, false},
-                                          {"symplectic", "symplectic Euler", 1, false, false},
-                                          {"midpoint", "midpoint", 2, false, false},
-                                          {"verlet", "Verlet", 2, false, false},
-                                          {"rk4", "RK4", 4, false, false},
-                                          {"dopri5", "Dormand-Prince 5(4)", 5, true, false},
-                                          {"fehlberg78", "Fehlberg 7(8)", 8, true, false},
-                                          {"bulirsch-stoer", "Bulirsch-Stoer", kUnset, true, false},
-                                          {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true}};
+  static const std::vector<Method> all = {
+      {"euler", "Euler", 1, false, false},
+      {"symplectic", "symplectic Euler", 1, false, false},
+      {"midpoint", "midpoint", 2, false, false},
+      {"verlet", "Verlet", 2, false, false},
+      {"rk4", "RK4", 4, false, false},
+      {"dopri5", "Dormand-Prince 5(4)", 5, true, false},
+      {"fehlberg78", "Fehlberg 7(8)", 8, true, false},
+      {"bulirsch-stoer", "Bulirsch-Stoer", kUnset, true, false},
+      {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true}};
   return all;
 }
 
@@ -240,24 +268,39 @@ const Method& method_named(const std::string& word) {
     words.push_back(method.word);
     known += (known.empty() ? "" : ", ") + method.word;
   }
-  throw UserError("method '" + word + "'", "there is no method of integration of that name." + did_you_mean(word, words), "Known: " + known + ".");
+  throw UserError("method '" + word + "'",
+                  "there is no method of integration of that name." + did_you_mean(word, words),
+                  "Known: " + known + ".");
 }
 
 StepFunction step_of(const Method& method, double tolerance) {
-  require(!method.controlled || tolerance > 0.0, "dynamics: a controlled method needs a tolerance > 0");
+  require(!method.controlled || tolerance > 0.0,
+          "dynamics: a controlled method needs a tolerance > 0");
   if (method.word == "euler") return one_step<odeint::euler<State>>;
   if (method.word == "symplectic") return symplectic_euler;
   if (method.word == "midpoint") return midpoint;
   if (method.word == "verlet") return verlet;
   if (method.word == "rk4") return one_step<odeint::runge_kutta4<State>>;
   if (method.word == "dopri5")
-    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>()), f, t, y, h); };
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) {
+      return adaptive(
+          odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>()), f, t,
+          y, h);
+    };
   if (method.word == "fehlberg78")
-    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>()), f, t, y, h); };
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) {
+      return adaptive(
+          odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>()), f,
+          t, y, h);
+    };
   if (method.word == "bulirsch-stoer")
-    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::bulirsch_stoer<State>(tolerance, tolerance), f, t, y, h); };
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) {
+      return adaptive(odeint::bulirsch_stoer<State>(tolerance, tolerance), f, t, y, h);
+    };
   require(method.word == "rosenbrock4", "dynamics: a method of methods()");
-  return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return rosenbrock(f, t, y, h, tolerance); };
+  return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) {
+    return rosenbrock(f, t, y, h, tolerance);
+  };
 }
 
 }  // namespace tumble

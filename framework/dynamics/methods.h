@@ -15,14 +15,16 @@
 namespace tumble {
 
 /// y(t) to y(t + h).
-using StepFunction = std::function<VectorXd(const OdeFunction& f, double t, const VectorXd& y, double h)>;
+using StepFunction =
+    std::function<VectorXd(const OdeFunction& f, double t, const VectorXd& y, double h)>;
 
 struct Method {
-  std::string word;         // on the command line: "dopri5"
-  std::string name;         // for people: "Dormand-Prince 5(4)"
-  double order;             // p: the error goes as h^p; NaN where the method chooses its own
-  bool controlled;          // takes a tolerance, and chooses its steps by it
-  bool implicit;            // for stiff systems: its price a step is higher, and its steps are not bounded by stability
+  std::string word;  // on the command line: "dopri5"
+  std::string name;  // for people: "Dormand-Prince 5(4)"
+  double order;      // p: the error goes as h^p; NaN where the method chooses its own
+  bool controlled;   // takes a tolerance, and chooses its steps by it
+  // for stiff systems: its price a step is higher, and its steps are not bounded by stability
+  bool implicit;
 };
 
 /// In the order in which they are drawn: euler, symplectic, midpoint, verlet, rk4, dopri5,

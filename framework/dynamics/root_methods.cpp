@@ -32,28 +32,37 @@ RootResult in_bracket(const ScalarFunction& gap, double low, double high, const 
   return result;
 }
 
-RootResult bisect(const ScalarFunction& gap, const ScalarFunction&, double low, double high, double tolerance) {
+RootResult bisect(const ScalarFunction& gap, const ScalarFunction&, double low, double high,
+                  double tolerance) {
   return in_bracket(gap, low, high, [&](const auto& counted) {
     std::uintmax_t most = kMostIterations;
     const auto close = [tolerance](double a, double b) { return std::abs(b - a) <= tolerance; };
-    return boost::math::tools::bisect(counted, low, high, close, most).first;   // on the side where the gap has not closed yet
+    // on the side where the gap has not closed yet
+    return boost::math::tools::bisect(counted, low, high, close, most).first;
   });
 }
 
-RootResult newton(const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double tolerance) {
+RootResult newton(const ScalarFunction& gap, const ScalarFunction& rate, double low, double high,
+                  double tolerance) {
   return in_bracket(gap, low, high, [&](const auto& counted) {
     std::uintmax_t most = kMostIterations;
     const auto both = [&](double t) { return std::make_pair(counted(t), rate(t)); };
     // Boost stops where a step is below 2^(1 - bits) of the place itself.
-    const double part = std::clamp(tolerance / std::max(std::abs(high), tolerance), std::ldexp(1.0, -52), 0.5);
-    return boost::math::tools::newton_raphson_iterate(both, 0.5 * (low + high), low, high, std::max(1, static_cast<int>(std::lround(1.0 - std::log2(part)))), most);
+    const double part =
+        std::clamp(tolerance / std::max(std::abs(high), tolerance), std::ldexp(1.0, -52), 0.5);
+    return boost::math::tools::newton_raphson_iterate(
+        both, 0.5 * (low + high), low, high,
+        std::max(1, static_cast<int>(std::lround(1.0 - std::log2(part)))), most);
   });
 }
 
 }  // namespace
 
 const std::vector<RootMethod>& root_methods() {
-  static const std::vector<RootMethod> all = {{"bisection", "bisection", bisect}, {"newton", "Newton, safeguarded", newton}, {"toms748", "TOMS 748", library_laws().find_impact_time}};
+  static const std::vector<RootMethod> all = {
+      {"bisection", "bisection", bisect},
+      {"newton", "Newton, safeguarded", newton},
+      {"toms748", "TOMS 748", library_laws().find_impact_time}};
   return all;
 }
 
@@ -65,7 +74,9 @@ const RootMethod& root_method_named(const std::string& word) {
     words.push_back(method.word);
     known += (known.empty() ? "" : ", ") + method.word;
   }
-  throw UserError("root finder '" + word + "'", "there is none of that name." + did_you_mean(word, words), "Known: " + known + ".");
+  throw UserError("root finder '" + word + "'",
+                  "there is none of that name." + did_you_mean(word, words),
+                  "Known: " + known + ".");
 }
 
 }  // namespace tumble

@@ -9,11 +9,13 @@
 
 namespace tumble {
 
-using ImpactFinder = std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance)>;
+using ImpactFinder =
+    std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                             double t_low, double t_high, double tolerance)>;
 
 struct RootMethod {
-  std::string word;   // on the command line: "bisection"
-  std::string name;   // for people
+  std::string word;  // on the command line: "bisection"
+  std::string name;  // for people
   ImpactFinder find;
 };
 

@@ -6,20 +6,21 @@
 namespace tumble {
 
 struct RotationBounds {
-  double angular_speed;          // of |omega| [rad/s]
-  double angular_acceleration;   // of |d omega/dt| [rad/s^2]
+  double angular_speed;         // of |omega| [rad/s]
+  double angular_acceleration;  // of |d omega/dt| [rad/s^2]
 };
 
 /// What keeps a motion from being free and exact, and for how long.
 struct Disturbance {
-  double duration;                       // [s]
-  double torque = 0.0;                   // largest length [N m]
-  double angular_velocity_error = 0.0;   // largest |rate at which the body is turned - omega of its state| (numerical paths) [rad/s]
+  double duration;      // [s]
+  double torque = 0.0;  // largest length [N m]
+  // largest |rate at which the body is turned - omega of its state| (numerical paths) [rad/s]
+  double angular_velocity_error = 0.0;
 };
 
 /// A body's moments about its principal axes, ascending, and these axes as columns, body frame.
 struct PrincipalMoments {
-  Vector3d moments;    // [kg m^2]
+  Vector3d moments;  // [kg m^2]
   Matrix3d axes_body;
 };
 /// @pre inertia is finite
@@ -30,13 +31,16 @@ PrincipalMoments principal_moments(const Inertia& inertia);
 /// x; |w|^2 = sum x_i is linear on it, so its ends bound it (the needle whose L / I_min is a
 /// million times its speed costs nothing). A torque and a path that is turned at omega + e instead
 /// of omega widen both to bands:
-///   |d sqrt(2T)/dt| <= |torque| / sqrt(I_min),   |d(2T)/dt| = 2 |e . (omega x L)| <= 2 |e| |omega| |L|               (D.1)
-///   |d omega/dt| <= |I^-1 (L x omega)| + |torque| / I_min + |e| (|omega| + |L| / I_min)                             (D.2)
+///   |d sqrt(2T)/dt| <= |torque| / sqrt(I_min),
+///       |d(2T)/dt| = 2 |e . (omega x L)| <= 2 |e| |omega| |L|                                (D.1)
+///   |d omega/dt| <= |I^-1 (L x omega)| + |torque| / I_min + |e| (|omega| + |L| / I_min)      (D.2)
 /// @pre inertia is finite; nothing is assumed of the size of the disturbances. Always angular_speed
 /// <= largest |L| / I_min.
 /// Source: H. Goldstein, Classical Mechanics, sec. 5.6 (polhode).
-RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance);
+RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia,
+                              const Disturbance& disturbance);
 /// The same for a caller that asks often. @param principal  principal_moments(inertia)
-RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const PrincipalMoments& principal, const Disturbance& disturbance);
+RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia,
+                              const PrincipalMoments& principal, const Disturbance& disturbance);
 
 }  // namespace tumble

@@ -1,11 +1,13 @@
 // How a contact problem is solved, cheapest first:
 //   1. the warm start: at rest with last step's impulses nothing is left to do;
-//   2. Newton's method on Coulomb's law, from the warm start: bodies at rest or sliding steadily. From zero it finds the most even
-//      distribution among redundant contacts;
-//   3. what stands: contacts stick, or are open where they would have to pull. Coulomb's law can have several answers (a rod that jams while
-//      it slides, stones of an arch that could as well slip); this takes the one in which nothing slides, and what is symmetric stays so;
+//   2. Newton's method on Coulomb's law, from the warm start: bodies at rest or sliding steadily.
+//      From zero it finds the most even distribution among redundant contacts;
+//   3. what stands: contacts stick, or are open where they would have to pull. Coulomb's law can
+//      have several answers (a rod that jams while it slides, stones of an arch that could as well
+//      slip); this takes the one in which nothing slides, and what is symmetric stays so;
 //   4. block Gauss-Seidel sweeps, which find the modes (open, stick, slide) where many change;
-//   5. Newton's method again, by turns with its convex relative, which cannot get lost (contact_newton.h).
+//   5. Newton's method again, by turns with its convex relative, which cannot get lost
+//      (contact_newton.h).
 // Problems too large for 2, 3 and 5 are left to the sweeps.
 #include "framework/dynamics/solve_contacts.h"
 
@@ -25,23 +27,30 @@ using contacts::Impulses;
 using contacts::Progress;
 using contacts::System;
 
-constexpr int kFirstNewtonSteps = 8;    // from the warm start: at rest two or three do; where they wander, sweeps are cheaper
-constexpr int kNewtonSteps = 30;        // later
-constexpr int kSweepRounds = 2;         // each of four times as many sweeps as the one before
+// from the warm start: at rest two or three do; where they wander, sweeps are cheaper
+constexpr int kFirstNewtonSteps = 8;
+constexpr int kNewtonSteps = 30;  // later
+constexpr int kSweepRounds = 2;   // each of four times as many sweeps as the one before
 constexpr int kFewSoftRounds = 10, kManySoftRounds = 200, kFinishEvery = 5;
 constexpr int kLastRounds = 3, kLastSweeps = 500;
-constexpr double kSteady = 0.9;         // cosine squared between two steps whose sum may be extrapolated
-constexpr double kFirstCompliance = 1e-2, kLeastCompliance = 1e-4, kSteadyCompliance = 1e-6;  // of the convex problems, over a contact's own give
-constexpr double kSoftest = 10, kWorthFinishing = 0.05, kHardest = 1e-7, kPathStep = 0.3;  // of the path
+// cosine squared between two steps whose sum may be extrapolated
+constexpr double kSteady = 0.9;
+// of the convex problems, over a contact's own give
+constexpr double kFirstCompliance = 1e-2, kLeastCompliance = 1e-4, kSteadyCompliance = 1e-6;
+// of the path
+constexpr double kSoftest = 10, kWorthFinishing = 0.05, kHardest = 1e-7, kPathStep = 0.3;
 
 ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
-  constexpr double kOnTheCone = 1 - 1e-9;  // nearer to the edge than this is on it: impulses of sliding contacts lie there to round-off
+  // nearer to the edge than this is on it: impulses of sliding contacts lie there to round-off
+  constexpr double kOnTheCone = 1 - 1e-9;
   if (!(impulse[0] > 0)) return ContactMode::kOpen;
-  return impulse.tail<2>().norm() >= kOnTheCone * block.friction * impulse[0] ? ContactMode::kSlide : ContactMode::kStick;
+  return impulse.tail<2>().norm() >= kOnTheCone * block.friction * impulse[0] ? ContactMode::kSlide
+                                                                              : ContactMode::kStick;
 }
 
 /// Sweeps until the goal is met, or their number is spent.
-void sweep_until(const Goal& goal, std::vector<contacts::LocalContact>& locals, int most_sweeps, Progress& progress) {
+void sweep_until(const Goal& goal, std::vector<contacts::LocalContact>& locals, int most_sweeps,
+                 Progress& progress) {
   for (int i = 0; i < most_sweeps && !progress.accepted; ++i) {
     const double change = contacts::sweep(goal.system, locals, i % 2 == 0, progress.impulses);
     ++progress.sweeps;
@@ -58,10 +67,16 @@ class Turns {
  public:
   /// @param enough  a violation this small is not worth dearer means [m/s]
   Turns(const Goal& goal, double enough, contacts::BodyMatrix& matrix, Progress& progress)
-      : goal_(goal), enough_(enough), locals_(contacts::prepare_locals(goal.system)), matrix_(matrix), now_(progress), best_(progress) {}
+      : goal_(goal),
+        enough_(enough),
+        locals_(contacts::prepare_locals(goal.system)),
+        matrix_(matrix),
+        now_(progress),
+        best_(progress) {}
 
   void run(int sweeps) {
-    for (int round = 0; round < kSweepRounds && !done(); ++round) sweep_and_finish(sweeps << (2 * round));
+    for (int round = 0; round < kSweepRounds && !done(); ++round)
+      sweep_and_finish(sweeps << (2 * round));
     if (!done()) go_on();
     if (!done() && now_.violation.squares < best_.violation.squares) best_ = now_;
     best_.sweeps = now_.sweeps;
@@ -88,7 +103,8 @@ class Turns {
     Progress trial = now_;
     contacts::finish(goal_, kNewtonSteps, matrix_, trial);
     now_.factorisations = trial.factorisations;
-    if (trial.accepted || trial.violation.squares < best_.violation.squares) best_ = std::move(trial);
+    if (trial.accepted || trial.violation.squares < best_.violation.squares)
+      best_ = std::move(trial);
   }
 
   void sweep_and_finish(int sweeps) {
@@ -118,10 +134,13 @@ class Turns {
     const double share = ratio / (1 - ratio);
     Progress there = now_;
     for (std::size_t i = 0; i < last.contacts.size(); ++i) {
-      const Vector3d ahead = now_.impulses.contacts[i] + share * (now_.impulses.contacts[i] - last.contacts[i]);
-      there.impulses.contacts[i] = contacts::coulomb_projection(ahead, goal_.system.contacts[i].friction);
+      const Vector3d ahead =
+          now_.impulses.contacts[i] + share * (now_.impulses.contacts[i] - last.contacts[i]);
+      there.impulses.contacts[i] =
+          contacts::coulomb_projection(ahead, goal_.system.contacts[i].friction);
     }
-    for (std::size_t i = 0; i < last.rows.size(); ++i) there.impulses.rows[i] += share * (now_.impulses.rows[i] - last.rows[i]);
+    for (std::size_t i = 0; i < last.rows.size(); ++i)
+      there.impulses.rows[i] += share * (now_.impulses.rows[i] - last.rows[i]);
     contacts::sum_impulses(goal_.system, there.impulses);
     goal_.measure(there);
     if (there.violation.squares < now_.violation.squares) now_ = std::move(there);
@@ -135,7 +154,8 @@ class Turns {
       second_last = std::move(last);
       last = now_.impulses;
       const bool reached = contacts::soften(goal_, compliance, matrix_, now_);
-      compliance = reached ? std::max(least_compliance, 0.3 * compliance) : std::min(1.0, 10 * compliance);
+      compliance =
+          reached ? std::max(least_compliance, 0.3 * compliance) : std::min(1.0, 10 * compliance);
       if (now_.accepted || round % kFinishEvery == kFinishEvery - 1) try_to_finish();
     }
   }
@@ -157,7 +177,8 @@ class Turns {
 
 void iterate(const Goal& goal, const ContactOptions& options, double enough, Progress& progress) {
   const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
-  if (static_cast<int>(size) > options.largest_direct || size == 1) {  // one contact: the first sweep is exact
+  // one contact: the first sweep is exact
+  if (static_cast<int>(size) > options.largest_direct || size == 1) {
     std::vector<contacts::LocalContact> locals = contacts::prepare_locals(goal.system);
     sweep_until(goal, locals, options.most_sweeps_alone, progress);
     return;
@@ -165,24 +186,29 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
   contacts::BodyMatrix matrix(goal.system);
   contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
   if (progress.accepted || progress.violation.largest <= enough) return;
-  if (!contacts::stick(goal, matrix, progress)) Turns(goal, enough, matrix, progress).run(options.most_sweeps);
+  if (!contacts::stick(goal, matrix, progress))
+    Turns(goal, enough, matrix, progress).run(options.most_sweeps);
 }
 
-ContactSolution describe(const ContactProblem& problem, const System& system, const Impulses& impulses) {
+ContactSolution describe(const ContactProblem& problem, const System& system,
+                         const Impulses& impulses) {
   ContactSolution solution;
   const std::size_t contacts = system.contacts.size();
   solution.impulses_world.reserve(contacts);
   solution.modes.reserve(contacts);
   for (std::size_t i = 0; i < contacts; ++i) {
-    solution.impulses_world.push_back(system.contacts[i].contact_from_world.transpose() * impulses.contacts[i]);
+    solution.impulses_world.push_back(system.contacts[i].contact_from_world.transpose() *
+                                      impulses.contacts[i]);
     solution.modes.push_back(mode_of(system.contacts[i], impulses.contacts[i]));
   }
-  solution.row_impulses = Eigen::Map<const VectorXd>(impulses.rows.data(), static_cast<Eigen::Index>(impulses.rows.size()));
+  solution.row_impulses = Eigen::Map<const VectorXd>(
+      impulses.rows.data(), static_cast<Eigen::Index>(impulses.rows.size()));
   solution.velocities.reserve(problem.bodies.size());
   for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
     const PushedBody& body = problem.bodies[i];
-    solution.velocities.push_back({body.velocity_world + system.root_inverse_mass[i] * impulses.y[i].head<3>(),
-                                   body.omega_world + system.root_inverse_inertia[i] * impulses.y[i].tail<3>()});
+    solution.velocities.push_back(
+        {body.velocity_world + system.root_inverse_mass[i] * impulses.y[i].head<3>(),
+         body.omega_world + system.root_inverse_inertia[i] * impulses.y[i].tail<3>()});
   }
   return solution;
 }

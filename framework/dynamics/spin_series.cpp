@@ -5,8 +5,12 @@
 
 namespace tumble {
 
-SpinSeries::SpinSeries(const Vector3d& moments, const Quaterniond& body_from_principal, const Spin& start) : principal_from_body_(body_from_principal.conjugate()) {
-  const Vector3d c((moments.y() - moments.z()) / moments.x(), (moments.z() - moments.x()) / moments.y(), (moments.x() - moments.y()) / moments.z());
+SpinSeries::SpinSeries(const Vector3d& moments, const Quaterniond& body_from_principal,
+                       const Spin& start)
+    : principal_from_body_(body_from_principal.conjugate()) {
+  const Vector3d c((moments.y() - moments.z()) / moments.x(),
+                   (moments.z() - moments.x()) / moments.y(),
+                   (moments.x() - moments.y()) / moments.z());
   const Vector3d w = principal_from_body_ * start.omega_body;
   const Quaterniond q = start.world_from_body * body_from_principal;
   auto& [w1, w2, w3, qw, qx, qy, qz] = series_;
@@ -37,11 +41,14 @@ SpinSeries::SpinSeries(const Vector3d& moments, const Quaterniond& body_from_pri
 
 double SpinSeries::reach(const Vector3d& moments, double largest_speed) {
   constexpr double kLeftOut = 5e-18, kTerms = kOrder + 1;
-  double c = 1e-3;   // nothing is gained below
-  for (int i = 0; i < 3; ++i) c = std::max(c, std::abs(moments[(i + 1) % 3] - moments[(i + 2) % 3]) / moments[i]);
+  double c = 1e-3;  // nothing is gained below
+  for (int i = 0; i < 3; ++i)
+    c = std::max(c, std::abs(moments[(i + 1) % 3] - moments[(i + 2) % 3]) / moments[i]);
   double product = 1.0;
-  for (std::size_t j = 0; j <= kOrder; ++j) product *= (0.5 + c * static_cast<double>(j)) / static_cast<double>(j + 1);
-  const double of_w = std::pow(kLeftOut, 1 / kTerms) / c, of_q = std::pow(kLeftOut / product, 1 / kTerms);
+  for (std::size_t j = 0; j <= kOrder; ++j)
+    product *= (0.5 + c * static_cast<double>(j)) / static_cast<double>(j + 1);
+  const double of_w = std::pow(kLeftOut, 1 / kTerms) / c,
+               of_q = std::pow(kLeftOut / product, 1 / kTerms);
   return std::min(of_w, of_q) / largest_speed;
 }
 
@@ -49,7 +56,8 @@ Spin SpinSeries::at(double t) const {
   std::array<double, 7> sum{};
   for (std::size_t k = kOrder + 1; k-- > 0;)
     for (std::size_t i = 0; i < 7; ++i) sum[i] = sum[i] * t + series_[i][k];
-  return {(Quaterniond(sum[3], sum[4], sum[5], sum[6]) * principal_from_body_).normalized(), principal_from_body_.conjugate() * Vector3d(sum[0], sum[1], sum[2])};
+  return {(Quaterniond(sum[3], sum[4], sum[5], sum[6]) * principal_from_body_).normalized(),
+          principal_from_body_.conjugate() * Vector3d(sum[0], sum[1], sum[2])};
 }
 
 }  // namespace tumble

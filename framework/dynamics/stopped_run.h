@@ -34,7 +34,7 @@ auto naming(const std::string& subject, Work&& work) {
   try {
     return std::forward<Work>(work)();
   } catch (const OutOfTime&) {
-    throw;   // has no subject
+    throw;  // has no subject
   } catch (const StoppedForGood& stop) {
     throw StoppedForGood(subject + ": " + stop.what());
   } catch (const StoppedRun& stop) {

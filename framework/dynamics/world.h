@@ -24,27 +24,31 @@ struct WorldBody {
   double restitution = 1.0;
   double friction = 0.0;
   bool collides = true;
-  bool passes_movable = false;                    // two movable bodies that both do never meet
-  RigidBodyState state;                           // of a movable body
-  scene::PrescribedMotion motion;                 // of an immovable one, about com_at_0
-  Vector3d com_at_0_world = Vector3d::Zero();     // [m]
+  bool passes_movable = false;                 // two movable bodies that both do never meet
+  RigidBodyState state;                        // of a movable body
+  scene::PrescribedMotion motion;              // of an immovable one, about com_at_0
+  Vector3d com_at_0_world = Vector3d::Zero();  // [m]
 
   bool immovable() const { return inertia.inverse_mass == 0.0; }
 };
 
 /// A point fixed in a body, or in the world.
 struct Anchor {
-  int body;                  // -1: the world
-  Vector3d point_body;       // body frame; world frame for the world [m]
+  int body;             // -1: the world
+  Vector3d point_body;  // body frame; world frame for the world [m]
 };
 
 struct World {
   std::vector<WorldBody> bodies;
-  TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringLink>()
-  std::optional<Vector3d> gravity_world;          // [m/s^2]
-  std::optional<scene::ContactSpec> contact;      // persistent contact; absent where the scene does not ask for it
+  // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as
+  // effects.of<SpringLink>()
+  TypedLists effects;
+  std::optional<Vector3d> gravity_world;  // [m/s^2]
+  // persistent contact; absent where the scene does not ask for it
+  std::optional<scene::ContactSpec> contact;
   std::optional<scene::StabilisationSpec> stabilisation;
-  std::vector<std::pair<int, int>> apart;         // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them
+  // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them
+  std::vector<std::pair<int, int>> apart;
 };
 
 /// Place of an immovable body at a time: start + v t + A sin(w t). [m]
@@ -55,7 +59,8 @@ Vector3d prescribed_velocity(const WorldBody& body, double time);
 /// Angular velocity that belongs to a state. World frame. [rad/s]
 Vector3d omega_of(const RigidBodyState& state, const Inertia& inertia);
 /// Angular momentum of a body turning at omega_world. [kg m^2/s]
-Vector3d angular_momentum_of(const Vector3d& omega_world, const Quaterniond& world_from_body, const Inertia& inertia);
+Vector3d angular_momentum_of(const Vector3d& omega_world, const Quaterniond& world_from_body,
+                             const Inertia& inertia);
 
 /// Of one movable body. [J]
 double kinetic_energy(const RigidBodyState& state, const Inertia& inertia);

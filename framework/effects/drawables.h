@@ -11,23 +11,23 @@ namespace tumble::effects {
 
 /// A force that pushes: an arrow whose head is at the point, which is fixed in the body.
 struct DrawnArrow {
-  std::string body;            // its name
-  Vector3d force_world;        // [N]
-  Vector3d point_world;        // where the point is at start_s [m]
+  std::string body;      // its name
+  Vector3d force_world;  // [N]
+  Vector3d point_world;  // where the point is at start_s [m]
   double start_s, duration_s;
 };
 
 /// A point of a body, by the body's name, or of the world (an empty name).
 struct DrawnPoint {
   std::string body;
-  Vector3d point;              // body frame, or world [m]
+  Vector3d point;  // body frame, or world [m]
 };
 
 /// A coil between two points: a spring.
 struct DrawnCoil {
   std::string name;
   DrawnPoint a, b;
-  double rest_length;          // at which its turns stand close [m]
+  double rest_length;  // at which its turns stand close [m]
 };
 
 /// A bar between two points: a rod.
@@ -41,14 +41,14 @@ struct DrawnBar {
 struct DrawnPivot {
   std::string name;
   enum class Kind { kBall, kPin, kWeld } kind;
-  std::string body_a, body_b;  // names; empty: the world
-  Vector3d point_world, axis_world;   // at the start, fixed in body_a [m], unit
+  std::string body_a, body_b;        // names; empty: the world
+  Vector3d point_world, axis_world;  // at the start, fixed in body_a [m], unit
 };
 
 /// A level sheet that one sees through: a surface of something that bodies lie in.
 struct DrawnSheet {
-  double height_m;             // z
-  Vector3d color;              // linear RGB
+  double height_m;  // z
+  Vector3d color;   // linear RGB
 };
 
 struct Drawables {

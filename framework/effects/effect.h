@@ -7,8 +7,10 @@
 /// world whose scene does not ask for an effect holds no object of it, so that no step pays for it.
 ///
 /// An effect acts in one of two ways:
-///   steady forces   on each body by itself, constant within a step: the body stays one that flies alone (gravity, a point force)
-///   a group's terms on bodies that are integrated together as one system of equations, asked at every stage of the method (all others)
+///   steady forces   on each body by itself, constant within a step: the body stays one that flies
+///       alone (gravity, a point force)
+///   a group's terms on bodies that are integrated together as one system of equations, asked at
+///   every stage of the method (all others)
 ///
 /// Frames and units as in dynamics/body.h. How to add one: README.md beside this.
 #pragma once
@@ -47,7 +49,7 @@ using Memory = std::map<int, std::array<double, 3>>;
 struct Switch {
   int entry;
   bool on;
-  Event event;                 // body_a: the body that it acts on
+  Event event;  // body_a: the body that it acts on
 };
 
 /// Forces that are constant within a step, on each body by itself.
@@ -73,7 +75,9 @@ class SteadyForces {
   /// Stands at another time, in other states: what acts then does so as `memory` says, or as it
   /// would where it begins now.
   /// @return when the next entry is switched; infinite without [s]
-  virtual double stand_at(double, const Memory&, const std::vector<RigidBodyState>&) { return std::numeric_limits<double>::infinity(); }
+  virtual double stand_at(double, const Memory&, const std::vector<RigidBodyState>&) {
+    return std::numeric_limits<double>::infinity();
+  }
   /// What acts now goes on from.
   virtual Memory memory() const { return {}; }
 };
@@ -137,8 +141,8 @@ class GroupTerms {
 
 /// What an effect brought into a world. [J]
 struct Work {
-  double done = 0.0;           // as far as it is known
-  double most = 0.0;           // besides, at most
+  double done = 0.0;  // as far as it is known
+  double most = 0.0;  // besides, at most
 };
 class WorkMeter {
  public:
@@ -152,34 +156,34 @@ class WorkMeter {
 /// Takes evenly from the velocities of a body: m v' = -linear v, I w' = -angular w.
 struct Drain {
   int body;
-  double linear, angular;      // [N s/m], [N m s]
-  std::string of, remedy;      // in words: "the resistance of body 'a'", "less resistance"
+  double linear, angular;  // [N s/m], [N m s]
+  std::string of, remedy;  // in words: "the resistance of body 'a'", "less resistance"
 };
 
 /// Draws bodies back along one direction: K = J^T stiffness J, C = J^T damping J. What swings
 /// fastest by all of these limits the step.
 struct StiffRow {
-  int body_a, body_b;          // -1: the world
-  Vector6d jacobian_a, jacobian_b;   // (6): (linear, angular), world
-  double stiffness, damping;   // along it [N/m], [N s/m]
-  std::string of;              // in words: "spring 'a'"
-  std::string remedy;          // beside a shorter step: "a softer spring or more damping"
-  std::string last_remedy;     // where the method follows it at no step: "damp the spring"
+  int body_a, body_b;               // -1: the world
+  Vector6d jacobian_a, jacobian_b;  // (6): (linear, angular), world
+  double stiffness, damping;        // along it [N/m], [N s/m]
+  std::string of;                   // in words: "spring 'a'"
+  std::string remedy;               // beside a shorter step: "a softer spring or more damping"
+  std::string last_remedy;          // where the method follows it at no step: "damp the spring"
 };
 
 /// Something that keeps two anchors at a distance, or at one place, and carries what hangs on it.
 struct Carrier {
   Anchor a, b;
-  double length;               // 0: at one place [m]
-  bool turns;                  // bodies turn about the place
-  int entry;                   // of its effect
+  double length;  // 0: at one place [m]
+  bool turns;     // bodies turn about the place
+  int entry;      // of its effect
 };
 
 /// What pulls at bodies at an instant, for what is said of a run that gets out of hand.
 struct Pull {
-  int body_a, body_b;          // -1: the world
-  double force;                // its size [N]
-  std::string words;           // what pulls, by which law: "spring 'a' (spring_force of reference)"
+  int body_a, body_b;  // -1: the world
+  double force;        // its size [N]
+  std::string words;   // what pulls, by which law: "spring 'a' (spring_force of reference)"
 };
 
 /// Where a body of a scene is in a frame, by its name; nullptr for the world (an empty name).
@@ -188,8 +192,8 @@ using PoseOf = std::function<const BodyPose*(const std::string& body)>;
 /// A law that an effect asks, and whether a module provides it.
 struct NeededLaw {
   bool is_there;
-  std::string what;            // "the force of a spring"
-  std::string assignment;      // "a3"
+  std::string what;        // "the force of a spring"
+  std::string assignment;  // "a3"
 };
 
 using scene::Traits;
@@ -211,13 +215,18 @@ class Effect : public scene::Words {
   virtual std::vector<int> bodies_of(const World& world, int entry) const = 0;
   /// Copies entries into a part of the world, in this order.
   /// @param in_part  by body of the whole: its index in the part; -1 stays
-  virtual void copy_entries(const World& whole, const std::vector<int>& entries, const std::function<int(int body)>& in_part, World& part) const = 0;
+  virtual void copy_entries(const World& whole, const std::vector<int>& entries,
+                            const std::function<int(int body)>& in_part, World& part) const = 0;
 
   // How it acts: none of both where it does not act in this world ---------------------------------
 
   virtual std::unique_ptr<SteadyForces> steady_forces(const Acting&) const { return nullptr; }
   /// @param entries  those that name bodies of the group, ascending; one at least
-  virtual std::unique_ptr<GroupTerms> group_terms(const Acting&, const std::vector<int>& /*entries*/, GroupPlaces&) const { return nullptr; }
+  virtual std::unique_ptr<GroupTerms> group_terms(const Acting&,
+                                                  const std::vector<int>& /*entries*/,
+                                                  GroupPlaces&) const {
+    return nullptr;
+  }
   virtual std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws&) const { return {}; }
 
   /// All switches of a run, in the order of entries.
@@ -230,7 +239,8 @@ class Effect : public scene::Words {
 
   /// Adds the potential energy of its entries in these states. [J]
   /// @param states  by body; of immovable bodies the place alone is looked at
-  virtual void add_potential_energy(const World&, const std::vector<RigidBodyState>&, double&) const {}
+  virtual void add_potential_energy(const World&, const std::vector<RigidBodyState>&,
+                                    double&) const {}
   /// Adds the size of the terms that this energy is a sum of, each as large as its parts make it:
   /// what rounding is relative to. [J]
   virtual void add_energy_terms(const World&, const std::vector<RigidBodyState>&, double&) const {}
@@ -241,10 +251,12 @@ class Effect : public scene::Words {
 
   virtual void append_drains(const World&, std::vector<Drain>&) const {}
   /// Where the run starts. @param start  by body
-  virtual void append_stiff_rows(const World&, const std::vector<RigidBodyState>&, std::vector<StiffRow>&) const {}
+  virtual void append_stiff_rows(const World&, const std::vector<RigidBodyState>&,
+                                 std::vector<StiffRow>&) const {}
   /// The directions in which its entries let nothing move: rows between bodies of the world (-1:
   /// the world itself).
-  virtual void append_held_rows(const World&, const std::vector<RigidBodyState>&, std::vector<Constraint>&) const {}
+  virtual void append_held_rows(const World&, const std::vector<RigidBodyState>&,
+                                std::vector<Constraint>&) const {}
   virtual void append_carriers(const World&, std::vector<Carrier>&) const {}
 
   // What is recorded and reported of it -----------------------------------------------------------
@@ -252,11 +264,15 @@ class Effect : public scene::Words {
   /// Where a frame keeps what its entries pull with; nullptr where nothing of it is recorded.
   virtual std::vector<double> Frame::*measured_as() const { return nullptr; }
   /// @param measured  what group_terms have measured, by entry; empty where they measure nothing
-  virtual void append_pulls(const World&, const std::vector<RigidBodyState>&, const std::vector<double>&, const Laws&, std::vector<Pull>&) const {}
+  virtual void append_pulls(const World&, const std::vector<RigidBodyState>&,
+                            const std::vector<double>&, const Laws&, std::vector<Pull>&) const {}
 
   /// How far an entry is off in a frame, by the places of bodies alone, and what is found: of one
   /// of its link_checks.
-  virtual std::pair<double, std::string> error_of(const std::string&, const scene::Scene&, std::size_t, const PoseOf&) const { return {0.0, ""}; }
+  virtual std::pair<double, std::string> error_of(const std::string&, const scene::Scene&,
+                                                  std::size_t, const PoseOf&) const {
+    return {0.0, ""};
+  }
 
   // What is drawn of it ---------------------------------------------------------------------------
 

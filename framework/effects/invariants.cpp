@@ -12,9 +12,11 @@ Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& 
     const RigidBodyState& state = states[i];
     sums.kinetic_energy += kinetic_energy(state, body.inertia);
     sums.momentum_world += state.momentum_world;
-    sums.angular_momentum_world += state.angular_momentum_world + state.com_world.cross(state.momentum_world);
+    sums.angular_momentum_world +=
+        state.angular_momentum_world + state.com_world.cross(state.momentum_world);
   }
-  for (const effects::Effect* effect : effects::all()) effect->add_potential_energy(world, states, sums.potential_energy);
+  for (const effects::Effect* effect : effects::all())
+    effect->add_potential_energy(world, states, sums.potential_energy);
   return sums;
 }
 

@@ -9,10 +9,10 @@ namespace tumble {
 
 /// Sums over the movable bodies of a world.
 struct Invariants {
-  double kinetic_energy = 0.0;                            // [J]
-  double potential_energy = 0.0;                          // of all effects [J]
-  Vector3d momentum_world = Vector3d::Zero();             // [kg m/s]
-  Vector3d angular_momentum_world = Vector3d::Zero();     // about the world's origin [kg m^2/s]
+  double kinetic_energy = 0.0;                         // [J]
+  double potential_energy = 0.0;                       // of all effects [J]
+  Vector3d momentum_world = Vector3d::Zero();          // [kg m/s]
+  Vector3d angular_momentum_world = Vector3d::Zero();  // about the world's origin [kg m^2/s]
 };
 /// @param states  by body index; of immovable bodies the place alone is looked at, for what ends
 /// there

@@ -19,22 +19,28 @@ struct PlacedEnd {
   int place;
   Vector3d point_body;
 
-  Vector3d point_among(const std::vector<Body>& bodies) const { return bodies[place].com_world + bodies[place].world_from_body * point_body; }
+  Vector3d point_among(const std::vector<Body>& bodies) const {
+    return bodies[place].com_world + bodies[place].world_from_body * point_body;
+  }
   AnchorState state_among(const std::vector<Body>& bodies) const {
     const Vector3d point_world = point_among(bodies);
-    return {point_world, bodies[place].velocity_world + bodies[place].omega_world.cross(point_world - bodies[place].com_world)};
+    return {point_world, bodies[place].velocity_world + bodies[place].omega_world.cross(
+                                                            point_world - bodies[place].com_world)};
   }
 };
 struct PlacedLink {
-  int entry;                   // in the world's list
+  int entry;  // in the world's list
   PlacedEnd a, b;
 };
 
 /// These links, with their places in the group. @tparam Held  has anchors a and b
 template <class Held>
-std::vector<PlacedLink> placed_links(const std::vector<Held>& all, const std::vector<int>& entries, GroupPlaces& places) {
+std::vector<PlacedLink> placed_links(const std::vector<Held>& all, const std::vector<int>& entries,
+                                     GroupPlaces& places) {
   std::vector<PlacedLink> links;
-  const auto placed = [&](const Anchor& anchor) { return PlacedEnd{places.place_of(anchor.body), anchor.point_body}; };
+  const auto placed = [&](const Anchor& anchor) {
+    return PlacedEnd{places.place_of(anchor.body), anchor.point_body};
+  };
   for (const int entry : entries) {
     const Held& link = all[static_cast<std::size_t>(entry)];
     const PlacedEnd a = placed(link.a);
@@ -43,17 +49,22 @@ std::vector<PlacedLink> placed_links(const std::vector<Held>& all, const std::ve
   return links;
 }
 
-inline void add_force(const Body& body, const Vector3d& force_world, const Vector3d& point_world, Wrench& wrench) {
+inline void add_force(const Body& body, const Vector3d& force_world, const Vector3d& point_world,
+                      Wrench& wrench) {
   wrench.force_world += force_world;
   wrench.torque_world += (point_world - body.com_world).cross(force_world);
 }
 
 /// The laws that anything asks which holds by rows.
-inline void append_laws_of_rows(const scene::Scene& scene, const Laws& laws, std::vector<NeededLaw>& needed) {
-  needed.push_back({static_cast<bool>(laws.constraint_multipliers), "the multipliers of rods and joints", "a3"});
-  needed.push_back({static_cast<bool>(laws.constraint_correction), "the correction onto rods and joints", "a3"});
+inline void append_laws_of_rows(const scene::Scene& scene, const Laws& laws,
+                                std::vector<NeededLaw>& needed) {
+  needed.push_back(
+      {static_cast<bool>(laws.constraint_multipliers), "the multipliers of rods and joints", "a3"});
+  needed.push_back(
+      {static_cast<bool>(laws.constraint_correction), "the correction onto rods and joints", "a3"});
   if (scene.stabilisation && scene.stabilisation->kind == scene::StabilisationKind::kBaumgarte)
-    needed.push_back({static_cast<bool>(laws.baumgarte_acceleration), "Baumgarte's acceleration", "a3"});
+    needed.push_back(
+        {static_cast<bool>(laws.baumgarte_acceleration), "Baumgarte's acceleration", "a3"});
 }
 
 /// Does `work`; a StoppedRun out of it is thrown again with the link in front. Words are made where
@@ -79,7 +90,8 @@ class LinkedEffect : public ListedEffect<Spec, Held> {
 
   std::vector<scene::Link> links(const scene::Scene& scene) const override {
     std::vector<scene::Link> links;
-    for (const Spec& spec : this->specs(scene)) links.push_back({spec.name, spec.a, spec.b, length_of(spec), spec.pointer});
+    for (const Spec& spec : this->specs(scene))
+      links.push_back({spec.name, spec.a, spec.b, length_of(spec), spec.pointer});
     return links;
   }
   void visit_places(TypedLists& effects, const scene::VisitPlace& visit) const override {
@@ -101,15 +113,19 @@ class LinkedEffect : public ListedEffect<Spec, Held> {
     spec.a = entry.anchor("a");
     spec.b = entry.anchor("b");
   }
-  static double distance_at_start(scene::Entry& entry, const Spec& spec) { return (entry.place_at_start(spec.b) - entry.place_at_start(spec.a)).norm(); }
+  static double distance_at_start(scene::Entry& entry, const Spec& spec) {
+    return (entry.place_at_start(spec.b) - entry.place_at_start(spec.a)).norm();
+  }
   static std::string between(const Spec& spec) {
     const auto ending = [](const std::string& body) { return body.empty() ? "the world" : body; };
     return ending(spec.a.body) + " to " + ending(spec.b.body);
   }
   /// Both anchors of a link. @throws UserError where neither can move
-  std::pair<Anchor, Anchor> anchors_of(const Spec& spec, const BodyIndex& index, const World& world) const {
+  std::pair<Anchor, Anchor> anchors_of(const Spec& spec, const BodyIndex& index,
+                                       const World& world) const {
     const std::string subject = this->name() + " '" + spec.name + "'";
-    const std::pair<Anchor, Anchor> anchors{index.anchor(spec.a, subject), index.anchor(spec.b, subject)};
+    const std::pair<Anchor, Anchor> anchors{index.anchor(spec.a, subject),
+                                            index.anchor(spec.b, subject)};
     refuse_immovable(anchors.first.body, anchors.second.body, world, subject);
     return anchors;
   }

@@ -27,8 +27,11 @@ class ListedEffect : public Effect {
   void clear(scene::Scene& scene) const override { scene.effects.of<Spec>().clear(); }
 
   int count_in(const World& world) const override { return static_cast<int>(held(world).size()); }
-  std::vector<int> bodies_of(const World& world, int entry) const override { return ends_of(held(world)[static_cast<std::size_t>(entry)]); }
-  void copy_entries(const World& whole, const std::vector<int>& entries, const std::function<int(int)>& in_part, World& part) const override {
+  std::vector<int> bodies_of(const World& world, int entry) const override {
+    return ends_of(held(world)[static_cast<std::size_t>(entry)]);
+  }
+  void copy_entries(const World& whole, const std::vector<int>& entries,
+                    const std::function<int(int)>& in_part, World& part) const override {
     for (const int k : entries) {
       Held entry = held(whole)[static_cast<std::size_t>(k)];
       rename_ends(entry, in_part);
@@ -37,7 +40,9 @@ class ListedEffect : public Effect {
   }
 
  protected:
-  static const std::vector<Spec>& specs(const scene::Scene& scene) { return scene.effects.of<Spec>(); }
+  static const std::vector<Spec>& specs(const scene::Scene& scene) {
+    return scene.effects.of<Spec>();
+  }
   static const std::vector<Held>& held(const World& world) { return world.effects.of<Held>(); }
 };
 

@@ -12,7 +12,7 @@ namespace tumble::effects {
 /// Always in the same order: that of the lines, in which forces are added and effects are listed.
 const std::vector<const Effect*>& all();
 
-inline constexpr std::size_t kMost = 32;   // counts stand in arrays of this size
+inline constexpr std::size_t kMost = 32;  // counts stand in arrays of this size
 
 /// Everything that the scene asks effects to draw.
 Drawables drawn(const scene::Scene& scene);

@@ -29,21 +29,28 @@ namespace {
 template <class Law>
 void need(const Law& law, const scene::Scene& scene, const char* what, const char* assignment) {
   if (law) return;
-  throw UserError(scene.name, std::string("needs ") + what + ", and no module provides it",
-                  std::string("assignment ") + assignment + " provides it: fill in that assignment first, or name a file that has it: --modules " + assignment + "=PATH");
+  throw UserError(
+      scene.name, std::string("needs ") + what + ", and no module provides it",
+      std::string("assignment ") + assignment +
+          " provides it: fill in that assignment first, or name a file that has it: --modules " +
+          assignment + "=PATH");
 }
 
 bool may_meet(const scene::Scene& scene) {
-  return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
+  return std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                       [](const scene::BodySpec& body) { return body.collides; }) > 1;
 }
 
 void check_laws(const scene::Scene& scene, const Laws& laws) {
   need(laws.integrate_step, scene, "a step of integration", "a2 (or the framework's library laws)");
-  need(laws.state_derivative, scene, "the derivative of a rigid body's state", "a2 (or the framework's library laws)");
-  need(laws.renormalize, scene, "the renormalisation of quaternions", "a2 (or the framework's library laws)");
+  need(laws.state_derivative, scene, "the derivative of a rigid body's state",
+       "a2 (or the framework's library laws)");
+  need(laws.renormalize, scene, "the renormalisation of quaternions",
+       "a2 (or the framework's library laws)");
   for (const effects::Effect* effect : effects::all())
     if (effect->is_asked(scene))
-      for (const effects::NeededLaw& law : effect->needed_laws(scene, laws)) need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
+      for (const effects::NeededLaw& law : effect->needed_laws(scene, laws))
+        need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
   if (scene.contact) {
     need(laws.ends_in_contact, scene, "the beginning of a lasting contact", "a3");
     need(laws.contact_forces, scene, "the forces of lasting contacts", "a3");
@@ -55,25 +62,40 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   }
 }
 
-// A step of the smallest world takes a microsecond; a frame takes some hundred bytes a body, and all are kept.
+// A step of the smallest world takes a microsecond; a frame takes some hundred bytes a body, and
+// all are kept.
 constexpr double kMostSteps = 1e8, kMostFrames = 1e7;
 
 void refuse_endless(const scene::Scene& scene, double step, double duration, double frame_rate_hz) {
   const std::string where = scene.file.empty() ? scene.name : scene.file.string();
   if (duration / step > kMostSteps)
-    throw UserError(where, fmt::format("{:.3g} s in steps of {:.3g} s are {:.2g} steps, which would take too long", duration, step, duration / step),
-                    fmt::format("Take a longer step (\"step_s\") or a shorter run (\"duration_s\"): at most {:.0e} steps.", kMostSteps));
+    throw UserError(
+        where,
+        fmt::format("{:.3g} s in steps of {:.3g} s are {:.2g} steps, which would take too long",
+                    duration, step, duration / step),
+        fmt::format("Take a longer step (\"step_s\") or a shorter run (\"duration_s\"): at most "
+                    "{:.0e} steps.",
+                    kMostSteps));
   if (duration * frame_rate_hz > kMostFrames)
-    throw UserError(where, fmt::format("{:.3g} s at {:g} frames a second are {:.2g} frames, which memory would not hold", duration, frame_rate_hz, duration * frame_rate_hz),
-                    fmt::format("Take a shorter run (\"duration_s\"): at most {:.0e} frames.", kMostFrames));
+    throw UserError(
+        where,
+        fmt::format(
+            "{:.3g} s at {:g} frames a second are {:.2g} frames, which memory would not hold",
+            duration, frame_rate_hz, duration * frame_rate_hz),
+        fmt::format("Take a shorter run (\"duration_s\"): at most {:.0e} frames.", kMostFrames));
 }
 
 void check_callbacks(const std::vector<Callback>& callbacks, const scene::Scene& scene) {
   for (std::size_t k = 0; k < callbacks.size(); ++k) {
     const std::vector<int>& bodies = callbacks[k].bodies;
-    require(!bodies.empty() && std::is_sorted(bodies.begin(), bodies.end()) && (k == 0 || callbacks[k - 1].time <= callbacks[k].time), "callbacks come in order of time, each with its bodies in order");
+    require(!bodies.empty() && std::is_sorted(bodies.begin(), bodies.end()) &&
+                (k == 0 || callbacks[k - 1].time <= callbacks[k].time),
+            "callbacks come in order of time, each with its bodies in order");
     for (const int body : bodies)
-      require(body >= 0 && body < static_cast<int>(scene.bodies.size()) && !scene.bodies[static_cast<std::size_t>(body)].immovable, fmt::format("a callback acts on movable bodies of the scene, and body {} is none", body));
+      require(
+          body >= 0 && body < static_cast<int>(scene.bodies.size()) &&
+              !scene.bodies[static_cast<std::size_t>(body)].immovable,
+          fmt::format("a callback acts on movable bodies of the scene, and body {} is none", body));
   }
 }
 
@@ -84,7 +106,8 @@ Engine engine_of(const RunOptions& options, const Laws& laws) {
   if (options.engine == "tw") {
     if (laws.scheduling) return run_taught_timewarp;
     if (options.timewarp) return options.timewarp;
-    throw UserError("--engine tw", "nobody has written a scheduler for it: that is assignment a4", "use rd or ca, or run with a module that has one");
+    throw UserError("--engine tw", "nobody has written a scheduler for it: that is assignment a4",
+                    "use rd or ca, or run with a module that has one");
   }
   std::string known;
   std::vector<std::string> words;
@@ -92,15 +115,23 @@ Engine engine_of(const RunOptions& options, const Laws& laws) {
     known += (known.empty() ? "" : ", ") + word + " (" + meaning + ")";
     words.push_back(word);
   }
-  throw UserError("--engine " + options.engine, "there is no engine of that name." + did_you_mean(options.engine, words), "Use one of these: " + known + ".");
+  throw UserError("--engine " + options.engine,
+                  "there is no engine of that name." + did_you_mean(options.engine, words),
+                  "Use one of these: " + known + ".");
 }
 
-// What a callback sees and may do is the same in every engine: places of the world, of which none is moved; and what goes wrong names it and the body.
-std::vector<Callback> guarded_callbacks(const std::vector<Callback>& callbacks, const scene::Scene& scene, const Vector3d& origin_world) {
+// What a callback sees and may do is the same in every engine: places of the world, of which none
+// is moved; and what goes wrong names it and the body.
+std::vector<Callback> guarded_callbacks(const std::vector<Callback>& callbacks,
+                                        const scene::Scene& scene, const Vector3d& origin_world) {
   std::vector<Callback> all = callbacks;
   for (Callback& callback : all)
-    callback.act = [act = callback.act, time = callback.time, &scene, origin_world](int body, RigidBodyState& state) {
-      const auto who = [&] { return fmt::format("body '{}': the callback at {:.6g} s", scene.bodies[static_cast<std::size_t>(body)].name, time); };
+    callback.act = [act = callback.act, time = callback.time, &scene, origin_world](
+                       int body, RigidBodyState& state) {
+      const auto who = [&] {
+        return fmt::format("body '{}': the callback at {:.6g} s",
+                           scene.bodies[static_cast<std::size_t>(body)].name, time);
+      };
       RigidBodyState seen = state;
       seen.com_world += origin_world;
       try {
@@ -110,16 +141,19 @@ std::vector<Callback> guarded_callbacks(const std::vector<Callback>& callbacks, 
       }
       state.momentum_world = seen.momentum_world;
       state.angular_momentum_world = seen.angular_momentum_world;
-      if (!pack(state).allFinite()) throw StoppedRun(who() + " gave it a state that is not a number");
+      if (!pack(state).allFinite())
+        throw StoppedRun(who() + " gave it a state that is not a number");
     };
   return all;
 }
 
-constexpr int kMostBeginnings = 20;   // moving bodies apart turns nothing, so that one shift does where contacts are flat
+// moving bodies apart turns nothing, so that one shift does where contacts are flat
+constexpr int kMostBeginnings = 20;
 
-/// Runs the engine. Where bodies overlap at the start by no more than the rounding of what a scene says, they are moved apart, the run
-/// begins again, and `watch` tells of it.
-void run_from_apart(const Engine& engine, const scene::Scene& scene, const Laws& laws, const RunOptions& options, StartWatch& watch, TrajectorySink& sink) {
+/// Runs the engine. Where bodies overlap at the start by no more than the rounding of what a scene
+/// says, they are moved apart, the run begins again, and `watch` tells of it.
+void run_from_apart(const Engine& engine, const scene::Scene& scene, const Laws& laws,
+                    const RunOptions& options, StartWatch& watch, TrajectorySink& sink) {
   scene::Scene apart;
   const scene::Scene* now = &scene;
   for (int beginning = 0; beginning < kMostBeginnings; ++beginning) {
@@ -128,7 +162,8 @@ void run_from_apart(const Engine& engine, const scene::Scene& scene, const Laws&
     } catch (const OverlapAtStart& overlap) {
       auto moved = overlap.is_explained() ? moved_apart(*now, overlap.near()) : std::nullopt;
       if (!moved || beginning + 1 == kMostBeginnings) throw;
-      if (beginning == 0) watch.add(moved->notice);   // the first shift is what the scene's places are off by
+      // the first shift is what the scene's places are off by
+      if (beginning == 0) watch.add(moved->notice);
       apart = std::move(moved->scene);
       now = &apart;
     }
@@ -139,23 +174,37 @@ void run_from_apart(const Engine& engine, const scene::Scene& scene, const Laws&
 
 const std::vector<std::pair<std::string, std::string>>& engine_words() {
   static const std::vector<std::pair<std::string, std::string>> words = {
-      {"rd", "retroactive detection with fixed step"}, {"ca", "conservative advancement"}, {"tw", "timewarp"}, {"ordered", "one event after the other, the reference"}};
+      {"rd", "retroactive detection with fixed step"},
+      {"ca", "conservative advancement"},
+      {"tw", "timewarp"},
+      {"ordered", "one event after the other, the reference"}};
   return words;
 }
 
-void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& asked, TrajectorySink& sink) {
+void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& asked,
+               TrajectorySink& sink) {
   RunOptions options = asked;
   if (options.engine.empty()) options.engine = scene.engine.empty() ? "rd" : scene.engine;
   const Engine engine = engine_of(options, laws);
   if (!options.propagator.empty() && options.propagator != "laws" && options.propagator != "auto")
-    throw UserError("--propagator " + options.propagator, "expected laws (the laws' integration) or auto (closed forms where nothing but gravity acts)", "For example --propagator auto.");
+    throw UserError("--propagator " + options.propagator,
+                    "expected laws (the laws' integration) or auto (closed forms where nothing but "
+                    "gravity acts)",
+                    "For example --propagator auto.");
   if (options.propagator == "laws" && options.engine != "rd")
-    throw UserError("--propagator laws", "--engine " + options.engine + " moves bodies in closed form only", "Use --engine rd to see a method of integration at work.");
-  const double step = options.step_s.value_or(scene.step_s), duration = options.duration_s.value_or(scene.duration_s);
-  if (!(step > 0) || !std::isfinite(step)) throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
-  if (!(duration >= 0) || !std::isfinite(duration)) throw UserError(scene.name, "the duration must not be negative", "give \"duration_s\" in seconds");
+    throw UserError("--propagator laws",
+                    "--engine " + options.engine + " moves bodies in closed form only",
+                    "Use --engine rd to see a method of integration at work.");
+  const double step = options.step_s.value_or(scene.step_s),
+               duration = options.duration_s.value_or(scene.duration_s);
+  if (!(step > 0) || !std::isfinite(step))
+    throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
+  if (!(duration >= 0) || !std::isfinite(duration))
+    throw UserError(scene.name, "the duration must not be negative",
+                    "give \"duration_s\" in seconds");
   refuse_endless(scene, step, duration, options.frame_rate_hz);
-  if (!(options.frame_rate_hz > 0)) throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
+  if (!(options.frame_rate_hz > 0))
+    throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
   check_callbacks(options.callbacks, scene);
   check_laws(scene, laws);
 
@@ -173,7 +222,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   info.frame_rate_hz = options.frame_rate_hz;
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
-  std::set<int> pushed;   // velocities at the start are what a callback has made of them
+  std::set<int> pushed;  // velocities at the start are what a callback has made of them
   for (const Callback& callback : options.callbacks)
     if (callback.time <= 0) pushed.insert(callback.bodies.begin(), callback.bodies.end());
   StartWatch watch(scene, std::move(pushed), sink);

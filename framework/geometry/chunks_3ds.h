@@ -18,9 +18,10 @@ struct DeclaredMesh {
 /// The meshes that the file declares, and its bytes with every chunk hidden that does not affect a
 /// shape.
 struct Checked3ds {
-  std::vector<DeclaredMesh> meshes;   // in the file's order
-  bool has_nodes = false;             // a keyframer section places the meshes
-  std::string bytes;                  // with materials, smoothing groups and the master scale hidden: no mesh is
+  std::vector<DeclaredMesh> meshes;  // in the file's order
+  bool has_nodes = false;            // a keyframer section places the meshes
+  // with materials, smoothing groups and the master scale hidden: no mesh is
+  std::string bytes;
   // split by material, and coordinates stay in the file's unit
 };
 
@@ -29,7 +30,8 @@ struct Checked3ds {
 /// @throws UserError, each kind with its own message and byte offset: empty, not 3DS, truncated, a
 ///   chunk longer than its parent, counts that the chunk cannot hold, an index out of range, NaN or
 ///   infinite numbers, a singular transform, nested too deep, too large
-/// Source: format as in the public 3D Studio file notes (J. van Velsen, R. Kalms, 1996).   Cost: O(bytes)
+/// Source: format as in the public 3D Studio file notes (J. van Velsen, R. Kalms, 1996).   Cost:
+/// O(bytes)
 Checked3ds check_3ds(std::string_view bytes, const std::string& where);
 
 }  // namespace tumble

@@ -13,8 +13,9 @@ namespace tumble {
 struct ClosedReport {
   std::vector<Defect> defects;       // none: the surface is closed
   std::vector<std::string> notices;  // repairs, and what is unusual but legal
-  TriangleMesh mesh;                 // the repaired surface: no unused vertices, outward; the input where defects remain
-  int parts = 0;                     // connected components, cavities included
+  // the repaired surface: no unused vertices, outward; the input where defects remain
+  TriangleMesh mesh;
+  int parts = 0;  // connected components, cavities included
   bool is_closed() const { return defects.empty(); }
 };
 
@@ -27,7 +28,8 @@ struct ClosedReport {
 /// are dropped where the rest is a solid; a vertex at which two fans of faces touch is doubled;
 /// unused vertices are dropped.
 /// @param mesh  equal positions already share a vertex (geometry/load_3ds.h welds)
-/// @post  when is_closed(): report.mesh has every edge in exactly two faces, once in each direction, and positive volume
+/// @post  when is_closed(): report.mesh has every edge in exactly two faces, once in each
+///        direction, and positive volume
 /// Cost: O(n log n) in the faces, plus O(k n) for k parts inside each other's bounding boxes.
 ClosedReport check_closed(const TriangleMesh& mesh);
 

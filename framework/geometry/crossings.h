@@ -19,8 +19,11 @@ namespace tumble {
 /// another where some of its faces lie inside the other and some outside.
 /// @param part_of_face  (faces), each part named by its smallest face
 /// @param notices       gets a line where too many pairs of faces overlap to test them all
-/// Cost: O(n log n) for a surface that is spread out; O(n m) for parts of n and m faces that lie on each other
-/// Source: T. Moeller, "A fast triangle-triangle intersection test", J. Graphics Tools 2(2), 1997 (intervals on the common line).
-std::vector<Defect> find_crossings(const TriangleMesh& closed_mesh, const std::vector<int>& part_of_face, std::vector<std::string>& notices);
+/// Cost: O(n log n) for a surface that is spread out; O(n m) for parts of n and m faces that lie on
+/// each other Source: T. Moeller, "A fast triangle-triangle intersection test", J. Graphics Tools
+/// 2(2), 1997 (intervals on the common line).
+std::vector<Defect> find_crossings(const TriangleMesh& closed_mesh,
+                                   const std::vector<int>& part_of_face,
+                                   std::vector<std::string>& notices);
 
 }  // namespace tumble

@@ -7,22 +7,26 @@ namespace tumble {
 
 enum class DefectKind {
   kNoFaces,
-  kBadIndex,          // a face refers to a vertex that does not exist
-  kNotFinite,         // NaN or infinite coordinate
-  kSinglePolygon,     // open and flat
-  kTerrain,           // open, and every normal points up
-  kMissingFace,       // one or more holes in an otherwise closed surface
-  kLampshade,         // one polygon thick: a tube open at both ends, or two layers of faces back to back
-  kRepeatedFace,      // the same face twice, with the same orientation
-  kMergedCorners,     // corners that single precision has merged: faces without area, and others back to back
-  kCrack,             // open edges close beside each other
-  kEdgeOfManyFaces,   // three or more faces at an edge
-  kOrientation,       // neighbours disagree on which side is outside
-  kOneSided,          // like a Moebius strip: no choice of sides exists
-  kNestedOutward,     // a part inside another that is not a cavity of it: its volume would count twice
+  kBadIndex,       // a face refers to a vertex that does not exist
+  kNotFinite,      // NaN or infinite coordinate
+  kSinglePolygon,  // open and flat
+  kTerrain,        // open, and every normal points up
+  kMissingFace,    // one or more holes in an otherwise closed surface
+  // one polygon thick: a tube open at both ends, or two layers of faces back to back
+  kLampshade,
+  kRepeatedFace,  // the same face twice, with the same orientation
+  // corners that single precision has merged: faces without area, and others back to back
+  kMergedCorners,
+  kCrack,            // open edges close beside each other
+  kEdgeOfManyFaces,  // three or more faces at an edge
+  kOrientation,      // neighbours disagree on which side is outside
+  kOneSided,         // like a Moebius strip: no choice of sides exists
+  // a part inside another that is not a cavity of it: its volume would count twice
+  kNestedOutward,
   kZeroVolume,
-  kNeedle,            // so long and thin that its moment about its length is lost in double precision
-  kSelfCrossing,      // shells pass through each other, or one through itself
+  // so long and thin that its moment about its length is lost in double precision
+  kNeedle,
+  kSelfCrossing,  // shells pass through each other, or one through itself
 };
 
 /// One defect of a surface.

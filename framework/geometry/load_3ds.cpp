@@ -20,13 +20,15 @@
 namespace tumble {
 namespace {
 
-constexpr const char* kNameless = "3DSMesh_";  // assimp's name for the node of mesh i in a file without nodes
+// assimp's name for the node of mesh i in a file without nodes
+constexpr const char* kNameless = "3DSMesh_";
 
 using Affine = Eigen::Affine3d;
 
 Affine to_eigen(const aiMatrix4x4& m) {
   Affine result;
-  result.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  result.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1,
+      m.d2, m.d3, m.d4;
   return result;
 }
 
@@ -44,9 +46,11 @@ class Gatherer {
 
  private:
   void visit(const aiNode& node, const Affine& world_from_parent, bool is_root) {
-    const Affine world_from_node = is_root ? world_from_parent : world_from_parent * to_eigen(node.mTransformation);
+    const Affine world_from_node =
+        is_root ? world_from_parent : world_from_parent * to_eigen(node.mTransformation);
     if (node.mNumMeshes > 0) gather(node, world_from_node);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], world_from_node, false);
+    for (unsigned i = 0; i < node.mNumChildren; ++i)
+      visit(*node.mChildren[i], world_from_node, false);
   }
 
   void gather(const aiNode& node, const Affine& world_from_node) {
@@ -59,7 +63,8 @@ class Gatherer {
         if (face.mNumIndices != 3) continue;  // a point or a line
         Face& corners = mesh.faces.emplace_back();
         for (int corner = 0; corner < 3; ++corner) {
-          corners[corner] = weld(piece.mVertices[face.mIndices[corner]], world_from_node, welded, mesh);
+          corners[corner] =
+              weld(piece.mVertices[face.mIndices[corner]], world_from_node, welded, mesh);
         }
       }
     }
@@ -67,14 +72,18 @@ class Gatherer {
   }
 
   // Corners that have exactly the same float32 coordinates in the mesh's own frame are one vertex.
-  int weld(const aiVector3D& p, const Affine& world_from_node, std::map<std::array<float, 3>, int>& welded, TriangleMesh& mesh) const {
+  int weld(const aiVector3D& p, const Affine& world_from_node,
+           std::map<std::array<float, 3>, int>& welded, TriangleMesh& mesh) const {
     const std::array<float, 3> key{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 becomes +0
-    if (!std::isfinite(key[0]) || !std::isfinite(key[1]) || !std::isfinite(key[2])) {  // NaN has no place in an ordered map
+    // NaN has no place in an ordered map
+    if (!std::isfinite(key[0]) || !std::isfinite(key[1]) || !std::isfinite(key[2])) {
       mesh.vertices.push_back(Vector3d(p.x, p.y, p.z));
       return static_cast<int>(mesh.vertices.size()) - 1;
     }
     const auto [place, is_new] = welded.try_emplace(key, static_cast<int>(mesh.vertices.size()));
-    if (is_new) mesh.vertices.push_back(metres_per_unit_ * (world_from_node * Vector3d(key[0], key[1], key[2])));
+    if (is_new)
+      mesh.vertices.push_back(metres_per_unit_ *
+                              (world_from_node * Vector3d(key[0], key[1], key[2])));
     return place->second;
   }
 
@@ -112,8 +121,10 @@ void add_faceless(const Checked3ds& file, LoadedFile& loaded) {
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (error || !std::filesystem::exists(status)) throw UserError(path.string(), "no such file", "Check the path.");
-  if (!std::filesystem::is_regular_file(status)) throw UserError(path.string(), "not a file", "Name a .3ds file.");
+  if (error || !std::filesystem::exists(status))
+    throw UserError(path.string(), "no such file", "Check the path.");
+  if (!std::filesystem::is_regular_file(status))
+    throw UserError(path.string(), "not a file", "Name a .3ds file.");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw UserError(path.string(), "cannot be opened", "Check its permissions.");
   std::ostringstream bytes;
@@ -123,18 +134,25 @@ std::string read_bytes(const std::filesystem::path& path) {
 
 }  // namespace
 
-LoadedFile parse_3ds(std::string_view bytes, const std::string& where, const Load3dsOptions& options) {
+LoadedFile parse_3ds(std::string_view bytes, const std::string& where,
+                     const Load3dsOptions& options) {
   if (!(options.metres_per_unit > 0.0) || !std::isfinite(options.metres_per_unit)) {
-    throw UserError(where, fmt::format("metres per unit is {}, expected a positive number", options.metres_per_unit), "");
+    throw UserError(
+        where,
+        fmt::format("metres per unit is {}, expected a positive number", options.metres_per_unit),
+        "");
   }
   const Checked3ds file = check_3ds(bytes, where);
   LoadedFile loaded{where, {}};
-  const bool has_faces = std::any_of(file.meshes.begin(), file.meshes.end(), [](const DeclaredMesh& m) { return m.faces > 0; });
+  const bool has_faces = std::any_of(file.meshes.begin(), file.meshes.end(),
+                                     [](const DeclaredMesh& m) { return m.faces > 0; });
   if (has_faces) {
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(), aiProcess_Triangulate, "3ds");
+    const aiScene* scene = importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(),
+                                                       aiProcess_Triangulate, "3ds");
     if (scene == nullptr || scene->mRootNode == nullptr) {
-      throw UserError(where, fmt::format("cannot be read: {}", importer.GetErrorString()), "The file is damaged: export it again.");
+      throw UserError(where, fmt::format("cannot be read: {}", importer.GetErrorString()),
+                      "The file is damaged: export it again.");
     }
     std::map<std::string, int> used;
     for (auto& [name, mesh] : Gatherer(*scene, file, options.metres_per_unit).run()) {
@@ -143,7 +161,8 @@ LoadedFile parse_3ds(std::string_view bytes, const std::string& where, const Loa
   }
   add_faceless(file, loaded);
   if (loaded.objects.empty()) {
-    throw UserError(where, "holds no mesh (cameras and lights are not bodies)", "Export the objects as triangle meshes.");
+    throw UserError(where, "holds no mesh (cameras and lights are not bodies)",
+                    "Export the objects as triangle meshes.");
   }
   return loaded;
 }

@@ -10,9 +10,9 @@ namespace {
 
 // Integrals over the solid, with the origin at `centre`.
 struct Moments {
-  double volume = 0.0;                         // int 1
-  Vector3d first = Vector3d::Zero();           // int x
-  Matrix3d second = Matrix3d::Zero();          // int x x'
+  double volume = 0.0;                 // int 1
+  Vector3d first = Vector3d::Zero();   // int x
+  Matrix3d second = Matrix3d::Zero();  // int x x'
 };
 
 // Moves the origin by `shift`, an exact or nearly exact difference, and then by `fine`, a small
@@ -28,7 +28,8 @@ Moments integrate(const TriangleMesh& mesh, const Vector3d& shift, const Vector3
     const Vector3d s = a + b + c;
     sum.volume += d;
     sum.first += d * s;
-    sum.second += d * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
+    sum.second +=
+        d * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
   }
   sum.volume /= 6.0;
   sum.first /= 24.0;
@@ -71,7 +72,9 @@ Bounds bounds_of(const TriangleMesh& mesh) {
   return bounds;
 }
 
-double signed_volume(const TriangleMesh& mesh) { return integrate(mesh, middle_of(mesh), Vector3d::Zero()).volume; }
+double signed_volume(const TriangleMesh& mesh) {
+  return integrate(mesh, middle_of(mesh), Vector3d::Zero()).volume;
+}
 
 MassProperties compute_mass_properties(const TriangleMesh& mesh, double density) {
   require(density > 0.0, "compute_mass_properties: density must be positive");
@@ -79,8 +82,9 @@ MassProperties compute_mass_properties(const TriangleMesh& mesh, double density)
 
   // First pass, about the centre of the bounding box: find the centre of mass.
   const Moments about_middle = integrate(mesh, middle, Vector3d::Zero());
-  require(std::isfinite(about_middle.volume) && about_middle.volume != 0.0,
-          "compute_mass_properties: the surface encloses no volume (check it with check_closed first)");
+  require(
+      std::isfinite(about_middle.volume) && about_middle.volume != 0.0,
+      "compute_mass_properties: the surface encloses no volume (check it with check_closed first)");
   const Vector3d com_from_middle = about_middle.first / about_middle.volume;
 
   // Second pass, about the centre of mass: no large moments cancel.

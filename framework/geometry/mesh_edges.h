@@ -12,10 +12,10 @@ namespace tumble {
 
 /// One use of an edge by a face.
 struct EdgeUse {
-  int low, high;   // vertices, low < high
+  int low, high;  // vertices, low < high
   int face;
-  int corner;      // the edge goes from faces[face][corner] to the face's next corner
-  bool forward;    // from low to high
+  int corner;    // the edge goes from faces[face][corner] to the face's next corner
+  bool forward;  // from low to high
 };
 
 /// Every use of every edge, sorted by (low, high, face), so that uses of the same edge are
@@ -27,7 +27,9 @@ template <class Group>
 void for_each_edge(const std::vector<EdgeUse>& uses, Group group) {
   for (std::size_t first = 0; first < uses.size();) {
     std::size_t last = first + 1;
-    while (last < uses.size() && uses[last].low == uses[first].low && uses[last].high == uses[first].high) ++last;
+    while (last < uses.size() && uses[last].low == uses[first].low &&
+           uses[last].high == uses[first].high)
+      ++last;
     group(uses.data() + first, uses.data() + last);
     first = last;
   }

@@ -11,13 +11,17 @@
 namespace tumble {
 namespace {
 
-constexpr double kCrackWidth = 0.05;          // of an open edge's length: nearer to another open edge than this is a crack
-constexpr std::size_t kMostCompared = 3000;   // open edges compared pairwise: 9 million distances take about 0.1 s
-constexpr double kFlat = 1e-6;                // of the part's size: above the scatter of a flat polygon's float32 coordinates
-constexpr std::size_t kMostPartsNamed = 5;    // a tree of a thousand leaves needs no thousand messages
+// of an open edge's length: nearer to another open edge than this is a crack
+constexpr double kCrackWidth = 0.05;
+// open edges compared pairwise: 9 million distances take about 0.1 s
+constexpr std::size_t kMostCompared = 3000;
+// of the part's size: above the scatter of a flat polygon's float32 coordinates
+constexpr double kFlat = 1e-6;
+// a tree of a thousand leaves needs no thousand messages
+constexpr std::size_t kMostPartsNamed = 5;
 
 struct OpenEdge {
-  int from, to;      // in the order of its face
+  int from, to;  // in the order of its face
   int face;
   bool in_crack = false;
   double width = 0;  // to the nearest other open edge, where in_crack [m]
@@ -26,7 +30,8 @@ struct OpenEdge {
 double distance_to_segment(const Vector3d& point, const Vector3d& a, const Vector3d& b) {
   const Vector3d along = b - a;
   const double length_squared = along.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp((point - a).dot(along) / length_squared, 0.0, 1.0) : 0.0;
+  const double t =
+      length_squared > 0.0 ? std::clamp((point - a).dot(along) / length_squared, 0.0, 1.0) : 0.0;
   return (point - a - t * along).norm();
 }
 
@@ -50,7 +55,8 @@ void mark_cracks(const TriangleMesh& mesh, std::vector<OpenEdge>& open) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i) continue;
-      nearest = std::min(nearest, distance_to_segment(0.5 * (a + b), mesh.vertices[open[j].from], mesh.vertices[open[j].to]));
+      nearest = std::min(nearest, distance_to_segment(0.5 * (a + b), mesh.vertices[open[j].from],
+                                                      mesh.vertices[open[j].to]));
     }
     open[i].in_crack = nearest <= kCrackWidth * (b - a).norm();
     open[i].width = nearest;
@@ -68,7 +74,8 @@ std::map<int, OpenPart> group_by_part(const TriangleMesh& mesh, const std::vecto
   std::map<int, OpenPart> parts;
   for (const OpenEdge& edge : open) parts[part_of_face[edge.face]].edges.push_back(edge);
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
-    if (const auto found = parts.find(part_of_face[f]); found != parts.end()) found->second.faces.push_back(f);
+    if (const auto found = parts.find(part_of_face[f]); found != parts.end())
+      found->second.faces.push_back(f);
   }
   return parts;
 }
@@ -128,27 +135,32 @@ int euler_characteristic(const TriangleMesh& mesh, const OpenPart& part) {
 
 Defect describe_part(const TriangleMesh& mesh, const OpenPart& part) {
   const OpenEdge& first = part.edges.front();
-  const std::string place = fmt::format("{} open edge{}, the first at {}", part.edges.size(), part.edges.size() == 1 ? "" : "s",
-                                        show_edge(mesh, first.from, first.to));
+  const std::string place =
+      fmt::format("{} open edge{}, the first at {}", part.edges.size(),
+                  part.edges.size() == 1 ? "" : "s", show_edge(mesh, first.from, first.to));
   const int rims = count_rims(part.edges);
   if (is_flat(mesh, part.faces)) {
     return {DefectKind::kSinglePolygon,
-            fmt::format("a single polygon ({} triangle{} in one plane) bounds no volume: {}", part.faces.size(),
-                        part.faces.size() == 1 ? "" : "s", place),
+            fmt::format("a single polygon ({} triangle{} in one plane) bounds no volume: {}",
+                        part.faces.size(), part.faces.size() == 1 ? "" : "s", place),
             "Extrude it, so that it gets thickness and a back."};
   }
   if (rims == 2 && euler_characteristic(mesh, part) == 0) {
-    return {DefectKind::kLampshade, "a lampshade, one polygon thick and open at both ends: " + place,
+    return {DefectKind::kLampshade,
+            "a lampshade, one polygon thick and open at both ends: " + place,
             "Cap both ends to make it solid, or give the wall a thickness."};
   }
   // All faces of a pyramid without its base point up too: four open edges or fewer are a missing
   // face rather than the rim of a terrain.
   if (rims == 1 && part.edges.size() > 4 && all_normals_point_up(mesh, part.faces)) {
-    return {DefectKind::kTerrain, "a terrain: every face points to the same side of the horizon and the rim is open: " + place,
+    return {DefectKind::kTerrain,
+            "a terrain: every face points to the same side of the horizon and the rim is open: " +
+                place,
             "Add walls and a bottom, or use a plane or a box as the ground."};
   }
   return {DefectKind::kMissingFace,
-          fmt::format("{} (a face is missing): {}", rims == 1 ? "a hole" : fmt::format("{} holes", rims), place),
+          fmt::format("{} (a face is missing): {}",
+                      rims == 1 ? "a hole" : fmt::format("{} holes", rims), place),
           "Cap the hole: a rigid body needs a closed surface."};
 }
 
@@ -163,8 +175,9 @@ Defect describe_cracks(const TriangleMesh& mesh, const std::vector<OpenEdge>& op
     ++count;
   }
   return {DefectKind::kCrack,
-          fmt::format("cracks: {} open edges run beside other open edges (at most {:.3g} m apart), the first at {}", count,
-                      widest, show_edge(mesh, first->from, first->to)),
+          fmt::format("cracks: {} open edges run beside other open edges (at most {:.3g} m apart), "
+                      "the first at {}",
+                      count, widest, show_edge(mesh, first->from, first->to)),
           "Merge the corners that should be one, and let edges meet at corners only."};
 }
 
@@ -181,12 +194,17 @@ std::vector<Defect> describe_open_edges(const TriangleMesh& mesh, const std::vec
   bool has_cracks = false;
   std::size_t unnamed = 0;
   for (const auto& [name, part] : group_by_part(mesh, open, part_of_face)) {
-    const auto cracked = std::count_if(part.edges.begin(), part.edges.end(), [](const OpenEdge& e) { return e.in_crack; });
-    if (2 * static_cast<std::size_t>(cracked) >= part.edges.size()) has_cracks = true;
-    else if (defects.size() < kMostPartsNamed) defects.push_back(describe_part(mesh, part));
-    else ++unnamed;
+    const auto cracked = std::count_if(part.edges.begin(), part.edges.end(),
+                                       [](const OpenEdge& e) { return e.in_crack; });
+    if (2 * static_cast<std::size_t>(cracked) >= part.edges.size())
+      has_cracks = true;
+    else if (defects.size() < kMostPartsNamed)
+      defects.push_back(describe_part(mesh, part));
+    else
+      ++unnamed;
   }
-  if (unnamed > 0) defects.back().problem += fmt::format("; and {} more open parts like it", unnamed);
+  if (unnamed > 0)
+    defects.back().problem += fmt::format("; and {} more open parts like it", unnamed);
   if (has_cracks) defects.push_back(describe_cracks(mesh, open));
   return defects;
 }

@@ -10,8 +10,9 @@ namespace tumble {
 namespace {
 
 constexpr int kLeafFaces = 4;
-// Roundings between a corner and its sheared coordinates (a difference, a product, a difference) and in the slab test (a difference, a
-// quotient), each at most eps times the distance: 5, doubled for the three axes together and rounded up.
+// Roundings between a corner and its sheared coordinates (a difference, a product, a difference)
+// and in the slab test (a difference, a quotient), each at most eps times the distance: 5, doubled
+// for the three axes together and rounded up.
 constexpr double kBoxRounding = 16 * kEpsilon;
 
 }  // namespace
@@ -19,7 +20,8 @@ constexpr double kBoxRounding = 16 * kEpsilon;
 // The ray's frame: its origin at 0, its direction (0, 0, 1). The transform is a shear, not a
 // rotation.
 struct RayTree::Shear {
-  Shear(const Vector3d& origin_in, const Vector3d& direction_in) : origin(origin_in), direction(direction_in) {
+  Shear(const Vector3d& origin_in, const Vector3d& direction_in)
+      : origin(origin_in), direction(direction_in) {
     Eigen::Index largest = 0;
     direction.cwiseAbs().maxCoeff(&largest);
     z = static_cast<int>(largest);
@@ -32,7 +34,8 @@ struct RayTree::Shear {
   /// x, y: position of the corner beside the ray; z: position along it [lengths of the direction]
   Vector3d operator()(const Vector3d& corner) const {
     const Vector3d from_origin = corner - origin;
-    return {from_origin[x] - slope_x * from_origin[z], from_origin[y] - slope_y * from_origin[z], from_origin[z] / direction[z]};
+    return {from_origin[x] - slope_x * from_origin[z], from_origin[y] - slope_y * from_origin[z],
+            from_origin[z] / direction[z]};
   }
 
   /// Smallest t at which the ray is in the widened box; infinity where it misses the box.
@@ -47,7 +50,8 @@ struct RayTree::Shear {
       if (near > enter) enter = near;
       if (far < leave) leave = far;
     }
-    return enter <= leave * (1.0 + 4.0 * kEpsilon) ? enter : std::numeric_limits<double>::infinity();
+    return enter <= leave * (1.0 + 4.0 * kEpsilon) ? enter
+                                                   : std::numeric_limits<double>::infinity();
   }
 
   Vector3d origin, direction;
@@ -60,7 +64,8 @@ RayTree::RayTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   const int n = static_cast<int>(mesh_.vertices.size());
   std::vector<Vector3d> middles;
   for (const auto& [a, b, c] : mesh_.faces) {
-    require(std::min({a, b, c}) >= 0 && std::max({a, b, c}) < n, "RayTree: a face refers to a vertex that does not exist");
+    require(std::min({a, b, c}) >= 0 && std::max({a, b, c}) < n,
+            "RayTree: a face refers to a vertex that does not exist");
     middles.push_back((mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) / 3.0);
     require(middles.back().allFinite(), "RayTree: a vertex is not finite");
   }
@@ -99,7 +104,8 @@ int RayTree::build(int first, int count, const std::vector<Vector3d>& middles) {
   return index;
 }
 
-void RayTree::try_face(int face, const Shear& shear, double t_most, std::optional<SurfaceHit>& best) const {
+void RayTree::try_face(int face, const Shear& shear, double t_most,
+                       std::optional<SurfaceHit>& best) const {
   const Vector3d a = shear(mesh_.vertices[mesh_.faces[face][0]]);
   const Vector3d b = shear(mesh_.vertices[mesh_.faces[face][1]]);
   const Vector3d c = shear(mesh_.vertices[mesh_.faces[face][2]]);
@@ -115,17 +121,21 @@ void RayTree::try_face(int face, const Shear& shear, double t_most, std::optiona
 
   const Vector3d weights = Vector3d(u, v, w) / whole;
   // Clamped to the range of the corners, against rounding of the weights.
-  const double t = std::clamp(weights.dot(Vector3d(a.z(), b.z(), c.z())), std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}));
+  const double t = std::clamp(weights.dot(Vector3d(a.z(), b.z(), c.z())),
+                              std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}));
   if (!(t >= 0.0) || t > t_most) return;
   if (best && (t > best->t || (t == best->t && face > best->face))) return;
   best = SurfaceHit{face, t, weights};
 }
 
-std::optional<SurfaceHit> RayTree::nearest(const Vector3d& origin, const Vector3d& direction, double t_most) const {
-  require(origin.allFinite() && direction.allFinite() && !direction.isZero(0.0), "RayTree::nearest: the ray must be finite, with a direction");
+std::optional<SurfaceHit> RayTree::nearest(const Vector3d& origin, const Vector3d& direction,
+                                           double t_most) const {
+  require(origin.allFinite() && direction.allFinite() && !direction.isZero(0.0),
+          "RayTree::nearest: the ray must be finite, with a direction");
   const Shear shear(origin, direction);
   const Node& root = nodes_.front();
-  const double farthest = (root.low - origin).cwiseAbs().cwiseMax((root.high - origin).cwiseAbs()).sum();
+  const double farthest =
+      (root.low - origin).cwiseAbs().cwiseMax((root.high - origin).cwiseAbs()).sum();
   const double margin = kBoxRounding * (farthest + origin.cwiseAbs().maxCoeff());
 
   std::optional<SurfaceHit> best;
@@ -136,7 +146,8 @@ std::optional<SurfaceHit> RayTree::nearest(const Vector3d& origin, const Vector3
     to_do.pop_back();
     if (enter > limit()) continue;
     const Node& node = nodes_[index];
-    for (int i = node.first; i < node.first + node.count; ++i) try_face(faces_[i], shear, t_most, best);
+    for (int i = node.first; i < node.first + node.count; ++i)
+      try_face(faces_[i], shear, t_most, best);
     if (node.count > 0) continue;
     std::pair<double, int> children[2];
     for (int side = 0; side < 2; ++side) {

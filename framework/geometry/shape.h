@@ -1,4 +1,5 @@
-/// The solids that bodies are made of. All in the body frame: origin at the centre of mass, axes of the mesh.
+/// The solids that bodies are made of. All in the body frame: origin at the centre of mass, axes of
+/// the mesh.
 #pragma once
 
 #include <variant>
@@ -21,8 +22,8 @@ struct Box {
 /// rattleback is the lower part of an ellipsoid).
 /// It collides with half-spaces only.
 struct Ellipsoid {
-  Vector3d semi_axes_body;                       // (3), > 0 [m]
-  Vector3d center_body = Vector3d::Zero();       // (3) [m]
+  Vector3d semi_axes_body;                  // (3), > 0 [m]
+  Vector3d center_body = Vector3d::Zero();  // (3) [m]
 };
 
 /// Everything at or below z = 0 of the body frame: an infinite, immovable floor or wall with normal

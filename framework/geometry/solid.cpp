@@ -14,14 +14,16 @@ namespace {
 // Spacing of float32 coordinates relative to the solid's size, with a factor 2 for a transform
 // after rounding.
 constexpr double kRounding = 0x1.0p-22;
-constexpr double kMostTests = 2e8;  // vertices against planes, about half a second; above it only every n-th plane is tested
+// vertices against planes, about half a second; above it only every n-th plane is tested
+constexpr double kMostTests = 2e8;
 
 SolidModel solid_from_report(const ClosedReport& report, const std::string& where) {
   if (!report.is_closed()) {
     std::string problem, remedy;
     for (const Defect& defect : report.defects) {
       problem += (problem.empty() ? "" : "; ") + defect.problem;
-      if (remedy.find(defect.remedy) == std::string::npos) remedy += (remedy.empty() ? "" : " ") + defect.remedy;
+      if (remedy.find(defect.remedy) == std::string::npos)
+        remedy += (remedy.empty() ? "" : " ") + defect.remedy;
     }
     throw UserError(where, problem, remedy);
   }
@@ -43,16 +45,21 @@ const LoadedObject& pick_object(const LoadedFile& file, const std::string& objec
     names += (names.empty() ? "'" : ", '") + one.name + "'";
   }
   if (object.empty()) {
-    throw UserError(file.where, fmt::format("holds {} objects: {}", file.objects.size(), names), "Say which one is meant (\"object\").");
+    throw UserError(file.where, fmt::format("holds {} objects: {}", file.objects.size(), names),
+                    "Say which one is meant (\"object\").");
   }
-  throw UserError(file.where, fmt::format("holds no object '{}'; it holds {}", object, names), "Name one of these.");
+  throw UserError(file.where, fmt::format("holds no object '{}'; it holds {}", object, names),
+                  "Name one of these.");
 }
 
 }  // namespace
 
-SolidModel solid_from_mesh(const TriangleMesh& mesh, const std::string& where) { return solid_from_report(check_closed(mesh), where); }
+SolidModel solid_from_mesh(const TriangleMesh& mesh, const std::string& where) {
+  return solid_from_report(check_closed(mesh), where);
+}
 
-SolidModel load_solid(const std::filesystem::path& path, const std::string& object, double metres_per_unit) {
+SolidModel load_solid(const std::filesystem::path& path, const std::string& object,
+                      double metres_per_unit) {
   const LoadedFile file = load_3ds(path, {metres_per_unit});
   const LoadedObject& chosen = pick_object(file, object);
   return solid_from_report(chosen.report, fmt::format("{}: object '{}'", file.where, chosen.name));
@@ -68,8 +75,10 @@ bool is_convex(const TriangleMesh& mesh) {
   const double size = (bounds.high - bounds.low).norm();
   const double rounding = kRounding * size;
   const double most_allowed = 1e-3 * size;
-  const double tests = static_cast<double>(mesh.faces.size()) * static_cast<double>(mesh.vertices.size());
-  const std::size_t stride = tests > kMostTests ? static_cast<std::size_t>(tests / kMostTests) + 1 : 1;
+  const double tests =
+      static_cast<double>(mesh.faces.size()) * static_cast<double>(mesh.vertices.size());
+  const std::size_t stride =
+      tests > kMostTests ? static_cast<std::size_t>(tests / kMostTests) + 1 : 1;
   for (std::size_t f = 0; f < mesh.faces.size(); f += stride) {
     const auto& [i, j, k] = mesh.faces[f];
     const Vector3d& a = mesh.vertices[i];
@@ -83,7 +92,8 @@ bool is_convex(const TriangleMesh& mesh) {
       const Vector3d to_vertex = vertex - a;
       const double above = normal.dot(to_vertex);
       if (above <= rounding) continue;
-      if (above > std::min(most_allowed, rounding * (1.0 + 2.0 * to_vertex.norm() / height))) return false;
+      if (above > std::min(most_allowed, rounding * (1.0 + 2.0 * to_vertex.norm() / height)))
+        return false;
     }
   }
   return true;

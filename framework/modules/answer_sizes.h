@@ -3,7 +3,8 @@
 ///
 /// The required size of a returned vector is given in the module's header, one line per function:
 ///     inline void describe(modules::AnswerSizes<Module>& sizes) {
-///       sizes.add(&Module::rk4_step, [](const OdeFunction&, double, const VectorXd& y, double) { return y.size(); });
+///       sizes.add(&Module::rk4_step, [](const OdeFunction&, double, const VectorXd& y, double) {
+///       return y.size(); });
 ///     }
 /// A callback needs no line: a vector argument of it must have the size of the call's own argument
 /// of the same type (a derivative is called with a vector as long as the state).
@@ -24,8 +25,10 @@
 
 namespace tumble::modules {
 
-template <class T> struct is_function : std::false_type {};
-template <class R, class... A> struct is_function<std::function<R(A...)>> : std::true_type {};
+template <class T>
+struct is_function : std::false_type {};
+template <class R, class... A>
+struct is_function<std::function<R(A...)>> : std::true_type {};
 
 /// Thrown through a module's function that returned a vector of the wrong size, or passed one to a
 /// callback. Its message is the story.
@@ -38,11 +41,15 @@ namespace detail {
 
 template <class T>
 inline constexpr bool has_dynamic_size = [] {
-  if constexpr (std::is_base_of_v<Eigen::PlainObjectBase<T>, T>) return T::SizeAtCompileTime == Eigen::Dynamic;
-  else return false;
+  if constexpr (std::is_base_of_v<Eigen::PlainObjectBase<T>, T>)
+    return T::SizeAtCompileTime == Eigen::Dynamic;
+  else
+    return false;
 }();
 
-inline std::string numbers(Eigen::Index count) { return std::to_string(count) + (count == 1 ? " number" : " numbers"); }
+inline std::string numbers(Eigen::Index count) {
+  return std::to_string(count) + (count == 1 ? " number" : " numbers");
+}
 
 // Size of the first argument of type T; nothing where there is none.
 template <class T, class... A>
@@ -58,7 +65,9 @@ std::optional<Eigen::Index> size_among(const A&... arguments) {
 
 template <class F>
 constexpr const char* word_for() {
-  return std::is_same_v<F, std::function<VectorXd(double, const VectorXd&)>> ? "the derivative" : "its function argument";
+  return std::is_same_v<F, std::function<VectorXd(double, const VectorXd&)>>
+             ? "the derivative"
+             : "its function argument";
 }
 
 }  // namespace detail
@@ -68,19 +77,24 @@ constexpr const char* word_for() {
 /// @param refuse  called with the story of a wrong size; must throw
 /// @param call    all arguments of that call
 template <class R, class... P, class Refuse, class... A>
-std::function<R(P...)> asked_rightly(const std::function<R(P...)>& function, const char* asker, Refuse refuse, const A&... call) {
+std::function<R(P...)> asked_rightly(const std::function<R(P...)>& function, const char* asker,
+                                     Refuse refuse, const A&... call) {
   if constexpr (!(detail::has_dynamic_size<std::decay_t<P>> || ...)) return function;
   // Sizes are stored by type of vector now, because the call may move its own vectors away.
-  return [&function, asker, refuse, needed = std::tuple(detail::size_among<std::decay_t<P>>(call...)...)](P... arguments) -> R {
-    const auto check = [&](const auto& argument, const std::optional<Eigen::Index>& size) {
-      if constexpr (detail::has_dynamic_size<std::decay_t<decltype(argument)>>)
-        if (size && argument.size() != *size)
-          refuse(std::string(asker) + ": " + detail::word_for<std::function<R(P...)>>() + " was called with " + detail::numbers(argument.size()) + ", but " +
-                 std::to_string(*size) + " are needed" + (argument.size() == 0 ? " (a vector that was never set has none)" : ""));
-    };
-    std::apply([&](const auto&... size) { (check(arguments, size), ...); }, needed);
-    return function(std::forward<P>(arguments)...);
-  };
+  return
+      [&function, asker, refuse,
+       needed = std::tuple(detail::size_among<std::decay_t<P>>(call...)...)](P... arguments) -> R {
+        const auto check = [&](const auto& argument, const std::optional<Eigen::Index>& size) {
+          if constexpr (detail::has_dynamic_size<std::decay_t<decltype(argument)>>)
+            if (size && argument.size() != *size)
+              refuse(std::string(asker) + ": " + detail::word_for<std::function<R(P...)>>() +
+                     " was called with " + detail::numbers(argument.size()) + ", but " +
+                     std::to_string(*size) + " are needed" +
+                     (argument.size() == 0 ? " (a vector that was never set has none)" : ""));
+        };
+        std::apply([&](const auto&... size) { (check(arguments, size), ...); }, needed);
+        return function(std::forward<P>(arguments)...);
+      };
 }
 
 /// Required sizes of the answers of a module, by function.
@@ -95,13 +109,17 @@ class AnswerSizes {
 
   /// Why the answer of function number `index` has a wrong size; empty where the size is right.
   template <class R, class... A>
-  std::string problem(std::size_t index, const char* name, const R& answer, const A&... arguments) const {
+  std::string problem(std::size_t index, const char* name, const R& answer,
+                      const A&... arguments) const {
     if constexpr (detail::has_dynamic_size<R>) {
       const auto it = needed_.find(index);
       if (it == needed_.end()) return "";
-      const auto* needed = std::any_cast<std::function<Eigen::Index(const std::decay_t<A>&...)>>(&it->second);
+      const auto* needed =
+          std::any_cast<std::function<Eigen::Index(const std::decay_t<A>&...)>>(&it->second);
       const Eigen::Index size = needed == nullptr ? answer.size() : (*needed)(arguments...);
-      if (answer.size() != size) return std::string(name) + " returned " + detail::numbers(answer.size()) + ", but " + std::to_string(size) + " are needed";
+      if (answer.size() != size)
+        return std::string(name) + " returned " + detail::numbers(answer.size()) + ", but " +
+               std::to_string(size) + " are needed";
     }
     return "";
   }
@@ -112,7 +130,8 @@ class AnswerSizes {
     Module names;
     std::size_t index = 0, found = 0;
     Module::visit(names, [&](const char*, auto& field) {
-      if (static_cast<const void*>(&field) == static_cast<const void*>(&(names.*function))) found = index;
+      if (static_cast<const void*>(&field) == static_cast<const void*>(&(names.*function)))
+        found = index;
       ++index;
     });
     return found;

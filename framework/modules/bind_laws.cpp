@@ -2,9 +2,10 @@
 
 namespace tumble::modules {
 
-void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
+void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source,
+               Laws& laws) {
   kind.bind(module, laws);
-  Laws alone;   // has only the laws that this module implements
+  Laws alone;  // has only the laws that this module implements
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;

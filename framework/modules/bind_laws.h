@@ -15,7 +15,8 @@ namespace tumble::modules {
 /// Sets the laws that a module implements to its functions, and the sources of these laws to
 /// `source`.
 /// @param source  for messages and records: "a2 reference", "submission"
-void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws);
+void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source,
+               Laws& laws);
 
 /// The second layer: sets motion by the library, and no scheduler.
 void set_library_motion(Laws& laws);

@@ -25,8 +25,10 @@ void Channel::wait(int fd, short events, Clock::time_point deadline) {
     int timeout_ms = -1;
     if (deadline != Clock::time_point::max()) {
       if (extension_ && deadline <= Clock::now()) deadline = extension_(deadline);
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-      if (left <= 0 && deadline <= Clock::now()) throw ChannelTimeout("no answer before the deadline");
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+      if (left <= 0 && deadline <= Clock::now())
+        throw ChannelTimeout("no answer before the deadline");
       timeout_ms = static_cast<int>(std::min<long long>(left + 1, 1 << 30));
     }
     pollfd waiting{fd, events, 0};
@@ -38,16 +40,21 @@ void Channel::wait(int fd, short events, Clock::time_point deadline) {
 
 void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point deadline) {
   if (payload.size() > kMaxPayload)
-    throw WireError("an argument or answer of " + std::to_string(payload.size()) + " bytes, above the limit of " + std::to_string(kMaxPayload) + " (a size that was never set?)");
+    throw WireError("an argument or answer of " + std::to_string(payload.size()) +
+                    " bytes, above the limit of " + std::to_string(kMaxPayload) +
+                    " (a size that was never set?)");
   Bytes frame(sizeof(Header) + payload.size());
-  const Header header{static_cast<std::uint32_t>(payload.size()), static_cast<std::uint8_t>(kind), {0, 0, 0}};
+  const Header header{
+      static_cast<std::uint32_t>(payload.size()), static_cast<std::uint8_t>(kind), {0, 0, 0}};
   std::memcpy(frame.data(), &header, sizeof header);
   if (!payload.empty()) std::memcpy(frame.data() + sizeof header, payload.data(), payload.size());
   for (std::size_t sent = 0; sent < frame.size();) {
     // MSG_NOSIGNAL: a dead reader gives an error code instead of SIGPIPE. MSG_DONTWAIT: a reader
     // that never reads cannot block this process.
-    ssize_t n = ::send(write_fd_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n < 0 && errno == ENOTSOCK) n = ::write(write_fd_, frame.data() + sent, frame.size() - sent);
+    ssize_t n =
+        ::send(write_fd_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0 && errno == ENOTSOCK)
+      n = ::write(write_fd_, frame.data() + sent, frame.size() - sent);
     if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
       wait(write_fd_, POLLOUT, deadline);
       continue;

@@ -12,12 +12,12 @@
 namespace tumble::modules {
 
 enum class MessageKind : std::uint8_t {
-  kCall = 1,         // judge to worker: function number, arguments
-  kReturn,           // worker to judge: the value
-  kCallback,         // worker to judge: callback number, arguments
-  kCallbackReturn,   // judge to worker: the value
-  kNotImplemented,   // worker to judge: function, handout
-  kException,        // worker to judge: what()
+  kCall = 1,        // judge to worker: function number, arguments
+  kReturn,          // worker to judge: the value
+  kCallback,        // worker to judge: callback number, arguments
+  kCallbackReturn,  // judge to worker: the value
+  kNotImplemented,  // worker to judge: function, handout
+  kException,       // worker to judge: what()
 };
 
 struct Message {
@@ -39,7 +39,8 @@ class ChannelTimeout : public std::runtime_error {
 class Channel {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::uint32_t kMaxPayload = 16u << 20;  // bytes: a state of 10^5 bodies is 10 MB; more is an attack
+  // bytes: a state of 10^5 bodies is 10 MB; more is an attack
+  static constexpr std::uint32_t kMaxPayload = 16u << 20;
 
   /// Does not own the descriptors. Either may be a socket or a pipe.
   Channel(int read_fd, int write_fd) : read_fd_(read_fd), write_fd_(write_fd) {}
@@ -49,7 +50,8 @@ class Channel {
   void extend_by(Extension extension) { extension_ = std::move(extension); }
 
   /// @throws ChannelClosed, ChannelTimeout, WireError (payload above kMaxPayload: nothing is sent)
-  void send(MessageKind kind, const Bytes& payload, Clock::time_point deadline = Clock::time_point::max());
+  void send(MessageKind kind, const Bytes& payload,
+            Clock::time_point deadline = Clock::time_point::max());
   /// @throws ChannelClosed, ChannelTimeout, WireError (size above kMaxPayload)
   Message receive(Clock::time_point deadline = Clock::time_point::max());
 
@@ -60,7 +62,7 @@ class Channel {
 
   int read_fd_, write_fd_;
   Extension extension_;
-  std::array<std::uint8_t, 1 << 14> ahead_;   // received but not consumed: from at_ to end_
+  std::array<std::uint8_t, 1 << 14> ahead_;  // received but not consumed: from at_ to end_
   std::size_t at_ = 0, end_ = 0;
 };
 

@@ -8,15 +8,19 @@ namespace tumble::modules {
 
 AnyModule load_module(const ModuleName& module, const std::filesystem::path& file) {
   if (!std::filesystem::exists(file))
-    throw UserError(file.string(), "there is no such file", "Build it first, or check the path given to --modules.");
+    throw UserError(file.string(), "there is no such file",
+                    "Build it first, or check the path given to --modules.");
   // RTLD_LOCAL: two loaded submissions do not see each other's functions. RTLD_NOW: a missing
   // symbol is reported here.
   void* handle = ::dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) throw UserError(file.string(), std::string("cannot be loaded: ") + ::dlerror());
+  if (handle == nullptr)
+    throw UserError(file.string(), std::string("cannot be loaded: ") + ::dlerror());
   using Exported = const void* (*)();
   const auto exported = reinterpret_cast<Exported>(::dlsym(handle, module.exported_name().c_str()));
   if (exported == nullptr)
-    throw UserError(file.string(), "exports no module " + module.id, "It must be built from a file that includes the header of " + module.folder + ".");
+    throw UserError(
+        file.string(), "exports no module " + module.id,
+        "It must be built from a file that includes the header of " + module.folder + ".");
   // Never unloaded: laws copied from the table live as long as the program.
   return AnyModule(exported(), [](const void*) {});
 }

@@ -1,4 +1,5 @@
-/// What is known of a module by its name alone: enough for its files and its programs, without its header.
+/// What is known of a module by its name alone: enough for its files and its programs, without its
+/// header.
 #pragma once
 
 #include <string>
@@ -7,9 +8,9 @@
 namespace tumble::modules {
 
 struct ModuleName {
-  std::string id;       // "a1"
-  std::string folder;   // "a1_impulse": below assignments/, solutions_private/ and tests/
-  std::string title;    // for people
+  std::string id;      // "a1"
+  std::string folder;  // "a1_impulse": below assignments/, solutions_private/ and tests/
+  std::string title;   // for people
 
   /// C symbol of a shared object that gives the module's table (module.h).
   std::string exported_name() const { return "tumble_module_" + id; }

@@ -47,7 +47,7 @@ class Connection {
   /// `story` says which one, and the size needed.
   [[noreturn]] virtual void wrong_size(const char* function, const std::string& story) {
     refuse(function, story);
-    throw WrongSize(story);   // unreachable: refuse throws
+    throw WrongSize(story);  // unreachable: refuse throws
   }
 };
 
@@ -73,7 +73,9 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
     if constexpr (is_function<T>::value) {
       writer.value(static_cast<std::uint32_t>(callbacks.size()));
       const auto refuse = [](const std::string& story) { throw WrongSize(story); };
-      callbacks.push_back([f = asked_rightly(a, name, refuse, arguments...)](Reader& reader) { return run_callback(f, reader); });
+      callbacks.push_back([f = asked_rightly(a, name, refuse, arguments...)](Reader& reader) {
+        return run_callback(f, reader);
+      });
     } else {
       writer.value(a);
     }
@@ -93,11 +95,15 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
       connection.fail(name, std::current_exception());
     } catch (const WireError& error) {
       connection.note_arguments(show_arguments(arguments...));
-      connection.refuse(name, std::string("answered with bytes that are not a valid answer: ") + error.what());
+      connection.refuse(
+          name, std::string("answered with bytes that are not a valid answer: ") + error.what());
     }
     throw;  // unreachable: fail and refuse throw
   };
-  transport([&] { channel.send(MessageKind::kCall, writer.bytes, deadline); return 0; });
+  transport([&] {
+    channel.send(MessageKind::kCall, writer.bytes, deadline);
+    return 0;
+  });
   for (;;) {
     const Message message = transport([&] { return channel.receive(deadline); });
     Reader reader(message.payload);
@@ -107,7 +113,10 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           R result;
           reader.value(result);
           reader.expect_end();
-          if (const std::string problem = answer_sizes<Module>().problem(index, name, result, arguments...); !problem.empty()) connection.wrong_size(name, problem);
+          if (const std::string problem =
+                  answer_sizes<Module>().problem(index, name, result, arguments...);
+              !problem.empty())
+            connection.wrong_size(name, problem);
           connection.end_call();
           return result;
         });
@@ -129,16 +138,27 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           }
         });
         connection.resume_call();
-        transport([&] { channel.send(MessageKind::kCallbackReturn, answer, deadline); return 0; });
+        transport([&] {
+          channel.send(MessageKind::kCallbackReturn, answer, deadline);
+          return 0;
+        });
         break;
       }
       case MessageKind::kNotImplemented: {
-        const std::string handout = transport([&] { std::string text; reader.value(text); return text; });
+        const std::string handout = transport([&] {
+          std::string text;
+          reader.value(text);
+          return text;
+        });
         connection.not_implemented(name, handout);
         break;
       }
       case MessageKind::kException: {
-        const std::string what = transport([&] { std::string text; reader.value(text); return text; });
+        const std::string what = transport([&] {
+          std::string text;
+          reader.value(text);
+          return text;
+        });
         connection.note_arguments(show_arguments(arguments...));
         connection.refuse(name, "threw an exception: " + what);
         break;
@@ -151,8 +171,11 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
 }
 
 template <class Module, class R, class... A>
-std::function<R(A...)> proxy_function(Connection& connection, std::uint32_t index, const char* name, const std::function<R(A...)>*) {
-  return [&connection, index, name](A... arguments) -> R { return call<Module, R>(connection, index, name, arguments...); };
+std::function<R(A...)> proxy_function(Connection& connection, std::uint32_t index, const char* name,
+                                      const std::function<R(A...)>*) {
+  return [&connection, index, name](A... arguments) -> R {
+    return call<Module, R>(connection, index, name, arguments...);
+  };
 }
 
 }  // namespace detail

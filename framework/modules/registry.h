@@ -21,20 +21,26 @@ namespace tumble::modules {
 
 /// A method of integration of a module, to be measured beside others.
 struct NamedMethod {
-  std::string name;                        // of its function
-  double order;                            // nominal order of convergence
-  std::function<std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)>(const AnyModule&)> step;
+  std::string name;  // of its function
+  double order;      // nominal order of convergence
+  std::function<std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)>(
+      const AnyModule&)>
+      step;
 };
 
 /// Everything that the framework can do with a module without its header.
 struct ModuleKind : ModuleName {
-  std::vector<std::string> functions;      // in header order
-  std::function<void(const AnyModule&, Laws&)> bind;                 // sets laws of a world to the module's functions
-  std::function<void(const AnyModule&, Channel&)> serve;             // on the worker's side
-  std::function<AnyModule(Connection&)> make_proxy;                  // on the judge's side
-  std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;  // the same module with watched calls
-  std::vector<NamedMethod> methods;        // empty where the module has no integration
-  bool is_scheduler = false;               // it decides the order in which logical processes run, not their physics: bound only where the user names it
+  std::vector<std::string> functions;  // in header order
+  // sets laws of a world to the module's functions
+  std::function<void(const AnyModule&, Laws&)> bind;
+  std::function<void(const AnyModule&, Channel&)> serve;  // on the worker's side
+  std::function<AnyModule(Connection&)> make_proxy;       // on the judge's side
+  // the same module with watched calls
+  std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;
+  std::vector<NamedMethod> methods;  // empty where the module has no integration
+  // it decides the order in which logical processes run, not their physics: bound only where the
+  // user names it
+  bool is_scheduler = false;
 
   /// Data about a module for a room above this one, of a type of that room (truths::ModuleTruths,
   /// engines::CostShowcase), which is stored here without knowledge of the type.
@@ -58,13 +64,18 @@ class Registry {
     static_cast<ModuleName&>(kind) = find_name(assignment_names(), Module::kId);
     Module names;
     Module::visit(names, [&](const char* name, auto&) { kind.functions.push_back(name); });
-    kind.bind = [bind](const AnyModule& module, Laws& laws) { bind(*static_cast<const Module*>(module.get()), laws); };
-    kind.serve = [](const AnyModule& module, Channel& channel) { modules::serve(*static_cast<const Module*>(module.get()), channel); };
+    kind.bind = [bind](const AnyModule& module, Laws& laws) {
+      bind(*static_cast<const Module*>(module.get()), laws);
+    };
+    kind.serve = [](const AnyModule& module, Channel& channel) {
+      modules::serve(*static_cast<const Module*>(module.get()), channel);
+    };
     kind.make_proxy = [](Connection& connection) -> AnyModule {
       return std::make_shared<const Module>(modules::make_proxy<Module>(connection));
     };
     kind.watched = [](const AnyModule& module, CallWatcher& watcher) -> AnyModule {
-      return std::make_shared<const Module>(modules::watched(*static_cast<const Module*>(module.get()), watcher));
+      return std::make_shared<const Module>(
+          modules::watched(*static_cast<const Module*>(module.get()), watcher));
     };
     kinds_[kind.id] = std::move(kind);
   }
@@ -79,7 +90,10 @@ class Registry {
   /// Registers one of a module's functions as a method of integration.
   template <class Module, class Member>
   void add_method(const std::string& name, double order, Member Module::*function) {
-    kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) { return static_cast<const Module*>(module.get())->*function; }});
+    kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) {
+                                                return static_cast<const Module*>(module.get())
+                                                           ->*function;
+                                              }});
   }
 
   /// Marks a registered module as a scheduler.

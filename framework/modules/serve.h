@@ -58,8 +58,10 @@ struct CallbackStub<std::function<R(A...)>> {
       Message answer = server.channel.receive();
       // The callback may itself call this module: an integrator's derivative is a function of the
       // same module.
-      for (; answer.kind == MessageKind::kCall; answer = server.channel.receive()) server.answer(answer);
-      if (answer.kind != MessageKind::kCallbackReturn) throw ChannelClosed("the judge ended the call");
+      for (; answer.kind == MessageKind::kCall; answer = server.channel.receive())
+        server.answer(answer);
+      if (answer.kind != MessageKind::kCallbackReturn)
+        throw ChannelClosed("the judge ended the call");
       Reader reader(answer.payload);
       R result;
       reader.value(result);
@@ -96,7 +98,9 @@ std::function<Bytes(Reader&)> served(Server& server, const std::function<R(A...)
 template <class Module>
 void serve(const Module& module, Channel& channel) {
   detail::Server server{channel, {}};
-  Module::visit(module, [&](const char*, const auto& field) { server.functions.push_back(detail::served(server, field)); });
+  Module::visit(module, [&](const char*, const auto& field) {
+    server.functions.push_back(detail::served(server, field));
+  });
   try {
     for (;;) server.answer(channel.receive());
   } catch (const ChannelClosed&) {

@@ -15,8 +15,9 @@ namespace tumble::modules {
 
 namespace detail {
 
-inline constexpr std::size_t kArgumentsShown = 600;   // characters
-inline constexpr int kItemsShown = 4;                 // of a list, and of a vector without fixed size
+inline constexpr std::size_t kArgumentsShown = 600;  // characters
+// of a list, and of a vector without fixed size
+inline constexpr int kItemsShown = 4;
 
 inline void show(std::string& text, double x) {
   char digits[32];
@@ -26,7 +27,8 @@ inline void show(std::string& text, double x) {
 
 // Items between brackets, at most the first few.
 template <class Item>
-void show_items(std::string& text, const char* brackets, Eigen::Index count, Eigen::Index shown, const Item& item) {
+void show_items(std::string& text, const char* brackets, Eigen::Index count, Eigen::Index shown,
+                const Item& item) {
   text += brackets[0];
   if (shown < count) text += std::to_string(count) + ": ";
   for (Eigen::Index i = 0; i < std::min(count, shown); ++i) {
@@ -51,14 +53,23 @@ void show_argument(std::string& text, const T& x) {
   } else if constexpr (std::is_same_v<T, Quaterniond>) {
     show_argument(text, Eigen::Vector4d(x.w(), x.x(), x.y(), x.z()));
   } else if constexpr (is_optional<T>::value) {
-    if (x) show_argument(text, *x);
-    else text += "nothing";
+    if (x)
+      show_argument(text, *x);
+    else
+      text += "nothing";
   } else if constexpr (is_vector<T>::value) {
-    show_items(text, "[]", static_cast<Eigen::Index>(x.size()), kItemsShown, [&](Eigen::Index i) { show_argument(text, x[static_cast<std::size_t>(i)]); });
+    show_items(text, "[]", static_cast<Eigen::Index>(x.size()), kItemsShown,
+               [&](Eigen::Index i) { show_argument(text, x[static_cast<std::size_t>(i)]); });
   } else if constexpr (is_matrix<T>) {
     const Eigen::Index shown = T::SizeAtCompileTime == Eigen::Dynamic ? 2 * kItemsShown : x.rows();
-    if (x.cols() == 1) show_items(text, "()", x.rows(), shown, [&](Eigen::Index i) { show(text, static_cast<double>(x(i, 0))); });
-    else show_items(text, "()", x.rows(), shown, [&](Eigen::Index i) { show_items(text, "()", x.cols(), shown, [&](Eigen::Index k) { show(text, static_cast<double>(x(i, k))); }); });
+    if (x.cols() == 1)
+      show_items(text, "()", x.rows(), shown,
+                 [&](Eigen::Index i) { show(text, static_cast<double>(x(i, 0))); });
+    else
+      show_items(text, "()", x.rows(), shown, [&](Eigen::Index i) {
+        show_items(text, "()", x.cols(), shown,
+                   [&](Eigen::Index k) { show(text, static_cast<double>(x(i, k))); });
+      });
   } else {
     static_assert(std::is_aggregate_v<T>);
     bool is_first = true;
@@ -74,7 +85,8 @@ void show_argument(std::string& text, const T& x) {
 
 }  // namespace detail
 
-/// "{(0, 0, 5), (0, 0, -1)}, {(0, 0, 0), (1, 0, 0), (0, 1, 0)}"; a long text is cut and ends with "..."
+/// "{(0, 0, 5), (0, 0, -1)}, {(0, 0, 0), (1, 0, 0), (0, 1, 0)}"; a long text is cut and ends with
+/// "..."
 template <class... A>
 std::string show_arguments(const A&... arguments) {
   std::string text;

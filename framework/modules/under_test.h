@@ -1,7 +1,7 @@
 /// How a test reaches its module, without knowing which of the three implementations it has.
 ///
-/// The same object file of a test is linked into the student's program (the table is the student's linked functions) and
-/// into the judge (the table is a proxy to a sandboxed worker).
+/// The same object file of a test is linked into the student's program (the table is the student's
+/// linked functions) and into the judge (the table is a proxy to a sandboxed worker).
 #pragma once
 
 #include "framework/core/error.h"
@@ -16,7 +16,8 @@ struct UnderTest {
 /// The module under test. For use inside a test: the program sets it before the first test runs.
 template <class Module>
 const Module& under_test() {
-  require(UnderTest<Module>::table != nullptr, "no module is under test: the program's main must set one");
+  require(UnderTest<Module>::table != nullptr,
+          "no module is under test: the program's main must set one");
   return *UnderTest<Module>::table;
 }
 

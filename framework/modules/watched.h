@@ -26,7 +26,8 @@ namespace detail {
 /// Ends the call in its destructor, whether the function returns or throws.
 class WatchedCall {
  public:
-  WatchedCall(CallWatcher& watcher, const char* function) : watcher_(watcher), outer_(watcher.begin(function)) {}
+  WatchedCall(CallWatcher& watcher, const char* function)
+      : watcher_(watcher), outer_(watcher.begin(function)) {}
   ~WatchedCall() { watcher_.end(outer_); }
   WatchedCall(const WatchedCall&) = delete;
   WatchedCall& operator=(const WatchedCall&) = delete;
@@ -37,7 +38,8 @@ class WatchedCall {
 };
 
 template <class R, class... A>
-std::function<R(A...)> watched_function(CallWatcher& watcher, const char* name, std::function<R(A...)> function) {
+std::function<R(A...)> watched_function(CallWatcher& watcher, const char* name,
+                                        std::function<R(A...)> function) {
   return [&watcher, name, function = std::move(function)](A... arguments) -> R {
     const WatchedCall call(watcher, name);
     try {
@@ -54,7 +56,9 @@ std::function<R(A...)> watched_function(CallWatcher& watcher, const char* name, 
 /// @param watcher  must outlive the table and every copy of its functions
 template <class Module>
 Module watched(Module module, CallWatcher& watcher) {
-  Module::visit(module, [&](const char* name, auto& field) { field = detail::watched_function(watcher, name, field); });
+  Module::visit(module, [&](const char* name, auto& field) {
+    field = detail::watched_function(watcher, name, field);
+  });
   return module;
 }
 

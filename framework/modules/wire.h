@@ -1,5 +1,6 @@
-/// Values as bytes, derived from their types: arithmetic, enums, strings, Eigen, optional, vector, and aggregates of these
-/// (walked by Boost.PFR). Reading is bounds-checked: bytes from a sandbox are never trusted.
+/// Values as bytes, derived from their types: arithmetic, enums, strings, Eigen, optional, vector,
+/// and aggregates of these (walked by Boost.PFR). Reading is bounds-checked: bytes from a sandbox
+/// are never trusted.
 ///
 /// A std::function argument travels as the number of an entry in the sender's table of callbacks.
 #pragma once
@@ -28,11 +29,16 @@ class WireError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-template <class T> struct is_optional : std::false_type {};
-template <class T> struct is_optional<std::optional<T>> : std::true_type {};
-template <class T> struct is_vector : std::false_type {};
-template <class T> struct is_vector<std::vector<T>> : std::true_type {};
-template <class T> inline constexpr bool is_matrix = std::is_base_of_v<Eigen::PlainObjectBase<T>, T>;
+template <class T>
+struct is_optional : std::false_type {};
+template <class T>
+struct is_optional<std::optional<T>> : std::true_type {};
+template <class T>
+struct is_vector : std::false_type {};
+template <class T>
+struct is_vector<std::vector<T>> : std::true_type {};
+template <class T>
+inline constexpr bool is_matrix = std::is_base_of_v<Eigen::PlainObjectBase<T>, T>;
 
 class Writer {
  public:
@@ -63,7 +69,9 @@ class Writer {
       value(static_cast<std::uint32_t>(x.cols()));
       raw(x.data(), static_cast<std::size_t>(x.size()) * sizeof(typename T::Scalar));
     } else {
-      static_assert(std::is_aggregate_v<T>, "a module's argument must be arithmetic, Eigen, optional, vector, or an aggregate of these");
+      static_assert(std::is_aggregate_v<T>,
+                    "a module's argument must be arithmetic, Eigen, optional, vector, or an "
+                    "aggregate of these");
       boost::pfr::for_each_field(x, [this](const auto& field) { value(field); });
     }
   }
@@ -79,7 +87,8 @@ class Reader {
   }
 
   void raw(void* data, std::size_t size) {
-    if (static_cast<std::size_t>(end_ - at_) < size) throw WireError("the message ends inside a value");
+    if (static_cast<std::size_t>(end_ - at_) < size)
+      throw WireError("the message ends inside a value");
     if (size > 0) std::memcpy(data, at_, size);
     at_ += size;
   }
@@ -101,8 +110,10 @@ class Reader {
     } else if constexpr (is_optional<T>::value) {
       bool has = false;
       value(has);
-      if (has) value(x.emplace());
-      else x.reset();
+      if (has)
+        value(x.emplace());
+      else
+        x.reset();
     } else if constexpr (is_vector<T>::value) {
       // The vector grows as it is read: a count alone must not allocate a thousand times the
       // message's size.
@@ -117,10 +128,13 @@ class Reader {
       std::uint32_t rows = 0, cols = 0;
       value(rows);
       value(cols);
-      const bool fits = (T::RowsAtCompileTime == Eigen::Dynamic || rows == static_cast<std::uint32_t>(T::RowsAtCompileTime)) &&
-                        (T::ColsAtCompileTime == Eigen::Dynamic || cols == static_cast<std::uint32_t>(T::ColsAtCompileTime));
+      const bool fits = (T::RowsAtCompileTime == Eigen::Dynamic ||
+                         rows == static_cast<std::uint32_t>(T::RowsAtCompileTime)) &&
+                        (T::ColsAtCompileTime == Eigen::Dynamic ||
+                         cols == static_cast<std::uint32_t>(T::ColsAtCompileTime));
       const std::uint64_t size = std::uint64_t{rows} * cols * sizeof(typename T::Scalar);
-      if (!fits || size > static_cast<std::uint64_t>(end_ - at_)) throw WireError("a matrix of an impossible size");
+      if (!fits || size > static_cast<std::uint64_t>(end_ - at_))
+        throw WireError("a matrix of an impossible size");
       x.resize(rows, cols);
       raw(x.data(), size);
     } else {
@@ -135,7 +149,8 @@ class Reader {
   std::uint32_t count(std::size_t item_size) {
     std::uint32_t n = 0;
     value(n);
-    if (n > static_cast<std::size_t>(end_ - at_) / item_size) throw WireError("a count that the message cannot hold");
+    if (n > static_cast<std::size_t>(end_ - at_) / item_size)
+      throw WireError("a count that the message cannot hold");
     return n;
   }
 

@@ -1,6 +1,7 @@
 /// From world coordinates to pixels and back. Without OpenGL: `poke --pixel` uses it too.
 ///
-/// Pixels: (0, 0) is the top left corner of the picture, x to the right, y down; the centre of the first pixel is (0.5, 0.5).
+/// Pixels: (0, 0) is the top left corner of the picture, x to the right, y down; the centre of the
+/// first pixel is (0.5, 0.5).
 #pragma once
 
 #include <optional>
@@ -12,9 +13,9 @@ namespace tumble::render {
 
 /// A camera at one instant, with its axes. World frame, unit vectors.
 struct View {
-  Vector3d eye_world;       // [m]
+  Vector3d eye_world;  // [m]
   Vector3d right_world, up_world, forward_world;
-  double tan_half_height;   // tangent of half the vertical field of view [-]
+  double tan_half_height;  // tangent of half the vertical field of view [-]
 };
 
 /// @param shift_world  displacement of the followed body; zero where the camera follows nothing [m]
@@ -27,7 +28,8 @@ Ray pixel_ray(const View& view, int width, int height, double x, double y);
 Ray pixel_ray(const scene::CameraSpec& camera, int width, int height, double x, double y);
 
 /// Image of a point, in pixels; nothing for a point that is not in front of the eye.
-std::optional<Vector2d> project(const View& view, int width, int height, const Vector3d& point_world);
+std::optional<Vector2d> project(const View& view, int width, int height,
+                                const Vector3d& point_world);
 
 /// Size of one pixel at a point's depth [m].
 double metres_per_pixel(const View& view, int height, const Vector3d& point_world);

@@ -10,7 +10,7 @@
 namespace tumble::render {
 namespace {
 
-constexpr double kLineSpacing = 1.25;   // relative to the font size
+constexpr double kLineSpacing = 1.25;  // relative to the font size
 
 std::string engine_name(const std::string& id) {
   if (id == "rd") return "retroactive detection";
@@ -22,39 +22,50 @@ std::string engine_name(const std::string& id) {
 // 1/60 reads better than 0.0166667.
 std::string step_text(double step_s) {
   const double per_second = step_s > 0.0 ? 1.0 / step_s : 0.0;
-  const bool is_fraction = per_second >= 2.0 && std::abs(per_second - std::round(per_second)) < 1e-6 * per_second;
+  const bool is_fraction =
+      per_second >= 2.0 && std::abs(per_second - std::round(per_second)) < 1e-6 * per_second;
   return is_fraction ? fmt::format("1/{:.0f} s", per_second) : fmt::format("{:g} s", step_s);
 }
 
 std::string made_by(const TrajectoryInfo& info) {
   std::string text = engine_name(info.engine) + ", step " + step_text(info.step_s);
-  if (!info.impulse_source.empty() && info.impulse_source != "none") text += " · impulses: " + info.impulse_source;
-  if (!info.integrator_source.empty() && info.integrator_source != "none") text += " · motion: " + info.integrator_source;
+  if (!info.impulse_source.empty() && info.impulse_source != "none")
+    text += " · impulses: " + info.impulse_source;
+  if (!info.integrator_source.empty() && info.integrator_source != "none")
+    text += " · motion: " + info.integrator_source;
   return text;
 }
 
 /// Text in one line, or in two where it is too wide; the second is cut where it does not fit.
-std::vector<std::string> in_lines(const TextWriter& writer, const std::string& text, double size, double room, bool bold) {
+std::vector<std::string> in_lines(const TextWriter& writer, const std::string& text, double size,
+                                  double room, bool bold) {
   if (writer.width(text, size, bold) <= room) return {text};
-  std::size_t end = std::string::npos;   // of the first line: its last space
-  for (std::size_t space = text.find(' '); space != std::string::npos && writer.width(text.substr(0, space), size, bold) <= room; space = text.find(' ', space + 1)) end = space;
+  std::size_t end = std::string::npos;  // of the first line: its last space
+  for (std::size_t space = text.find(' ');
+       space != std::string::npos && writer.width(text.substr(0, space), size, bold) <= room;
+       space = text.find(' ', space + 1))
+    end = space;
   if (end == std::string::npos) return {writer.fitted(text, size, room, bold)};
   return {text.substr(0, end), writer.fitted(text.substr(end + 1), size, room, bold)};
 }
 
 }  // namespace
 
-void write_captions(Image& image, const TextWriter& writer, const scene::Scene& scene, const Trajectory& run, const Stage& stage,
-                    std::size_t frame, const Moment& moment, const std::string& label, Words words) {
+void write_captions(Image& image, const TextWriter& writer, const scene::Scene& scene,
+                    const Trajectory& run, const Stage& stage, std::size_t frame,
+                    const Moment& moment, const std::string& label, Words words) {
   const double w = image.width, h = image.height;
-  const double unit = std::min(w / 640.0, h / 480.0);           // sizes are for 640 x 480
-  const double margin = 14.0 * unit, small = std::max(11.0 * unit, 9.5), large = std::max(17.0 * unit, 11.0);
+  const double unit = std::min(w / 640.0, h / 480.0);  // sizes are for 640 x 480
+  const double margin = 14.0 * unit, small = std::max(11.0 * unit, 9.5),
+               large = std::max(17.0 * unit, 11.0);
   for (const Label& place : moment.labels)
     if (const auto at = project(moment.drawing.view, image.width, image.height, place.point_world))
-      writer.write(image, place.text, at->x(), at->y() + 1.5 * small + place.drop_pixels, small * 1.08, kDark, Align::kCentre, true);
+      writer.write(image, place.text, at->x(), at->y() + 1.5 * small + place.drop_pixels,
+                   small * 1.08, kDark, Align::kCentre, true);
 
   const std::string time = fmt::format("t = {:.2f} s", run.frames[frame].time);
-  writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark, Align::kLeft, true);
+  writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark,
+               Align::kLeft, true);
   if (words == Words::kTimeOnly) return;
 
   // For runs side by side the label is below the title: half a picture is too narrow for both in
@@ -65,18 +76,23 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
     writer.write(image, part, margin, baseline, large, kDark, Align::kLeft, true);
     baseline += kLineSpacing * large;
   }
-  if (!label.empty()) writer.write(image, writer.fitted(label, large * 0.9, w - 2 * margin, true), margin, baseline, large * 0.9, kSoft, Align::kLeft, true);
+  if (!label.empty())
+    writer.write(image, writer.fitted(label, large * 0.9, w - 2 * margin, true), margin, baseline,
+                 large * 0.9, kSoft, Align::kLeft, true);
 
   std::string right = made_by(run.info);
-  if (stage.grid_spacing_m() > 0.0 && !stage.has_scale_bar()) right = fmt::format("grid {:g} m · ", stage.grid_spacing_m()) + right;
+  if (stage.grid_spacing_m() > 0.0 && !stage.has_scale_bar())
+    right = fmt::format("grid {:g} m · ", stage.grid_spacing_m()) + right;
   const double room = w - 3 * margin - writer.width(time, 15.0 * unit, true);
   std::vector<std::string> made = in_lines(writer, right, small, room, false);
   double from_below = h - margin;
-  for (auto line = made.rbegin(); line != made.rend(); ++line, from_below -= kLineSpacing * small) writer.write(image, *line, w - margin, from_below, small, kSoft, Align::kRight);
+  for (auto line = made.rbegin(); line != made.rend(); ++line, from_below -= kLineSpacing * small)
+    writer.write(image, *line, w - margin, from_below, small, kSoft, Align::kRight);
 
   if (!run.stopped_by.empty() && frame + 1 == run.frames.size())
-    writer.write(image, writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true), margin, from_below - 10.0 * unit, small * 1.15,
-                 kAlarm, Align::kLeft, true);
+    writer.write(image,
+                 writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true),
+                 margin, from_below - 10.0 * unit, small * 1.15, kAlarm, Align::kLeft, true);
 }
 
 }  // namespace tumble::render

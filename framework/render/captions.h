@@ -11,7 +11,8 @@ enum class Words { kAll, kTimeOnly };
 
 /// Writes title, time, engine and step, the grid's scale, labels, and what stopped the run.
 /// @param label  at the top right, e.g. "reference"; may be empty
-void write_captions(Image& image, const TextWriter& writer, const scene::Scene& scene, const Trajectory& run, const Stage& stage,
-                    std::size_t frame, const Moment& moment, const std::string& label, Words words);
+void write_captions(Image& image, const TextWriter& writer, const scene::Scene& scene,
+                    const Trajectory& run, const Stage& stage, std::size_t frame,
+                    const Moment& moment, const std::string& label, Words words);
 
 }  // namespace tumble::render

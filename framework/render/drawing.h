@@ -13,8 +13,8 @@
 namespace tumble::render {
 
 struct Vertex {
-  float position[3];   // local frame
-  float normal[3];     // unit
+  float position[3];  // local frame
+  float normal[3];    // unit
 };
 
 /// Triangles, counter-clockwise seen from outside.
@@ -25,16 +25,17 @@ struct Geometry {
 
 /// How an object is drawn.
 enum class Pass : std::uint8_t {
-  kSolid,      // lit; casts and receives shadow
-  kGlass,      // lit, translucent, casts no shadow: a wall between the eye and moving bodies
-  kLine,       // unlit, occluded by bodies, casts no shadow: paths, the scale bar of the grid
-  kMark,       // unlit, in front of everything: arrows, flashes
+  kSolid,  // lit; casts and receives shadow
+  kGlass,  // lit, translucent, casts no shadow: a wall between the eye and moving bodies
+  kLine,   // unlit, occluded by bodies, casts no shadow: paths, the scale bar of the grid
+  kMark,   // unlit, in front of everything: arrows, flashes
 };
 
 struct Instance {
-  float world_from_local[12];   // 3 x 4, row by row
-  float color[4];               // linear RGB and opacity
-  float quartered;              // 1: quarters in two tones, so that the rotation of a ball is visible; 0: one tone
+  float world_from_local[12];  // 3 x 4, row by row
+  float color[4];              // linear RGB and opacity
+  // 1: quarters in two tones, so that the rotation of a ball is visible; 0: one tone
+  float quartered;
 };
 
 /// Instances of one geometry, drawn together.
@@ -48,16 +49,16 @@ struct Batch {
 struct Ground {
   bool shown = false;
   double height_m = 0.0;
-  double spacing_m = 0.0;        // of the grid; 0: no grid
+  double spacing_m = 0.0;  // of the grid; 0: no grid
   Vector2d centre_m = Vector2d::Zero();
-  double fade_m = 10.0;          // distance from the centre at which it has faded out
+  double fade_m = 10.0;  // distance from the centre at which it has faded out
 };
 
 struct Drawing {
   View view;
   double near_m = 0.1, far_m = 100.0;
-  Vector3d to_light_world;                       // unit
-  Vector3d shadow_centre_world;                  // centre of the ball within which shadows are cast
+  Vector3d to_light_world;       // unit
+  Vector3d shadow_centre_world;  // centre of the ball within which shadows are cast
   double shadow_radius_m = 1.0;
   Ground ground;
   std::vector<Batch> batches;

@@ -40,8 +40,10 @@ Library open_library() {
   find(found.create_context, "eglCreateContext");
   find(found.destroy_context, "eglDestroyContext");
   find(found.make_current, "eglMakeCurrent");
-  const auto platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(found.address("eglGetPlatformDisplayEXT"));
-  if (platform_display == nullptr) throw UserError(kLibrary, "offers no platform displays", kRemedy);
+  const auto platform_display =
+      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(found.address("eglGetPlatformDisplayEXT"));
+  if (platform_display == nullptr)
+    throw UserError(kLibrary, "offers no platform displays", kRemedy);
   found.display = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (found.display == EGL_NO_DISPLAY || !found.initialize(found.display, nullptr, nullptr))
     throw UserError(kLibrary, "offers no surfaceless display", kRemedy);
@@ -58,15 +60,24 @@ class EglContext final : public GlContext {
  public:
   EglContext() {
     const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-                              EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
+                              3,
+                              EGL_CONTEXT_MINOR_VERSION,
+                              3,
+                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                              EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (library().bind_api(EGL_OPENGL_API) && library().choose_config(library().display, wanted, &config, 1, &count) && count > 0)
+    if (library().bind_api(EGL_OPENGL_API) &&
+        library().choose_config(library().display, wanted, &config, 1, &count) && count > 0)
       context_ = library().create_context(library().display, config, EGL_NO_CONTEXT, version);
-    if (context_ == EGL_NO_CONTEXT) throw UserError(kLibrary, "offers no OpenGL 3.3 core context", kRemedy);
+    if (context_ == EGL_NO_CONTEXT)
+      throw UserError(kLibrary, "offers no OpenGL 3.3 core context", kRemedy);
     const Current current(*this);
-    gl_ = load_gl_functions([](const char* name) { return reinterpret_cast<void*>(library().address(name)); }, kLibrary);
+    gl_ = load_gl_functions(
+        [](const char* name) { return reinterpret_cast<void*>(library().address(name)); },
+        kLibrary);
   }
   ~EglContext() override { library().destroy_context(library().display, context_); }
 
@@ -75,7 +86,9 @@ class EglContext final : public GlContext {
     if (!library().make_current(library().display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
       throw UserError(kLibrary, "cannot make its context current");
   }
-  void release() override { library().make_current(library().display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+  void release() override {
+    library().make_current(library().display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
   const char* name() const override { return "egl"; }
 
  private:

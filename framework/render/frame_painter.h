@@ -11,7 +11,8 @@ namespace tumble::render {
 class FramePainter {
  public:
   /// @throws UserError as make_picture
-  FramePainter(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options, std::string label = "", Words words = Words::kAll);
+  FramePainter(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options,
+               std::string label = "", Words words = Words::kAll);
 
   /// A picture without its text, so that rendering and text can run in two threads.
   struct Wordless {

@@ -11,13 +11,16 @@ namespace tumble::render {
 
 /// 8-bit sRGB, three bytes per pixel, rows from the top.
 struct Image {
-  int width = 0, height = 0;           // pixels
-  std::vector<std::uint8_t> rgb;       // width * height * 3
+  int width = 0, height = 0;      // pixels
+  std::vector<std::uint8_t> rgb;  // width * height * 3
 
   Image() = default;
-  Image(int w, int h, std::uint8_t grey = 255) : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3, grey) {}
+  Image(int w, int h, std::uint8_t grey = 255)
+      : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3, grey) {}
   std::uint8_t* pixel(int x, int y) { return &rgb[(static_cast<std::size_t>(y) * width + x) * 3]; }
-  const std::uint8_t* pixel(int x, int y) const { return &rgb[(static_cast<std::size_t>(y) * width + x) * 3]; }
+  const std::uint8_t* pixel(int x, int y) const {
+    return &rgb[(static_cast<std::size_t>(y) * width + x) * 3];
+  }
 };
 
 /// Copies `part` into `whole` with its top left corner at (x, y). @pre it fits

@@ -15,9 +15,9 @@ enum class LinkKind : std::uint8_t { kSpring, kRod, kBallJoint, kHinge };
 /// A link at one instant. A ball joint has one point; a hinge lies along its axis, from a to b.
 struct Link {
   LinkKind kind;
-  Vector3d a_world, b_world;   // [m]
-  double width_m;              // radius of the coil, the rod or the ball
-  double turned_m;             // length of the coil at which its turns are close together
+  Vector3d a_world, b_world;  // [m]
+  double width_m;             // radius of the coil, the rod or the ball
+  double turned_m;            // length of the coil at which its turns are close together
 };
 
 /// Adds the links to a drawing: a spring is a coil (a line where it is less than two pixels wide),
@@ -32,14 +32,15 @@ class SceneLinks {
   SceneLinks() = default;
   /// @param sight_m   distance from the eye to its target, which sets the sizes
   /// @param radius_m  by body; links of small bodies are not drawn larger than the bodies
-  SceneLinks(const scene::Scene& scene, const Frame& first, double sight_m, const std::vector<double>& radius_m);
+  SceneLinks(const scene::Scene& scene, const Frame& first, double sight_m,
+             const std::vector<double>& radius_m);
   /// The links at a frame, without those of bodies whose pose is not finite.
   std::vector<Link> at(const Frame& frame) const;
 
  private:
   struct Anchor {
-    int body = -1;             // -1: the world
-    Vector3d point;            // body frame, or world
+    int body = -1;   // -1: the world
+    Vector3d point;  // body frame, or world
   };
   struct Placed {
     LinkKind kind;

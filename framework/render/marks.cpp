@@ -12,16 +12,19 @@
 namespace tumble::render {
 namespace {
 
-constexpr double kFlashSeconds = 0.22;       // of video: about seven frames, long enough to be noticed
-constexpr double kForceLinger = 0.12;        // s of video after a force has ended, for forces shorter than a frame
-constexpr std::size_t kMaxFlashes = 40;      // the latest; more would hide the bodies
-constexpr std::size_t kMaxPaths = 6;         // moving bodies; more paths would be confusing
+// of video: about seven frames, long enough to be noticed
+constexpr double kFlashSeconds = 0.22;
+// s of video after a force has ended, for forces shorter than a frame
+constexpr double kForceLinger = 0.12;
+constexpr std::size_t kMaxFlashes = 40;  // the latest; more would hide the bodies
+constexpr std::size_t kMaxPaths = 6;     // moving bodies; more paths would be confusing
 constexpr std::size_t kPathSegments = 160;
-constexpr int kMaxCorners = 200;             // the first ones; later bounces of a settling ball are too small to see
+// the first ones; later bounces of a settling ball are too small to see
+constexpr int kMaxCorners = 200;
 const Vector3d kImpulseColor(0.72, 0.10, 0.01);
 const Vector3d kFlashColor(1.0, 0.78, 0.22);
 const Vector3d kForceColor(0.45, 0.02, 0.20);
-constexpr double kSheetReach = 2.6;          // of the sight
+constexpr double kSheetReach = 2.6;  // of the sight
 constexpr double kSheetOpacity = 0.35;
 const Vector3d kBarColor(0.03, 0.05, 0.07);
 
@@ -34,7 +37,9 @@ std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t last) {
   int corners = 0;
   for (const Event& event : run.events) {
     if (event.kind != EventKind::kCollision || ++corners > kMaxCorners) continue;
-    const auto after = std::lower_bound(run.frames.begin(), run.frames.end(), event.time, [](const Frame& frame, double time) { return frame.time < time; });
+    const auto after =
+        std::lower_bound(run.frames.begin(), run.frames.end(), event.time,
+                         [](const Frame& frame, double time) { return frame.time < time; });
     const auto f = static_cast<std::size_t>(after - run.frames.begin());
     if (f > 0 && f - 1 <= last) frames.push_back(f - 1);
     if (f <= last) frames.push_back(f);
@@ -56,20 +61,27 @@ void Stage::place_scale_bar() {
   const Vector2d wanted(0.22 * w, 0.80 * h);
   const auto is_seen = [&](const Vector3d& point) {
     for (std::size_t i = 0; i < actors_.size(); ++i)
-      if (actors_[i].immovable && hides(surface(actors_[i]), run_.frames.front().poses[i], view.eye_world, point)) return false;
+      if (actors_[i].immovable &&
+          hides(surface(actors_[i]), run_.frames.front().poses[i], view.eye_world, point))
+        return false;
     return true;
   };
   double best = std::numeric_limits<double>::infinity();
-  const int ci = static_cast<int>(std::lround(scene_.camera.target_m.x() / step)), cj = static_cast<int>(std::lround(scene_.camera.target_m.y() / step));
+  const int ci = static_cast<int>(std::lround(scene_.camera.target_m.x() / step)),
+            cj = static_cast<int>(std::lround(scene_.camera.target_m.y() / step));
   for (int i = ci - 30; i <= ci + 30; ++i) {
     for (int j = cj - 30; j <= cj + 30; ++j) {
       const Vector3d from(i * step, j * step, ground_.height_m), to = from + Vector3d(step, 0, 0);
-      const auto a = project(view, options_.width, options_.height, from), b = project(view, options_.width, options_.height, to);
+      const auto a = project(view, options_.width, options_.height, from),
+                 b = project(view, options_.width, options_.height, to);
       if (!a || !b || (*a - *b).norm() < 0.045 * w) continue;
-      const bool inside = std::min(a->x(), b->x()) > 0.04 * w && std::max(a->x(), b->x()) < 0.96 * w && std::min(a->y(), b->y()) > 0.15 * h &&
-                          std::max(a->y(), b->y()) < 0.86 * h;
+      const bool inside =
+          std::min(a->x(), b->x()) > 0.04 * w && std::max(a->x(), b->x()) < 0.96 * w &&
+          std::min(a->y(), b->y()) > 0.15 * h && std::max(a->y(), b->y()) < 0.86 * h;
       const double distance = (0.5 * (*a + *b) - wanted).norm();
-      if (!inside || distance >= best || !is_seen(from) || !is_seen(0.5 * (from + to)) || !is_seen(to)) continue;
+      if (!inside || distance >= best || !is_seen(from) || !is_seen(0.5 * (from + to)) ||
+          !is_seen(to))
+        continue;
       best = distance;
       scale_bar_from_ = from;
       scale_bar_m_ = step;
@@ -84,10 +96,12 @@ void Stage::add_scale_bar(Moment& moment) const {
   const double width = 1.6 * metres_per_pixel(moment.drawing.view, options_.height, from);
   const Vector3d tick(0, 3.5 * width, 0);
   Batch bar{kTube, Pass::kLine, {}};
-  bar.instances = {laid_between(from, to, width, kBarColor), laid_between(from - tick, from + tick, width, kBarColor),
+  bar.instances = {laid_between(from, to, width, kBarColor),
+                   laid_between(from - tick, from + tick, width, kBarColor),
                    laid_between(to - tick, to + tick, width, kBarColor)};
   moment.drawing.batches.push_back(bar);
-  const auto a = project(moment.drawing.view, options_.width, options_.height, from), b = project(moment.drawing.view, options_.width, options_.height, to);
+  const auto a = project(moment.drawing.view, options_.width, options_.height, from),
+             b = project(moment.drawing.view, options_.width, options_.height, to);
   // The text of a slanting bar is placed below its lower end.
   const double slant = a && b ? 0.5 * std::abs(a->y() - b->y()) : 0.0;
   moment.labels.push_back({0.5 * (from + to), fmt::format("{:g} m", scale_bar_m_), slant});
@@ -99,7 +113,9 @@ void Stage::add_path(std::size_t last, Drawing& drawing) const {
     if (!actors_[i].immovable) moving.push_back(i);
   if (moving.empty() || moving.size() > kMaxPaths) return;
   const std::vector<std::size_t> shown = path_frames(run_, last);
-  const double width = 0.9 * metres_per_pixel(drawing.view, options_.height, drawing.view.eye_world + sight_m() * drawing.view.forward_world);
+  const double width =
+      0.9 * metres_per_pixel(drawing.view, options_.height,
+                             drawing.view.eye_world + sight_m() * drawing.view.forward_world);
   Batch path{kTube, Pass::kLine, {}};
   for (const std::size_t i : moving) {
     const Vector3d color = 0.75 * actors_[i].color;
@@ -116,25 +132,30 @@ void Stage::add_path(std::size_t last, Drawing& drawing) const {
 
 void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
   const double life = kFlashSeconds * options_.speed;
-  Batch flashes{kBall + ball_level(6.0 * options_.height / 480.0), Pass::kMark, {}}, arrows{kArrow, Pass::kMark, {}};
+  Batch flashes{kBall + ball_level(6.0 * options_.height / 480.0), Pass::kMark, {}},
+      arrows{kArrow, Pass::kMark, {}};
   const auto add_arrow = [&](const Event& event, int body, double sign, double opacity) {
     const Actor& actor = actors_[static_cast<std::size_t>(body)];
     if (actor.immovable) return;
-    const double strength = strongest_impulse_ > 0.0 ? std::sqrt(event.impulse / strongest_impulse_) : 1.0;
+    const double strength =
+        strongest_impulse_ > 0.0 ? std::sqrt(event.impulse / strongest_impulse_) : 1.0;
     const double length = strength * std::min(0.17 * sight_m(), 2.6 * actor.radius_m);
     if (!(length > 4e-3 * sight_m())) return;
     const Vector3d tip = event.point_world + sign * length * event.normal_b_to_a_world;
-    arrows.instances.push_back(laid_between(event.point_world, tip, length, kImpulseColor, opacity));
+    arrows.instances.push_back(
+        laid_between(event.point_world, tip, length, kImpulseColor, opacity));
   };
-  for (auto event = run_.events.rbegin(); event != run_.events.rend() && flashes.instances.size() < kMaxFlashes; ++event) {
+  for (auto event = run_.events.rbegin();
+       event != run_.events.rend() && flashes.instances.size() < kMaxFlashes; ++event) {
     const double age = frame.time - event->time;
     if (event->kind != EventKind::kCollision || age < -1e-9) continue;
-    if (age >= life) break;   // events are in order of time
+    if (age >= life) break;  // events are in order of time
     const double opacity = 1.0 - std::max(0.0, age) / life;
     const double pixel = metres_per_pixel(drawing.view, options_.height, event->point_world);
     if (!(pixel > 0.0) || !(event->impulse > 0.0)) continue;
     const double radius = (2.5 + 3.5 * (1.0 - opacity)) * pixel * options_.height / 480.0;
-    flashes.instances.push_back(placed(event->point_world, Eigen::Matrix3d::Identity(), Vector3d::Constant(radius), kFlashColor, 0.9 * opacity));
+    flashes.instances.push_back(placed(event->point_world, Eigen::Matrix3d::Identity(),
+                                       Vector3d::Constant(radius), kFlashColor, 0.9 * opacity));
     add_arrow(*event, event->body_a, 1.0, opacity);
     if (event->body_b >= 0) add_arrow(*event, event->body_b, -1.0, opacity);
   }
@@ -149,7 +170,8 @@ void Stage::add_sheets(Drawing& drawing) const {
   Batch sheets{kPlate, Pass::kGlass, {}};
   for (const effects::DrawnSheet& sheet : drawables_.sheets) {
     const Vector3d middle(scene_.camera.target_m.x(), scene_.camera.target_m.y(), sheet.height_m);
-    sheets.instances.push_back(placed(middle, Eigen::Matrix3d::Identity(), Vector3d(half, half, 1.0), sheet.color, kSheetOpacity));
+    sheets.instances.push_back(placed(middle, Eigen::Matrix3d::Identity(),
+                                      Vector3d(half, half, 1.0), sheet.color, kSheetOpacity));
   }
   drawing.batches.push_back(std::move(sheets));
 }
@@ -157,17 +179,22 @@ void Stage::add_sheets(Drawing& drawing) const {
 // A force is an arrow with its head at the point of application, which moves with the body.
 void Stage::add_forces(const Frame& frame, Moment& moment) const {
   double strongest = 0.0;
-  for (const effects::DrawnArrow& force : drawables_.arrows) strongest = std::max(strongest, force.force_world.norm());
+  for (const effects::DrawnArrow& force : drawables_.arrows)
+    strongest = std::max(strongest, force.force_world.norm());
   Batch arrows{kArrow, Pass::kMark, {}};
   for (const effects::DrawnArrow& force : drawables_.arrows) {
     const double end = force.start_s + force.duration_s + kForceLinger * options_.speed;
-    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_world.norm() > 0.0)) continue;
-    const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const auto& spec) { return spec.name == force.body; });
+    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_world.norm() > 0.0))
+      continue;
+    const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                   [&](const auto& spec) { return spec.name == force.body; });
     if (body == scene_.bodies.end()) continue;
     const auto index = static_cast<std::size_t>(body - scene_.bodies.begin());
     const BodyPose& then = run_.frames[frame_at(force.start_s)].poses[index];
     const BodyPose& now = frame.poses[index];
-    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_world - then.com_world));
+    const Vector3d tip =
+        now.com_world + now.world_from_body * (then.world_from_body.conjugate() *
+                                               (force.point_world - then.com_world));
     const double length = 0.17 * sight_m() * std::sqrt(force.force_world.norm() / strongest);
     const Vector3d tail = tip - length * force.force_world.normalized();
     arrows.instances.push_back(laid_between(tail, tip, length, kForceColor));

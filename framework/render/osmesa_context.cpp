@@ -26,10 +26,12 @@ struct Library {
 const Library& library() {
   static const Library opened = [] {
     void* handle = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr) throw UserError(kLibrary, "cannot be opened", "Install the package libosmesa6.");
+    if (handle == nullptr)
+      throw UserError(kLibrary, "cannot be opened", "Install the package libosmesa6.");
     const auto find = [&]<class Function>(Function& function, const char* name) {
       function = reinterpret_cast<Function>(dlsym(handle, name));
-      if (function == nullptr) throw UserError(kLibrary, std::string("has no ") + name, "Install the package libosmesa6.");
+      if (function == nullptr)
+        throw UserError(kLibrary, std::string("has no ") + name, "Install the package libosmesa6.");
     };
     Library found{};
     find(found.create, "OSMesaCreateContextAttribs");
@@ -44,12 +46,23 @@ const Library& library() {
 class OsmesaContext final : public GlContext {
  public:
   OsmesaContext() {
-    const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3,
-                          OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    const int wanted[] = {OSMESA_FORMAT,
+                          OSMESA_RGBA,
+                          OSMESA_PROFILE,
+                          OSMESA_CORE_PROFILE,
+                          OSMESA_CONTEXT_MAJOR_VERSION,
+                          3,
+                          OSMESA_CONTEXT_MINOR_VERSION,
+                          3,
+                          0};
     context_ = library().create(wanted, nullptr);
-    if (context_ == nullptr) throw UserError(kLibrary, "offers no OpenGL 3.3 core context", "Install Debian 12's libosmesa6.");
+    if (context_ == nullptr)
+      throw UserError(kLibrary, "offers no OpenGL 3.3 core context",
+                      "Install Debian 12's libosmesa6.");
     const Current current(*this);
-    gl_ = load_gl_functions([](const char* name) { return reinterpret_cast<void*>(library().address(name)); }, kLibrary);
+    gl_ = load_gl_functions(
+        [](const char* name) { return reinterpret_cast<void*>(library().address(name)); },
+        kLibrary);
   }
   ~OsmesaContext() override { library().destroy(context_); }
 
@@ -61,7 +74,8 @@ class OsmesaContext final : public GlContext {
   const char* name() const override { return "osmesa"; }
 
  private:
-  static constexpr int kSide = 4;  // pixels: a buffer that OSMesa requires; nothing is drawn into it
+  // pixels: a buffer that OSMesa requires; nothing is drawn into it
+  static constexpr int kSide = 4;
   OSMesaContext context_ = nullptr;
   unsigned char own_buffer_[4 * kSide * kSide] = {};
 };

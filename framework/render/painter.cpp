@@ -12,8 +12,9 @@
 namespace tumble::render {
 namespace {
 
-constexpr int kShadowSide = 1024;   // texels: one is about a pixel wide where the shadow fills a 640x480 picture
-using Matrix4f = Eigen::Matrix4f;   // column-major, as OpenGL needs it
+// texels: one is about a pixel wide where the shadow fills a 640x480 picture
+constexpr int kShadowSide = 1024;
+using Matrix4f = Eigen::Matrix4f;  // column-major, as OpenGL needs it
 
 Matrix4f clip_from_world(const View& view, double aspect, double near_m, double far_m) {
   Eigen::Matrix4d camera_from_world = Eigen::Matrix4d::Identity();
@@ -49,7 +50,8 @@ Eigen::Vector3f to_float(const Vector3d& v) { return v.cast<float>(); }
 
 class Painter::Body {
  public:
-  Body(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries, int width, int height, int samples)
+  Body(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries, int width,
+       int height, int samples)
       : context_(std::move(context)), gl_(context_->gl()), width_(width), height_(height) {
     const Current current(*context_);
     bodies_ = link(kBodyVertex, kBodyFragment);
@@ -71,9 +73,10 @@ class Painter::Body {
     draw_shadow_map(drawing, shadow);
     gl_.BindFramebuffer(gl::kFramebuffer, canvas_);
     gl_.Viewport(0, 0, width_, height_);
-    gl_.Disable(gl::kFramebufferSrgb);   // needed for blending only
+    gl_.Disable(gl::kFramebufferSrgb);  // needed for blending only
     gl_.Clear(gl::kColorBufferBit | gl::kDepthBufferBit);
-    const Matrix4f clip = clip_from_world(drawing.view, static_cast<double>(width_) / height_, drawing.near_m, drawing.far_m);
+    const Matrix4f clip = clip_from_world(drawing.view, static_cast<double>(width_) / height_,
+                                          drawing.near_m, drawing.far_m);
     gl_.Enable(gl::kDepthTest);
     // Surfaces are closed, so back faces are never visible. Blending costs more than lighting here:
     // it is enabled only where needed.
@@ -104,8 +107,8 @@ class Painter::Body {
 
  private:
   struct Mesh {
-    GlName vertices = 0;            // vertex array
-    GlName instances = 0;           // buffer, refilled for each picture
+    GlName vertices = 0;   // vertex array
+    GlName instances = 0;  // buffer, refilled for each picture
     int index_count = 0;
   };
 
@@ -117,20 +120,27 @@ class Painter::Body {
 
   GlName link(const std::string& vertex_source, const std::string& fragment_source) {
     const GlName program = gl_.CreateProgram();
-    const std::pair<GlEnum, const char*> parts[] = {{gl::kVertexShader, vertex_source.c_str()}, {gl::kFragmentShader, fragment_source.c_str()}};
+    const std::pair<GlEnum, const char*> parts[] = {{gl::kVertexShader, vertex_source.c_str()},
+                                                    {gl::kFragmentShader, fragment_source.c_str()}};
     for (const auto& [kind, source] : parts) {
       const GlName shader = gl_.CreateShader(kind);
       gl_.ShaderSource(shader, 1, &source, nullptr);
       gl_.CompileShader(shader);
       int fine = 0;
       gl_.GetShaderiv(shader, gl::kCompileStatus, &fine);
-      if (fine == 0) throw UserError(context_->name(), "refuses a shader: " + log_of(shader, gl_.GetShaderInfoLog), "Pictures need GLSL 3.30.");
+      if (fine == 0)
+        throw UserError(context_->name(),
+                        "refuses a shader: " + log_of(shader, gl_.GetShaderInfoLog),
+                        "Pictures need GLSL 3.30.");
       gl_.AttachShader(program, shader);
     }
     gl_.LinkProgram(program);
     int fine = 0;
     gl_.GetProgramiv(program, gl::kLinkStatus, &fine);
-    if (fine == 0) throw UserError(context_->name(), "cannot link a shader: " + log_of(program, gl_.GetProgramInfoLog), "Pictures need GLSL 3.30.");
+    if (fine == 0)
+      throw UserError(context_->name(),
+                      "cannot link a shader: " + log_of(program, gl_.GetProgramInfoLog),
+                      "Pictures need GLSL 3.30.");
     return program;
   }
 
@@ -144,22 +154,29 @@ class Painter::Body {
     gl_.GenBuffers(1, &mesh.instances);
     gl_.BindVertexArray(mesh.vertices);
     gl_.BindBuffer(gl::kArrayBuffer, buffers[0]);
-    gl_.BufferData(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(geometry.vertices.size() * sizeof(Vertex)), geometry.vertices.data(), gl::kStaticDraw);
+    gl_.BufferData(gl::kArrayBuffer,
+                   static_cast<std::ptrdiff_t>(geometry.vertices.size() * sizeof(Vertex)),
+                   geometry.vertices.data(), gl::kStaticDraw);
     attribute(0, 3, sizeof(Vertex), offsetof(Vertex, position), 0);
     attribute(1, 3, sizeof(Vertex), offsetof(Vertex, normal), 0);
     gl_.BindBuffer(gl::kElementArrayBuffer, buffers[1]);
-    gl_.BufferData(gl::kElementArrayBuffer, static_cast<std::ptrdiff_t>(geometry.indices.size() * sizeof(std::uint32_t)), geometry.indices.data(), gl::kStaticDraw);
+    gl_.BufferData(gl::kElementArrayBuffer,
+                   static_cast<std::ptrdiff_t>(geometry.indices.size() * sizeof(std::uint32_t)),
+                   geometry.indices.data(), gl::kStaticDraw);
     gl_.BindBuffer(gl::kArrayBuffer, mesh.instances);
-    for (unsigned row = 0; row < 3; ++row) attribute(2 + row, 4, sizeof(Instance), 4 * row * sizeof(float), 1);
+    for (unsigned row = 0; row < 3; ++row)
+      attribute(2 + row, 4, sizeof(Instance), 4 * row * sizeof(float), 1);
     attribute(5, 4, sizeof(Instance), offsetof(Instance, color), 1);
     attribute(6, 1, sizeof(Instance), offsetof(Instance, quartered), 1);
     gl_.BindVertexArray(0);
     return mesh;
   }
 
-  void attribute(unsigned place, int components, std::size_t stride, std::size_t offset, unsigned divisor) {
+  void attribute(unsigned place, int components, std::size_t stride, std::size_t offset,
+                 unsigned divisor) {
     gl_.EnableVertexAttribArray(place);
-    gl_.VertexAttribPointer(place, components, gl::kFloat, 0, static_cast<int>(stride), reinterpret_cast<const void*>(offset));
+    gl_.VertexAttribPointer(place, components, gl::kFloat, 0, static_cast<int>(stride),
+                            reinterpret_cast<const void*>(offset));
     gl_.VertexAttribDivisor(place, divisor);
   }
 
@@ -172,12 +189,19 @@ class Painter::Body {
     const int count = samples > 1 ? samples : 0;
     gl_.BindRenderbuffer(gl::kRenderbuffer, buffers[0]);
     gl_.RenderbufferStorageMultisample(gl::kRenderbuffer, count, gl::kSrgb8Alpha8, width_, height_);
-    gl_.FramebufferRenderbuffer(gl::kFramebuffer, gl::kColorAttachment, gl::kRenderbuffer, buffers[0]);
+    gl_.FramebufferRenderbuffer(gl::kFramebuffer, gl::kColorAttachment, gl::kRenderbuffer,
+                                buffers[0]);
     gl_.BindRenderbuffer(gl::kRenderbuffer, buffers[1]);
-    gl_.RenderbufferStorageMultisample(gl::kRenderbuffer, count, gl::kDepthComponent24, width_, height_);
-    gl_.FramebufferRenderbuffer(gl::kFramebuffer, gl::kDepthAttachment, gl::kRenderbuffer, buffers[1]);
+    gl_.RenderbufferStorageMultisample(gl::kRenderbuffer, count, gl::kDepthComponent24, width_,
+                                       height_);
+    gl_.FramebufferRenderbuffer(gl::kFramebuffer, gl::kDepthAttachment, gl::kRenderbuffer,
+                                buffers[1]);
     if (gl_.CheckFramebufferStatus(gl::kFramebuffer) != gl::kFramebufferComplete)
-      throw UserError(context_->name(), "has no framebuffer of " + std::to_string(width_) + "x" + std::to_string(height_) + " pixels with " + std::to_string(samples) + " samples", "Ask for a smaller picture.");
+      throw UserError(context_->name(),
+                      "has no framebuffer of " + std::to_string(width_) + "x" +
+                          std::to_string(height_) + " pixels with " + std::to_string(samples) +
+                          " samples",
+                      "Ask for a smaller picture.");
     return canvas;
   }
 
@@ -185,27 +209,37 @@ class Painter::Body {
     gl_.GenTextures(1, &shadow_map_);
     gl_.ActiveTexture(gl::kTexture0);
     gl_.BindTexture(gl::kTexture2D, shadow_map_);
-    gl_.TexImage2D(gl::kTexture2D, 0, gl::kDepthComponent32F, kShadowSide, kShadowSide, 0, gl::kDepthComponent, gl::kFloat, nullptr);
-    const std::pair<GlEnum, GlEnum> settings[] = {{gl::kTextureMinFilter, gl::kLinear}, {gl::kTextureMagFilter, gl::kLinear},
-                                                  {gl::kTextureWrapS, gl::kClampToEdge}, {gl::kTextureWrapT, gl::kClampToEdge},
-                                                  {gl::kTextureCompareMode, gl::kCompareRefToTexture}};
-    for (const auto& [name, value] : settings) gl_.TexParameteri(gl::kTexture2D, name, static_cast<int>(value));
+    gl_.TexImage2D(gl::kTexture2D, 0, gl::kDepthComponent32F, kShadowSide, kShadowSide, 0,
+                   gl::kDepthComponent, gl::kFloat, nullptr);
+    const std::pair<GlEnum, GlEnum> settings[] = {
+        {gl::kTextureMinFilter, gl::kLinear},
+        {gl::kTextureMagFilter, gl::kLinear},
+        {gl::kTextureWrapS, gl::kClampToEdge},
+        {gl::kTextureWrapT, gl::kClampToEdge},
+        {gl::kTextureCompareMode, gl::kCompareRefToTexture}};
+    for (const auto& [name, value] : settings)
+      gl_.TexParameteri(gl::kTexture2D, name, static_cast<int>(value));
     gl_.GenFramebuffers(1, &shadow_canvas_);
     gl_.BindFramebuffer(gl::kFramebuffer, shadow_canvas_);
-    gl_.FramebufferTexture2D(gl::kFramebuffer, gl::kDepthAttachment, gl::kTexture2D, shadow_map_, 0);
+    gl_.FramebufferTexture2D(gl::kFramebuffer, gl::kDepthAttachment, gl::kTexture2D, shadow_map_,
+                             0);
     gl_.DrawBuffer(0);
     gl_.ReadBuffer(0);
   }
 
   // A geometry may be in several batches, so its instances are uploaded just before they are drawn.
   void draw(const Batch& batch) {
-    require(batch.geometry >= 0 && batch.geometry < static_cast<int>(meshes_.size()), "painter: a batch without a known geometry");
+    require(batch.geometry >= 0 && batch.geometry < static_cast<int>(meshes_.size()),
+            "painter: a batch without a known geometry");
     if (batch.instances.empty()) return;
     const Mesh& mesh = meshes_[static_cast<std::size_t>(batch.geometry)];
     gl_.BindBuffer(gl::kArrayBuffer, mesh.instances);
-    gl_.BufferData(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(batch.instances.size() * sizeof(Instance)), batch.instances.data(), gl::kDynamicDraw);
+    gl_.BufferData(gl::kArrayBuffer,
+                   static_cast<std::ptrdiff_t>(batch.instances.size() * sizeof(Instance)),
+                   batch.instances.data(), gl::kDynamicDraw);
     gl_.BindVertexArray(mesh.vertices);
-    gl_.DrawElementsInstanced(gl::kTriangles, mesh.index_count, gl::kUnsignedInt, nullptr, static_cast<int>(batch.instances.size()));
+    gl_.DrawElementsInstanced(gl::kTriangles, mesh.index_count, gl::kUnsignedInt, nullptr,
+                              static_cast<int>(batch.instances.size()));
   }
 
   void draw_shadow_map(const Drawing& drawing, const Matrix4f& shadow) {
@@ -215,7 +249,7 @@ class Painter::Body {
     gl_.Enable(gl::kDepthTest);
     gl_.Enable(gl::kPolygonOffsetFill);
     gl_.PolygonOffset(2.0f, 4.0f);
-    gl_.Enable(gl::kCullFace);   // of a closed surface only the faces towards the light are needed
+    gl_.Enable(gl::kCullFace);  // of a closed surface only the faces towards the light are needed
     gl_.CullFace(gl::kBack);
     gl_.UseProgram(depth_);
     uniform(depth_, "clip_from_world", shadow);
@@ -238,25 +272,31 @@ class Painter::Body {
     uniform(ground_, "clip_from_world", clip);
     use_shadow(ground_, shadow);
     const Ground& ground = drawing.ground;
-    uniform(ground_, "centre", to_float({ground.centre_m.x(), ground.centre_m.y(), ground.height_m}));
+    uniform(ground_, "centre",
+            to_float({ground.centre_m.x(), ground.centre_m.y(), ground.height_m}));
     uniform(ground_, "reach", static_cast<float>(ground.fade_m));
     uniform(ground_, "spacing", static_cast<float>(ground.spacing_m));
-    uniform(ground_, "picture", Eigen::Vector3f(static_cast<float>(width_), static_cast<float>(height_), 0.0f));
+    uniform(ground_, "picture",
+            Eigen::Vector3f(static_cast<float>(width_), static_cast<float>(height_), 0.0f));
     use_sky(ground_);
     gl_.BindVertexArray(no_vertices_);
     gl_.DrawArrays(gl::kTriangles, 0, 6);
   }
 
-  void draw_bodies(const Drawing& drawing, const Matrix4f& clip, const Matrix4f& shadow, Pass pass) {
+  void draw_bodies(const Drawing& drawing, const Matrix4f& clip, const Matrix4f& shadow,
+                   Pass pass) {
     gl_.UseProgram(bodies_);
     uniform(bodies_, "clip_from_world", clip);
     use_shadow(bodies_, shadow);
     const View& view = drawing.view;
     uniform(bodies_, "eye", to_float(view.eye_world));
     uniform(bodies_, "to_light", to_float(drawing.to_light_world));
-    uniform(bodies_, "to_fill", to_float((view.right_world * 0.8 - view.forward_world * 0.6 + view.up_world * 0.1).normalized()));
+    uniform(bodies_, "to_fill",
+            to_float((view.right_world * 0.8 - view.forward_world * 0.6 + view.up_world * 0.1)
+                         .normalized()));
     uniform(bodies_, "is_blended", pass == Pass::kGlass ? 1.0f : 0.0f);
-    uniform(bodies_, "shadow_bias", static_cast<float>(2.0 * drawing.shadow_radius_m / kShadowSide));
+    uniform(bodies_, "shadow_bias",
+            static_cast<float>(2.0 * drawing.shadow_radius_m / kShadowSide));
     for (const Batch& batch : drawing.batches)
       if (batch.pass == pass) draw(batch);
   }
@@ -280,15 +320,22 @@ class Painter::Body {
     uniform(program, "shadow_texel", 1.0f / kShadowSide);
   }
 
-  void uniform(GlName program, const char* name, const Matrix4f& m) { gl_.UniformMatrix4fv(gl_.GetUniformLocation(program, name), 1, 0, m.data()); }
-  void uniform(GlName program, const char* name, const Eigen::Vector3f& v) { gl_.Uniform3fv(gl_.GetUniformLocation(program, name), 1, v.data()); }
-  void uniform(GlName program, const char* name, float x) { gl_.Uniform1f(gl_.GetUniformLocation(program, name), x); }
+  void uniform(GlName program, const char* name, const Matrix4f& m) {
+    gl_.UniformMatrix4fv(gl_.GetUniformLocation(program, name), 1, 0, m.data());
+  }
+  void uniform(GlName program, const char* name, const Eigen::Vector3f& v) {
+    gl_.Uniform3fv(gl_.GetUniformLocation(program, name), 1, v.data());
+  }
+  void uniform(GlName program, const char* name, float x) {
+    gl_.Uniform1f(gl_.GetUniformLocation(program, name), x);
+  }
 
   // OpenGL stores rows from the bottom, an image from the top.
   Image read_back() {
     gl_.BindFramebuffer(gl::kReadFramebuffer, canvas_);
     gl_.BindFramebuffer(gl::kDrawFramebuffer, resolved_);
-    gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, gl::kColorBufferBit, gl::kNearest);
+    gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, gl::kColorBufferBit,
+                        gl::kNearest);
     gl_.BindFramebuffer(gl::kFramebuffer, resolved_);
     gl_.PixelStorei(gl::kPackAlignment, 1);
     rgba_.resize(static_cast<std::size_t>(width_) * height_ * 4);
@@ -305,19 +352,21 @@ class Painter::Body {
 
   void expect_no_error(const char* doing) {
     if (const GlEnum code = gl_.GetError(); code != 0)
-      throw std::logic_error(std::string("OpenGL error ") + std::to_string(code) + " while " + doing + " (" + context_->name() + ")");
+      throw std::logic_error(std::string("OpenGL error ") + std::to_string(code) + " while " +
+                             doing + " (" + context_->name() + ")");
   }
 
   std::unique_ptr<GlContext> context_;
   const GlFunctions& gl_;
   int width_, height_;
-  GlName bodies_ = 0, marks_ = 0, depth_ = 0, backdrop_ = 0, ground_ = 0;   // programs
+  GlName bodies_ = 0, marks_ = 0, depth_ = 0, backdrop_ = 0, ground_ = 0;  // programs
   GlName canvas_ = 0, resolved_ = 0, shadow_canvas_ = 0, shadow_map_ = 0, no_vertices_ = 0;
   std::vector<Mesh> meshes_;
   std::vector<std::uint8_t> rgba_;
 };
 
-Painter::Painter(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries, int width, int height, int samples)
+Painter::Painter(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries,
+                 int width, int height, int samples)
     : body_(std::make_unique<Body>(std::move(context), geometries, width, height, samples)) {}
 Painter::~Painter() = default;
 Painter::Painter(Painter&&) noexcept = default;

@@ -15,7 +15,8 @@ class Painter {
   /// @param geometries  indexed by Batch::geometry; kept in GL memory during the painter's lifetime
   /// @param samples     per pixel, for antialiasing: 1, 2 or 4
   /// @throws UserError when the context lacks a needed feature
-  Painter(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries, int width, int height, int samples);
+  Painter(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries, int width,
+          int height, int samples);
   ~Painter();
   Painter(Painter&&) noexcept;
 

@@ -15,10 +15,11 @@ namespace {
 const PictureOptions& checked(const PictureOptions& options) {
   const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 8192; };
   if (!fits(options.width) || !fits(options.height))
-    throw UserError(fmt::format("picture of {} x {}", options.width, options.height), "a side is not between 16 and 8192 pixels",
-                    "Choose another size.");
+    throw UserError(fmt::format("picture of {} x {}", options.width, options.height),
+                    "a side is not between 16 and 8192 pixels", "Choose another size.");
   if (options.samples != 1 && options.samples != 2 && options.samples != 4)
-    throw UserError("picture", fmt::format("{} samples per pixel", options.samples), "Choose 1, 2 or 4.");
+    throw UserError("picture", fmt::format("{} samples per pixel", options.samples),
+                    "Choose 1, 2 or 4.");
   return options;
 }
 
@@ -27,9 +28,16 @@ constexpr int kSeam = 2;
 
 }  // namespace
 
-FramePainter::FramePainter(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options, std::string label, Words words)
-    : scene_(scene), run_(run), options_(checked(options)), label_(std::move(label)), words_(words), stage_(scene, run, options_),
-      painter_(make_gl_context(options.gl), stage_.geometries(), options.width, options.height, options.samples) {}
+FramePainter::FramePainter(const scene::Scene& scene, const Trajectory& run,
+                           const PictureOptions& options, std::string label, Words words)
+    : scene_(scene),
+      run_(run),
+      options_(checked(options)),
+      label_(std::move(label)),
+      words_(words),
+      stage_(scene, run, options_),
+      painter_(make_gl_context(options.gl), stage_.geometries(), options.width, options.height,
+               options.samples) {}
 
 FramePainter::Wordless FramePainter::paint_wordless(std::size_t frame) {
   Wordless painted{frame, stage_.moment(frame), {}};
@@ -38,7 +46,9 @@ FramePainter::Wordless FramePainter::paint_wordless(std::size_t frame) {
 }
 
 Image FramePainter::with_words(Wordless painted) const {
-  if (options_.captions) write_captions(painted.image, writer_, scene_, run_, stage_, painted.frame, painted.moment, label_, words_);
+  if (options_.captions)
+    write_captions(painted.image, writer_, scene_, run_, stage_, painted.frame, painted.moment,
+                   label_, words_);
   return std::move(painted.image);
 }
 
@@ -53,33 +63,43 @@ ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double tim
           {"Software", "Tumble " + run.info.version}};
 }
 
-Image make_picture(const scene::Scene& scene, const Trajectory& run, double time_s, const PictureOptions& options) {
+Image make_picture(const scene::Scene& scene, const Trajectory& run, double time_s,
+                   const PictureOptions& options) {
   return FramePainter(scene, run, options).paint_at(time_s);
 }
 
-void write_picture(const std::filesystem::path& png, const scene::Scene& scene, const Trajectory& run, double time_s, const PictureOptions& options) {
+void write_picture(const std::filesystem::path& png, const scene::Scene& scene,
+                   const Trajectory& run, double time_s, const PictureOptions& options) {
   write_png(png, make_picture(scene, run, time_s, options), notes_of(scene, run, time_s));
 }
 
-void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& scene, const Trajectory& run, int count, const PictureOptions& options) {
-  if (count < 1 || count > 100) throw UserError(png.string(), fmt::format("a sheet of {} pictures", count), "Choose 1 to 100.");
+void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& scene,
+                         const Trajectory& run, int count, const PictureOptions& options) {
+  if (count < 1 || count > 100)
+    throw UserError(png.string(), fmt::format("a sheet of {} pictures", count), "Choose 1 to 100.");
   PictureOptions half = options;
   half.width = options.width / 2;
   half.height = options.height / 2;
   FramePainter painter(scene, run, half, "", Words::kTimeOnly);
-  const int columns = static_cast<int>(std::ceil(std::sqrt(count))), rows = (count + columns - 1) / columns;
-  Image sheet(columns * half.width + (columns - 1) * kSeam, rows * half.height + (rows - 1) * kSeam);
+  const int columns = static_cast<int>(std::ceil(std::sqrt(count))),
+            rows = (count + columns - 1) / columns;
+  Image sheet(columns * half.width + (columns - 1) * kSeam,
+              rows * half.height + (rows - 1) * kSeam);
   for (int i = 0; i < count; ++i) {
     const double time = count == 1 ? painter.end_s() : painter.end_s() * i / (count - 1);
-    paste(painter.paint_at(time), (i % columns) * (half.width + kSeam), (i / columns) * (half.height + kSeam), sheet);
+    paste(painter.paint_at(time), (i % columns) * (half.width + kSeam),
+          (i / columns) * (half.height + kSeam), sheet);
   }
   write_png(png, sheet, notes_of(scene, run, 0.0));
 }
 
-void write_side_by_side_picture(const std::filesystem::path& png, const scene::Scene& scene, const std::vector<LabelledRun>& runs, double time_s,
+void write_side_by_side_picture(const std::filesystem::path& png, const scene::Scene& scene,
+                                const std::vector<LabelledRun>& runs, double time_s,
                                 const PictureOptions& options) {
   if (runs.empty()) throw UserError(png.string(), "there is no run to draw", "Give at least one.");
-  Image whole(static_cast<int>(runs.size()) * options.width + (static_cast<int>(runs.size()) - 1) * kSeam, options.height);
+  Image whole(
+      static_cast<int>(runs.size()) * options.width + (static_cast<int>(runs.size()) - 1) * kSeam,
+      options.height);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     FramePainter painter(scene, runs[i].trajectory, options, runs[i].label);
     paste(painter.paint_at(time_s), static_cast<int>(i) * (options.width + kSeam), 0, whole);
@@ -92,9 +112,11 @@ double telling_instant(const Trajectory& run) {
   const double end = run.frames.back().time;
   const Event* strongest = nullptr;
   for (const Event& event : run.events)
-    if (event.kind == EventKind::kCollision && (!strongest || event.impulse > strongest->impulse)) strongest = &event;
+    if (event.kind == EventKind::kCollision && (!strongest || event.impulse > strongest->impulse))
+      strongest = &event;
   // Two frames later the bodies have visibly rebounded, and the flash of the impact is still shown.
-  const double frame = run.frames.size() > 1 ? end / static_cast<double>(run.frames.size() - 1) : 0.0;
+  const double frame =
+      run.frames.size() > 1 ? end / static_cast<double>(run.frames.size() - 1) : 0.0;
   return strongest ? std::min(end, strongest->time + 2 * frame) : end / 3;
 }
 

@@ -17,30 +17,35 @@ namespace tumble::render {
 /// One of the runs that a video or picture shows side by side.
 struct LabelledRun {
   const Trajectory& trajectory;
-  std::string label;                // e.g. "submission", "reference"
+  std::string label;  // e.g. "submission", "reference"
 };
 
 /// The run at one instant: the last recorded frame that is not later.
-/// @throws UserError when the run has no frame, belongs to another scene, or pictures do not work here
-Image make_picture(const scene::Scene& scene, const Trajectory& run, double time_s, const PictureOptions& options = {});
-/// @throws UserError as make_picture, and when the file cannot be written
-void write_picture(const std::filesystem::path& png, const scene::Scene& scene, const Trajectory& run, double time_s,
+/// @throws UserError when the run has no frame, belongs to another scene, or pictures do not work
+///         here
+Image make_picture(const scene::Scene& scene, const Trajectory& run, double time_s,
                    const PictureOptions& options = {});
+/// @throws UserError as make_picture, and when the file cannot be written
+void write_picture(const std::filesystem::path& png, const scene::Scene& scene,
+                   const Trajectory& run, double time_s, const PictureOptions& options = {});
 
 /// `count` instants from start to end in a grid, as one picture, each with its time. Views have
 /// half the size of `options`.
-void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& scene, const Trajectory& run, int count = 9,
-                         const PictureOptions& options = {});
+void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& scene,
+                         const Trajectory& run, int count = 9, const PictureOptions& options = {});
 
 /// H.264 in MP4.
 /// @throws UserError also when ffmpeg is missing or fails (with its message)
-void write_video(const std::filesystem::path& mp4, const scene::Scene& scene, const Trajectory& run, const PictureOptions& options = {});
+void write_video(const std::filesystem::path& mp4, const scene::Scene& scene, const Trajectory& run,
+                 const PictureOptions& options = {});
 
 /// Several runs of one scene side by side, each under its label; a run that ends earlier keeps its
 /// last frame.
-void write_side_by_side_picture(const std::filesystem::path& png, const scene::Scene& scene, const std::vector<LabelledRun>& runs,
-                                double time_s, const PictureOptions& options = {});
-void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene, const std::vector<LabelledRun>& runs,
+void write_side_by_side_picture(const std::filesystem::path& png, const scene::Scene& scene,
+                                const std::vector<LabelledRun>& runs, double time_s,
+                                const PictureOptions& options = {});
+void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene,
+                              const std::vector<LabelledRun>& runs,
                               const PictureOptions& options = {});
 
 /// An instructive instant of a run, for poster frames: just after its strongest collision, else a

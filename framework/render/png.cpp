@@ -21,7 +21,8 @@ void append(png_structp png, png_bytep data, png_size_t size) {
 }
 
 // libpng reports errors by longjmp, so no object with a destructor is created after setjmp.
-bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_bytep>& rows, std::string& bytes) {
+bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_bytep>& rows,
+            std::string& bytes) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -31,8 +32,9 @@ bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_by
   png_set_write_fn(png, &bytes, append, nullptr);
   png_set_compression_level(png, kCompressionLevel);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_text(png, info, notes.data(), static_cast<int>(notes.size()));
   png_set_rows(png, info, rows.data());
@@ -44,9 +46,11 @@ bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_by
 }  // namespace
 
 void paste(const Image& part, int x, int y, Image& whole) {
-  require(x >= 0 && y >= 0 && x + part.width <= whole.width && y + part.height <= whole.height, "paste: the part does not fit");
+  require(x >= 0 && y >= 0 && x + part.width <= whole.width && y + part.height <= whole.height,
+          "paste: the part does not fit");
   for (int row = 0; row < part.height; ++row)
-    std::memcpy(whole.pixel(x, y + row), part.pixel(0, row), static_cast<std::size_t>(part.width) * 3);
+    std::memcpy(whole.pixel(x, y + row), part.pixel(0, row),
+                static_cast<std::size_t>(part.width) * 3);
 }
 
 void write_png(const std::filesystem::path& file, const Image& image, const ImageNotes& notes) {
@@ -54,7 +58,8 @@ void write_png(const std::filesystem::path& file, const Image& image, const Imag
   ImageNotes held = notes;
   std::vector<png_text> texts;
   for (auto& [keyword, text] : held) {
-    if (keyword.empty() || keyword.size() > 79 || text.empty()) continue;  // PNG's limit for keywords
+    // PNG's limit for keywords
+    if (keyword.empty() || keyword.size() > 79 || text.empty()) continue;
     png_text note{};
     note.compression = PNG_ITXT_COMPRESSION_NONE;  // UTF-8
     note.key = keyword.data();
@@ -64,7 +69,8 @@ void write_png(const std::filesystem::path& file, const Image& image, const Imag
   std::vector<png_bytep> rows;
   for (int y = 0; y < image.height; ++y) rows.push_back(const_cast<png_bytep>(image.pixel(0, y)));
   std::string bytes;
-  if (!encode(image, texts, rows, bytes)) throw UserError(file.string(), "cannot be encoded as PNG");
+  if (!encode(image, texts, rows, bytes))
+    throw UserError(file.string(), "cannot be encoded as PNG");
   write_whole(file, bytes);
 }
 

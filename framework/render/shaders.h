@@ -108,7 +108,8 @@ void main() {
   float facing = dot(n, to_light);
   float key = facing > 0.0 ? facing * light_share(at_world + shadow_bias * n) : 0.0;
   float fill = max(dot(n, to_fill), 0.0);
-  vec3 ambient = mix(vec3(0.20, 0.19, 0.18), vec3(0.30, 0.32, 0.35), n.z * 0.5 + 0.5);   // ground below, sky above
+  // ground below, sky above
+  vec3 ambient = mix(vec3(0.20, 0.19, 0.18), vec3(0.30, 0.32, 0.35), n.z * 0.5 + 0.5);
   vec3 light = ambient + vec3(0.74, 0.72, 0.68) * key + vec3(0.10, 0.115, 0.14) * fill;
   float gloss = key > 0.0 ? 0.22 * pow(max(dot(n, normalize(to_light + v)), 0.0), 48.0) * min(1.0, key * 3.0) : 0.0;
   float rim = pow(1.0 - max(dot(n, v), 0.0), 3.0);

@@ -12,7 +12,8 @@
 namespace tumble::render {
 namespace {
 
-constexpr std::size_t kExtentFrames = 400;  // frames sampled for the extent of the motion: enough, and fast for long runs
+// frames sampled for the extent of the motion: enough, and fast for long runs
+constexpr std::size_t kExtentFrames = 400;
 
 // Colours distinguishable for every colour vision (Okabe and Ito 2008), as linear RGB; without
 // yellow and black, which are hard to see on light ground and in shadow.
@@ -34,22 +35,30 @@ double round_length(double x) {
   return 10.0 * decade;
 }
 
-std::size_t stride_of(const Trajectory& run) { return std::max<std::size_t>(1, run.frames.size() / kExtentFrames); }
+std::size_t stride_of(const Trajectory& run) {
+  return std::max<std::size_t>(1, run.frames.size() / kExtentFrames);
+}
 
 }  // namespace
 
-Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options) : scene_(scene), run_(run), options_(options) {
-  if (run.frames.empty()) throw UserError(scene.name, "the run has no frame to draw", run.stopped_by);
+Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options)
+    : scene_(scene), run_(run), options_(options) {
+  if (run.frames.empty())
+    throw UserError(scene.name, "the run has no frame to draw", run.stopped_by);
   if (run.bodies.size() != scene.bodies.size())
-    throw UserError(scene.name, "the run has " + std::to_string(run.bodies.size()) + " bodies and the scene " + std::to_string(scene.bodies.size()),
+    throw UserError(scene.name,
+                    "the run has " + std::to_string(run.bodies.size()) + " bodies and the scene " +
+                        std::to_string(scene.bodies.size()),
                     "Draw a run with the scene that it was made from.");
   std::vector<Shape> shapes;
-  for (const scene::Solid& solid : scene::build_solids(scene, options.root)) shapes.push_back(solid.shape);
+  for (const scene::Solid& solid : scene::build_solids(scene, options.root))
+    shapes.push_back(solid.shape);
   add_actors(shapes);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     if (scene.camera.follow == scene.bodies[i].name) followed_ = static_cast<int>(i);
   for (const Event& event : run.events)
-    if (event.kind == EventKind::kCollision) strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
+    if (event.kind == EventKind::kCollision)
+      strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
   std::vector<double> radii;
   for (const Actor& actor : actors_) radii.push_back(actor.radius_m);
   drawables_ = effects::drawn(scene);
@@ -62,20 +71,24 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
 
 void Stage::add_actors(const std::vector<Shape>& shapes) {
   geometries_.resize(kFirstMesh);
-  for (int level = 0; level < kBallLevels; ++level) geometries_[static_cast<std::size_t>(kBall + level)] = unit_ball(level + 1);
+  for (int level = 0; level < kBallLevels; ++level)
+    geometries_[static_cast<std::size_t>(kBall + level)] = unit_ball(level + 1);
   geometries_[kBoxGeometry] = shaded_surface(surface_of(Box{Vector3d::Ones()}));
   geometries_[kPlate] = shaded_surface(two_sided(surface_of(HalfSpace{}, 1.0)));
   geometries_[kArrow] = unit_arrow();
   geometries_[kTube] = unit_tube();
   geometries_[kRod] = unit_rod();
-  for (int level = 0; level < kCoilLevels; ++level) geometries_[static_cast<std::size_t>(kCoil + level)] = unit_coil(coil_turns(level));
+  for (int level = 0; level < kCoilLevels; ++level)
+    geometries_[static_cast<std::size_t>(kCoil + level)] = unit_coil(coil_turns(level));
   for (std::size_t i = 0; i < shapes.size(); ++i) add_actor(scene_.bodies[i], shapes[i], i);
 }
 
 void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index) {
   Actor actor;
   actor.immovable = spec.immovable;
-  actor.color = spec.color ? *spec.color : spec.immovable ? kImmovableColor : kPalette[index % std::size(kPalette)];
+  actor.color = spec.color       ? *spec.color
+                : spec.immovable ? kImmovableColor
+                                 : kPalette[index % std::size(kPalette)];
   actor.radius_m = bounding_radius(shape);
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     // A point mass is drawn as a dot.
@@ -95,7 +108,7 @@ void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size
     const auto* plane = std::get_if<scene::PlaneSpec>(&spec.shape);
     const double extent = plane != nullptr ? plane->drawn_half_extent_m : 5.0;
     const Vector3d normal_world = spec.world_from_body * Vector3d::UnitZ();
-    const bool is_floor = normal_world.z() > 0.999 && !spec.motion;   // within 2.5 degrees of level
+    const bool is_floor = normal_world.z() > 0.999 && !spec.motion;  // within 2.5 degrees of level
     if (is_floor && floor_ < 0) floor_ = static_cast<int>(index);
     actor.geometry = floor_ == static_cast<int>(index) ? -1 : static_cast<int>(kPlate);
     actor.scale = {extent, extent, 1.0};
@@ -107,7 +120,8 @@ void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size
 
 int Stage::geometry_of(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < meshes_.size(); ++i)
-    if (meshes_[i].vertices == mesh.vertices && meshes_[i].faces == mesh.faces) return kFirstMesh + static_cast<int>(i);
+    if (meshes_[i].vertices == mesh.vertices && meshes_[i].faces == mesh.faces)
+      return kFirstMesh + static_cast<int>(i);
   meshes_.push_back(mesh);
   geometries_.push_back(shaded_surface(mesh));
   return static_cast<int>(geometries_.size()) - 1;
@@ -122,10 +136,12 @@ void Stage::find_extent() {
       // A box's extent along the world's axes is tighter than its ball: a floor made of a thin box
       // has little height.
       Vector3d reach = Vector3d::Constant(actor.radius_m);
-      if (actor.geometry == kBoxGeometry) reach = run_.frames[f].poses[i].world_from_body.toRotationMatrix().cwiseAbs() * actor.scale;
+      if (actor.geometry == kBoxGeometry)
+        reach = run_.frames[f].poses[i].world_from_body.toRotationMatrix().cwiseAbs() * actor.scale;
       extent_.extend(com - reach).extend(com + reach);
     }
-    for (const Link& link : links_.at(run_.frames[f])) extent_.extend(link.a_world).extend(link.b_world);
+    for (const Link& link : links_.at(run_.frames[f]))
+      extent_.extend(link.a_world).extend(link.b_world);
   }
   if (extent_.isEmpty()) extent_.extend(scene_.camera.target_m);
 }
@@ -134,10 +150,12 @@ void Stage::lay_ground() {
   ground_.shown = scene_.grid_spacing_m.has_value() || floor_ >= 0;
   ground_.spacing_m = scene_.grid_spacing_m.value_or(round_length(sight_m() / 12.0));
   ground_.height_m = scene_.grid_height_m;
-  if (floor_ >= 0) ground_.height_m = run_.frames.front().poses[static_cast<std::size_t>(floor_)].com_world.z();
+  if (floor_ >= 0)
+    ground_.height_m = run_.frames.front().poses[static_cast<std::size_t>(floor_)].com_world.z();
   // A grid without a floor is only a scale: it lies below everything, so that no body seems to
   // penetrate it.
-  else if (followed_ < 0) ground_.height_m = std::min(ground_.height_m, extent_.min().z());
+  else if (followed_ < 0)
+    ground_.height_m = std::min(ground_.height_m, extent_.min().z());
   ground_.fade_m = 2.6 * sight_m();
 }
 
@@ -149,14 +167,16 @@ View Stage::view_at(const Frame& frame) const {
 
 TriangleMesh Stage::surface(const Actor& actor) const {
   if (actor.geometry == kBoxGeometry) return surface_of(Box{actor.scale});
-  return actor.geometry >= kFirstMesh ? meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)] : TriangleMesh{};
+  return actor.geometry >= kFirstMesh
+             ? meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)]
+             : TriangleMesh{};
 }
 
 // An immovable body that occludes moving ones is drawn as glass for the whole run. Terrain that
 // hides a body for a moment stays solid.
 void Stage::turn_walls_to_glass() {
   constexpr std::size_t kSampledFrames = 40;
-  constexpr double kMostHidden = 0.05;   // fraction of all tests
+  constexpr double kMostHidden = 0.05;  // fraction of all tests
   const std::size_t stride = std::max<std::size_t>(1, run_.frames.size() / kSampledFrames);
   for (std::size_t wall = 0; wall < actors_.size(); ++wall) {
     Actor& actor = actors_[wall];
@@ -168,18 +188,23 @@ void Stage::turn_walls_to_glass() {
       for (std::size_t i = 0; i < actors_.size(); ++i) {
         if (actors_[i].immovable) continue;
         ++tests;
-        hidden += hides(shape, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world) ? 1 : 0;
+        hidden +=
+            hides(shape, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world) ? 1
+                                                                                                : 0;
       }
     }
-    if (static_cast<double>(hidden) > kMostHidden * static_cast<double>(tests)) actor.pass = Pass::kGlass, actor.opacity = 0.25;
+    if (static_cast<double>(hidden) > kMostHidden * static_cast<double>(tests))
+      actor.pass = Pass::kGlass, actor.opacity = 0.25;
   }
 }
 
 std::size_t Stage::frame_at(double time_s) const {
-  constexpr double kRoundOff = 1e-9;   // s: rounding of a frame's summed time
-  const auto later = std::upper_bound(run_.frames.begin(), run_.frames.end(), time_s + kRoundOff,
-                                      [](double time, const Frame& frame) { return time < frame.time; });
-  return later == run_.frames.begin() ? 0 : static_cast<std::size_t>(later - run_.frames.begin()) - 1;
+  constexpr double kRoundOff = 1e-9;  // s: rounding of a frame's summed time
+  const auto later =
+      std::upper_bound(run_.frames.begin(), run_.frames.end(), time_s + kRoundOff,
+                       [](double time, const Frame& frame) { return time < frame.time; });
+  return later == run_.frames.begin() ? 0
+                                      : static_cast<std::size_t>(later - run_.frames.begin()) - 1;
 }
 
 Moment Stage::moment(std::size_t index) const {
@@ -190,7 +215,10 @@ Moment Stage::moment(std::size_t index) const {
   const View& view = drawing.view;
   // The key light is above, to the left of the eye and on its side, so that visible surfaces are
   // lit.
-  drawing.to_light_world = (-0.55 * view.right_world + 0.35 * view.right_world.cross(Vector3d::UnitZ()) + 0.95 * Vector3d::UnitZ()).normalized();
+  drawing.to_light_world =
+      (-0.55 * view.right_world + 0.35 * view.right_world.cross(Vector3d::UnitZ()) +
+       0.95 * Vector3d::UnitZ())
+          .normalized();
   drawing.shadow_centre_world = extent_.center();
   drawing.shadow_radius_m = 0.5 * extent_.diagonal().norm() + 1e-3 * sight_m();
   // Where bodies move far, only bodies near the centre of the picture cast shadows, so that shadows
@@ -202,7 +230,8 @@ Moment Stage::moment(std::size_t index) const {
   drawing.ground = ground_;
   const Vector3d seen = view.eye_world + sight_m() * view.forward_world;
   drawing.ground.centre_m = seen.head<2>();
-  const double reach = sight_m() + std::max(ground_.shown ? ground_.fade_m : 0.0, extent_.diagonal().norm());
+  const double reach =
+      sight_m() + std::max(ground_.shown ? ground_.fade_m : 0.0, extent_.diagonal().norm());
   drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
   drawing.near_m = drawing.far_m / 2000.0;
   add_bodies(frame, drawing);
@@ -227,10 +256,16 @@ void Stage::add_bodies(const Frame& frame, Drawing& drawing) const {
     const Actor& actor = actors_[i];
     const BodyPose& pose = frame.poses[i];
     if (actor.geometry < 0 || !pose.com_world.allFinite()) continue;
-    Instance instance = placed(pose.com_world, pose.world_from_body.toRotationMatrix(), actor.scale, actor.color, actor.opacity);
+    Instance instance = placed(pose.com_world, pose.world_from_body.toRotationMatrix(), actor.scale,
+                               actor.color, actor.opacity);
     instance.quartered = actor.quartered ? 1.0f : 0.0f;
-    const int geometry = actor.geometry == kBall ? kBall + ball_level(actor.radius_m / metres_per_pixel(drawing.view, options_.height, pose.com_world)) : actor.geometry;
-    (actor.pass == Pass::kGlass ? glass : solid)[static_cast<std::size_t>(geometry)].instances.push_back(instance);
+    const int geometry =
+        actor.geometry == kBall
+            ? kBall + ball_level(actor.radius_m /
+                                 metres_per_pixel(drawing.view, options_.height, pose.com_world))
+            : actor.geometry;
+    (actor.pass == Pass::kGlass ? glass : solid)[static_cast<std::size_t>(geometry)]
+        .instances.push_back(instance);
   }
   for (auto* batches : {&solid, &glass})
     for (Batch& batch : *batches)

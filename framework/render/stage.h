@@ -18,27 +18,28 @@ namespace tumble::render {
 
 /// How a body is drawn: geometry, scale and colour.
 struct Actor {
-  int geometry = -1;                       // -1: not drawn as a body (the floor is the ground)
-  Vector3d scale = Vector3d::Ones();       // along the geometry's axes
-  Vector3d color;                          // linear RGB
+  int geometry = -1;                  // -1: not drawn as a body (the floor is the ground)
+  Vector3d scale = Vector3d::Ones();  // along the geometry's axes
+  Vector3d color;                     // linear RGB
   Pass pass = Pass::kSolid;
   double opacity = 1.0;
   bool quartered = false;
   bool immovable = false;
-  double radius_m = 0.0;                   // of its bounding ball about the origin; infinite for planes
+  // of its bounding ball about the origin; infinite for planes
+  double radius_m = 0.0;
 };
 
 /// Text at a point of the world.
 struct Label {
   Vector3d point_world;
   std::string text;
-  double drop_pixels = 0.0;   // additional distance below the point
+  double drop_pixels = 0.0;  // additional distance below the point
 };
 
 /// The drawing and labels of one instant.
 struct Moment {
   Drawing drawing;
-  std::vector<Label> labels;   // forces, the scale of the grid
+  std::vector<Label> labels;  // forces, the scale of the grid
 };
 
 class Stage {
@@ -71,24 +72,25 @@ class Stage {
   void add_sheets(Drawing& drawing) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
   View view_at(const Frame& frame) const;
-  TriangleMesh surface(const Actor& actor) const;   // body frame; empty for balls and planes
+  TriangleMesh surface(const Actor& actor) const;  // body frame; empty for balls and planes
   double sight_m() const { return (scene_.camera.eye_m - scene_.camera.target_m).norm(); }
 
   const scene::Scene& scene_;
   const Trajectory& run_;
   PictureOptions options_;
   std::vector<Geometry> geometries_;
-  std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models that are used twice
-  std::vector<Actor> actors_;               // by body index
+  // of geometries_ from kFirstMesh on, to find models that are used twice
+  std::vector<TriangleMesh> meshes_;
+  std::vector<Actor> actors_;  // by body index
   SceneLinks links_;
   effects::Drawables drawables_;
-  Eigen::AlignedBox3d extent_;              // of all finite bodies, over the run
+  Eigen::AlignedBox3d extent_;  // of all finite bodies, over the run
   Ground ground_;
-  int floor_ = -1;                          // the body whose plane is the ground
+  int floor_ = -1;  // the body whose plane is the ground
   int followed_ = -1;
   Vector3d scale_bar_from_ = Vector3d::Zero();
-  double scale_bar_m_ = 0.0;                // its length; 0: none
-  double strongest_impulse_ = 0.0;          // [N s]
+  double scale_bar_m_ = 0.0;        // its length; 0: none
+  double strongest_impulse_ = 0.0;  // [N s]
 };
 
 }  // namespace tumble::render

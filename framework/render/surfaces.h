@@ -24,16 +24,18 @@ Geometry unit_rod();
 
 /// An instance with position, rotation and scale.
 /// @param scale  along the local axes
-Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_local, const Vector3d& scale, const Vector3d& color,
-                double opacity = 1.0);
+Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_local,
+                const Vector3d& scale, const Vector3d& color, double opacity = 1.0);
 /// An instance with its local z axis from one point to another.
 /// @param width  scale across that axis
 /// @pre the points differ
-Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width, const Vector3d& color, double opacity = 1.0);
+Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width,
+                      const Vector3d& color, double opacity = 1.0);
 
 /// Whether a body's surface occludes a point from the eye; the result is arbitrary for degenerate
 /// triangles.
 /// Source: T. Moeller, B. Trumbore, Journal of Graphics Tools 2(1), 1997.   Cost: O(faces)
-bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world, const Vector3d& point_world);
+bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world,
+           const Vector3d& point_world);
 
 }  // namespace tumble::render

@@ -14,14 +14,19 @@ namespace {
 
 constexpr const char* kRegular = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr const char* kBold = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
-constexpr double kFixed = 64.0;   // FreeType counts in 1/64 pixel
+constexpr double kFixed = 64.0;  // FreeType counts in 1/64 pixel
 
 // Decodes UTF-8; an invalid byte becomes U+FFFD.
 std::u32string characters(const std::string& text) {
   std::u32string out;
   for (std::size_t i = 0; i < text.size();) {
     const auto first = static_cast<unsigned char>(text[i]);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xc2 ? 0
+                               : first < 0xe0 ? 2
+                               : first < 0xf0 ? 3
+                               : first < 0xf5 ? 4
+                                              : 0;
     char32_t code = length == 1 ? first : first & (0xff >> (length + 1));
     bool fine = length > 0 && i + length <= text.size();
     for (std::size_t k = 1; fine && k < length; ++k) {
@@ -37,16 +42,19 @@ std::u32string characters(const std::string& text) {
 
 void blend(std::uint8_t* pixel, const Ink& ink, double opacity) {
   const std::uint8_t color[] = {ink.red, ink.green, ink.blue};
-  for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::uint8_t>(std::lround(pixel[i] + (color[i] - pixel[i]) * opacity));
+  for (int i = 0; i < 3; ++i)
+    pixel[i] = static_cast<std::uint8_t>(std::lround(pixel[i] + (color[i] - pixel[i]) * opacity));
 }
 
 // Draws a glyph's coverage at a position of the picture.
-void stamp(Image& image, const FT_Bitmap& letter, int left, int top, const Ink& ink, double opacity) {
+void stamp(Image& image, const FT_Bitmap& letter, int left, int top, const Ink& ink,
+           double opacity) {
   for (int row = 0; row < static_cast<int>(letter.rows); ++row) {
     for (int column = 0; column < static_cast<int>(letter.width); ++column) {
       const int x = left + column, y = top + row;
       const int coverage = letter.buffer[row * letter.pitch + column];
-      if (coverage > 0 && x >= 0 && y >= 0 && x < image.width && y < image.height) blend(image.pixel(x, y), ink, opacity * coverage / 255.0);
+      if (coverage > 0 && x >= 0 && y >= 0 && x < image.width && y < image.height)
+        blend(image.pixel(x, y), ink, opacity * coverage / 255.0);
     }
   }
 }
@@ -58,13 +66,14 @@ struct TextWriter::Fonts {
   FT_Face regular = nullptr, bold = nullptr;
 
   Fonts() {
-    const bool fine = FT_Init_FreeType(&library) == 0 && FT_New_Face(library, kRegular, 0, &regular) == 0 &&
+    const bool fine = FT_Init_FreeType(&library) == 0 &&
+                      FT_New_Face(library, kRegular, 0, &regular) == 0 &&
                       FT_New_Face(library, kBold, 0, &bold) == 0;
     if (fine) return;
     if (library != nullptr) FT_Done_FreeType(library);
     throw UserError(kRegular, "this font cannot be read", "Install the package fonts-dejavu-core.");
   }
-  ~Fonts() { FT_Done_FreeType(library); }   // with its faces
+  ~Fonts() { FT_Done_FreeType(library); }  // with its faces
 
   // Calls visit(glyph slot, pen) for each glyph; returns the final pen position. Without hinting,
   // so that glyphs keep their shapes at every size.
@@ -100,14 +109,15 @@ std::string TextWriter::fitted(const std::string& text, double size, double room
   if (width(text, size, bold) <= room) return text;
   std::string kept = text;
   while (!kept.empty() && width(kept + "…", size, bold) > room) {
-    while (!kept.empty() && (static_cast<unsigned char>(kept.back()) & 0xc0) == 0x80) kept.pop_back();
+    while (!kept.empty() && (static_cast<unsigned char>(kept.back()) & 0xc0) == 0x80)
+      kept.pop_back();
     if (!kept.empty()) kept.pop_back();
   }
   return kept + "…";
 }
 
-void TextWriter::write(Image& image, const std::string& text, double x, double baseline, double size, const Ink& ink, Align align,
-                       bool bold) const {
+void TextWriter::write(Image& image, const std::string& text, double x, double baseline,
+                       double size, const Ink& ink, Align align, bool bold) const {
   if (align != Align::kLeft) x -= width(text, size, bold) * (align == Align::kCentre ? 0.5 : 1.0);
   const auto draw = [&](const Ink& color, double opacity, int dx, int dy) {
     fonts_->walk(text, size, bold, [&](FT_GlyphSlot slot, double pen) {
@@ -115,7 +125,8 @@ void TextWriter::write(Image& image, const std::string& text, double x, double b
       FT_Outline_Translate(&slot->outline, std::lround((place - whole) * kFixed), 0);
       if (FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL) != 0) return;
       const int left = static_cast<int>(whole) + slot->bitmap_left + dx;
-      stamp(image, slot->bitmap, left, static_cast<int>(std::lround(baseline)) - slot->bitmap_top + dy, color, opacity);
+      stamp(image, slot->bitmap, left,
+            static_cast<int>(std::lround(baseline)) - slot->bitmap_top + dy, color, opacity);
     });
   };
   if (ink.halo > 0.0) {

@@ -10,7 +10,7 @@ namespace tumble::render {
 
 struct Ink {
   std::uint8_t red = 28, green = 39, blue = 51;
-  double halo = 0.0;   // opacity of the light outline that keeps text legible over bodies [0, 1]
+  double halo = 0.0;  // opacity of the light outline that keeps text legible over bodies [0, 1]
 };
 inline constexpr Ink kDark{28, 39, 51, 0.75};
 inline constexpr Ink kSoft{70, 84, 98, 0.6};
@@ -28,8 +28,8 @@ class TextWriter {
   /// @param text         UTF-8
   /// @param x, baseline  position [pixels]
   /// @param size         height of the font [pixels]
-  void write(Image& image, const std::string& text, double x, double baseline, double size, const Ink& ink = kDark,
-             Align align = Align::kLeft, bool bold = false) const;
+  void write(Image& image, const std::string& text, double x, double baseline, double size,
+             const Ink& ink = kDark, Align align = Align::kLeft, bool bold = false) const;
   /// Width of the text. [pixels]
   double width(const std::string& text, double size, bool bold = false) const;
   /// The text, shortened with an ellipsis where it is wider than `room` pixels.

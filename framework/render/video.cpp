@@ -14,7 +14,7 @@
 namespace tumble::render {
 namespace {
 
-constexpr int kViewSeam = 2;   // width of the line between views side by side [pixels]
+constexpr int kViewSeam = 2;  // width of the line between views side by side [pixels]
 
 // A rendered picture of one view.
 struct Part {
@@ -24,7 +24,8 @@ struct Part {
 
 // Instants of the run for the frames of a video; the last one is held long enough to be seen.
 std::vector<double> instants(double end_s, const PictureOptions& options) {
-  if (!(options.video_rate_hz > 0) || !(options.speed > 0)) throw UserError("video", "the rate and the speed must be above 0", "Choose positive values.");
+  if (!(options.video_rate_hz > 0) || !(options.speed > 0))
+    throw UserError("video", "the rate and the speed must be above 0", "Choose positive values.");
   std::vector<double> times;
   const double step = options.speed / options.video_rate_hz;
   const auto count = static_cast<std::size_t>(std::floor(end_s / step + 1e-9)) + 1;
@@ -35,8 +36,8 @@ std::vector<double> instants(double end_s, const PictureOptions& options) {
 
 }  // namespace
 
-void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene, const std::vector<LabelledRun>& runs,
-                              const PictureOptions& options) {
+void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene,
+                              const std::vector<LabelledRun>& runs, const PictureOptions& options) {
   if (runs.empty()) throw UserError(mp4.string(), "there is no run to draw", "Give at least one.");
   std::vector<std::unique_ptr<FramePainter>> painters;
   double end = 0.0;
@@ -47,11 +48,13 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
   const int count = static_cast<int>(runs.size());
   Image whole(count * options.width + (count - 1) * kViewSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {
-    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz, record_of(runs.front().trajectory.info));
-    std::vector<std::optional<std::size_t>> shown(painters.size());   // frame
-    std::future<void> before;   // writes the text of the previous picture and encodes it while this one is rendered
+    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz,
+                      record_of(runs.front().trajectory.info));
+    std::vector<std::optional<std::size_t>> shown(painters.size());  // frame
+    // writes the text of the previous picture and encodes it while this one is rendered
+    std::future<void> before;
     for (const double time : instants(end, options)) {
-      std::vector<Part> fresh;   // a view without changes is kept
+      std::vector<Part> fresh;  // a view without changes is kept
       for (std::size_t i = 0; i < painters.size(); ++i) {
         const std::size_t frame = painters[i]->frame_at(time);
         if (shown[i] != frame) fresh.push_back({i, painters[i]->paint_wordless(frame)});
@@ -59,7 +62,9 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
       }
       if (before.valid()) before.get();
       before = std::async(std::launch::async, [&, fresh = std::move(fresh)]() mutable {
-        for (Part& part : fresh) paste(painters[part.view]->with_words(std::move(part.painted)), static_cast<int>(part.view) * (options.width + kViewSeam), 0, whole);
+        for (Part& part : fresh)
+          paste(painters[part.view]->with_words(std::move(part.painted)),
+                static_cast<int>(part.view) * (options.width + kViewSeam), 0, whole);
         video.add(whole);
       });
     }
@@ -68,7 +73,8 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
   });
 }
 
-void write_video(const std::filesystem::path& mp4, const scene::Scene& scene, const Trajectory& run, const PictureOptions& options) {
+void write_video(const std::filesystem::path& mp4, const scene::Scene& scene, const Trajectory& run,
+                 const PictureOptions& options) {
   write_side_by_side_video(mp4, scene, {{run, ""}}, options);
 }
 

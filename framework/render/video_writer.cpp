@@ -30,22 +30,28 @@ class WithoutPipeSignal {
   struct sigaction before_ {};
 };
 
-std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int width, int height, double rate_hz, const std::string& record) {
-  return {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y",
-          "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", width, height), "-framerate", fmt::format("{:g}", rate_hz), "-i", "pipe:0",
-          "-an", "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int width, int height,
+                                      double rate_hz, const std::string& record) {
+  return {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo",
+          "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
+          fmt::format("{:g}", rate_hz), "-i", "pipe:0", "-an", "-vf",
+          "crop=trunc(iw/2)*2:trunc(ih/2)*2",
           // Plays in every browser while it loads; without date and encoder's name, so that the
           // same pictures give the same file.
-          "-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-pix_fmt", "yuv420p", "-threads", "2", "-movflags", "+faststart",
-          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1", "-metadata", "comment=" + record, "-f", "mp4", mp4.string()};
+          "-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-pix_fmt", "yuv420p", "-threads",
+          "2", "-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v", "+bitexact",
+          "-map_metadata", "-1", "-metadata", "comment=" + record, "-f", "mp4", mp4.string()};
 }
 
 }  // namespace
 
-VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz, const std::string& record) : mp4_(mp4), width_(width), height_(height) {
+VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz,
+                         const std::string& record)
+    : mp4_(mp4), width_(width), height_(height) {
   int pipe_ends[2];
   complaints_ = memfd_create("ffmpeg", MFD_CLOEXEC);
-  if (complaints_ < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0) throw UserError(mp4.string(), "no pipe can be created", "Close some programs and try again.");
+  if (complaints_ < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0)
+    throw UserError(mp4.string(), "no pipe can be created", "Close some programs and try again.");
   const std::vector<std::string> words = ffmpeg_words(mp4, width, height, rate_hz, record);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -60,7 +66,9 @@ VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height
   }
   close(pipe_ends[0]);
   input_ = pipe_ends[1];
-  if (ffmpeg_ < 0) throw UserError(mp4.string(), "no process can be created for ffmpeg", "Close some programs and try again.");
+  if (ffmpeg_ < 0)
+    throw UserError(mp4.string(), "no process can be created for ffmpeg",
+                    "Close some programs and try again.");
 }
 
 VideoWriter::~VideoWriter() {
@@ -84,23 +92,27 @@ void VideoWriter::finish() {
   close(input_);
   input_ = -1;
   int status = 0;
-  while (waitpid(ffmpeg_, &status, 0) < 0 && errno == EINTR) {}
+  while (waitpid(ffmpeg_, &status, 0) < 0 && errno == EINTR) {
+  }
   ffmpeg_ = -1;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    throw UserError(mp4_.string(), "ffmpeg is not installed", "Install it (apt-get install ffmpeg), or choose pictures instead of a video.");
+    throw UserError(mp4_.string(), "ffmpeg is not installed",
+                    "Install it (apt-get install ffmpeg), or choose pictures instead of a video.");
   const std::string words = complaints();
-  throw UserError(mp4_.string(), "ffmpeg failed" + (words.empty() ? std::string() : ": " + words), "Check the disk's free space and ffmpeg's message.");
+  throw UserError(mp4_.string(), "ffmpeg failed" + (words.empty() ? std::string() : ": " + words),
+                  "Check the disk's free space and ffmpeg's message.");
 }
 
 void VideoWriter::add(const Image& image) {
-  if (image.width != width_ || image.height != height_) throw std::logic_error("all pictures of a video must have the same size");
+  if (image.width != width_ || image.height != height_)
+    throw std::logic_error("all pictures of a video must have the same size");
   const WithoutPipeSignal guard;
   const auto* bytes = image.rgb.data();
   for (std::size_t left = image.rgb.size(); left > 0;) {
     const ssize_t written = write(input_, bytes, left);
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return finish();   // ffmpeg ended early: finish() reports why
+    if (written <= 0) return finish();  // ffmpeg ended early: finish() reports why
     bytes += written;
     left -= static_cast<std::size_t>(written);
   }

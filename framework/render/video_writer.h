@@ -16,7 +16,8 @@ class VideoWriter {
   /// @param width, height  of every picture; odd sizes lose the last column or row
   /// @param record  provenance, stored as the file's comment
   /// @throws UserError when ffmpeg is missing
-  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz, const std::string& record);
+  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz,
+              const std::string& record);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
   ~VideoWriter();
@@ -32,8 +33,8 @@ class VideoWriter {
 
   std::filesystem::path mp4_;
   int width_, height_;
-  int input_ = -1;      // pipe into ffmpeg
-  int complaints_ = -1; // what ffmpeg printed
+  int input_ = -1;       // pipe into ffmpeg
+  int complaints_ = -1;  // what ffmpeg printed
   pid_t ffmpeg_ = -1;
 };
 

@@ -12,15 +12,17 @@
 namespace tumble::render {
 
 struct ChartOptions {
-  std::vector<std::size_t> moves;   // one chart for each: the state after so many moves; empty: before and after the first rollbacks
+  // one chart for each: the state after so many moves; empty: before and after the first rollbacks
+  std::vector<std::size_t> moves;
   double from_s = 0.0, to_s = 0.0;  // interval of virtual time; equal: all [s]
   std::string title;
-  int width = 900;                  // pixels
+  int width = 900;  // pixels
 };
 
 /// Charts below each other. Dark: committed; light: ahead of global virtual time; hatched: undone
 /// by rollbacks since the previous chart, with a cut at the time rolled back to.
 /// @throws UserError when there is no move, or options.moves has one that does not exist
-void write_virtual_times_chart(const std::filesystem::path& png, const VirtualTimes& times, const ChartOptions& options);
+void write_virtual_times_chart(const std::filesystem::path& png, const VirtualTimes& times,
+                               const ChartOptions& options);
 
 }  // namespace tumble::render

@@ -13,6 +13,7 @@ namespace tumble::report {
 /// @param subtitle  length of the runs, and the laws' source
 /// @param record    command and version
 /// @throws UserError when the file cannot be written
-void write_battery_page(const std::vector<BatteryRow>& rows, const std::string& subtitle, const std::string& record, const std::filesystem::path& file);
+void write_battery_page(const std::vector<BatteryRow>& rows, const std::string& subtitle,
+                        const std::string& record, const std::filesystem::path& file);
 
 }  // namespace tumble::report

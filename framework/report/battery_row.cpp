@@ -15,14 +15,17 @@ bool within(const Measure& measure) {
 
 Outcome outcome_of(const Measure& measure) {
   if (!measure.not_run.empty()) return Outcome::kNotRun;
-  if (measure.must_fail) return measure.error.empty() && within(measure) ? Outcome::kTooGood : Outcome::kFailsAsItMust;
+  if (measure.must_fail)
+    return measure.error.empty() && within(measure) ? Outcome::kTooGood : Outcome::kFailsAsItMust;
   if (measure.error.empty() && within(measure)) return Outcome::kHolds;
   return measure.shortfall.empty() ? Outcome::kBroken : Outcome::kShort;
 }
 
 double margin_of(const Measure& measure) {
-  if (!measure.not_run.empty() || !measure.error.empty() || measure.is_question) return std::numeric_limits<double>::quiet_NaN();
-  const double above = measure.at_least ? measure.value : measure.threshold, below = measure.at_least ? measure.threshold : measure.value;
+  if (!measure.not_run.empty() || !measure.error.empty() || measure.is_question)
+    return std::numeric_limits<double>::quiet_NaN();
+  const double above = measure.at_least ? measure.value : measure.threshold,
+               below = measure.at_least ? measure.threshold : measure.value;
   if (below <= 0.0) return above >= below ? std::numeric_limits<double>::infinity() : 0.0;
   return std::max(above, 0.0) / below;
 }
@@ -41,12 +44,19 @@ Outcome outcome_of(const BatteryRow& row) {
 const Measure* tightest(const BatteryRow& row) {
   const auto rank = [](const Measure& m) {
     const Outcome outcome = outcome_of(m);
-    return outcome == Outcome::kFailsAsItMust || outcome == Outcome::kNotRun ? -1 : static_cast<int>(outcome);   // expected
+    // expected
+    return outcome == Outcome::kFailsAsItMust || outcome == Outcome::kNotRun
+               ? -1
+               : static_cast<int>(outcome);
   };
-  const auto closer = [](const Measure& a, const Measure& b) { return margin_of(a) < margin_of(b) || (std::isnan(margin_of(b)) && !std::isnan(margin_of(a))); };
+  const auto closer = [](const Measure& a, const Measure& b) {
+    return margin_of(a) < margin_of(b) || (std::isnan(margin_of(b)) && !std::isnan(margin_of(a)));
+  };
   const Measure* found = nullptr;
   for (const Measure& measure : row.measures) {
-    if (found == nullptr || rank(measure) > rank(*found) || (rank(measure) == rank(*found) && closer(measure, *found))) found = &measure;
+    if (found == nullptr || rank(measure) > rank(*found) ||
+        (rank(measure) == rank(*found) && closer(measure, *found)))
+      found = &measure;
   }
   return found;
 }
@@ -68,7 +78,10 @@ std::string shown(double value, const std::string& unit) {
   if (std::isnan(value)) return "no number";
   if (std::isinf(value)) return value > 0 ? "without bound" : "-inf";
   const bool plain = value == std::round(value) && std::abs(value) < 1e6;
-  return (plain ? fmt::format("{:.0f}", value) : std::abs(value) >= 0.1 && std::abs(value) < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.1e}", value)) + space;
+  return (plain                                             ? fmt::format("{:.0f}", value)
+          : std::abs(value) >= 0.1 && std::abs(value) < 1e4 ? fmt::format("{:.4g}", value)
+                                                            : fmt::format("{:.1e}", value)) +
+         space;
 }
 
 std::string shown_value(const Measure& measure) {
@@ -81,7 +94,8 @@ std::string shown_margin(const Measure& measure) {
   const double margin = margin_of(measure);
   if (std::isnan(margin)) return "-";
   if (std::isinf(margin)) return "exact";
-  return margin >= 0.1 && margin < 1e4 ? fmt::format("x {:.2g}", margin) : fmt::format("x {:.0e}", margin);
+  return margin >= 0.1 && margin < 1e4 ? fmt::format("x {:.2g}", margin)
+                                       : fmt::format("x {:.0e}", margin);
 }
 
 std::string shown_threshold(const Measure& measure) {
@@ -111,12 +125,15 @@ BatteryCount count_of(const std::vector<BatteryRow>& rows) {
 }
 
 std::string sentence_of(const BatteryCount& count) {
-  std::string words = fmt::format("{} hard cases ({} of them not part of the battery yet): {} measures hold, {} of methods that cannot hold fail as they must, {} known shortfalls",
-                                  count.rows, count.not_part, count.holds, count.fails_as_it_must, count.shortfalls);
+  std::string words = fmt::format(
+      "{} hard cases ({} of them not part of the battery yet): {} measures hold, {} of methods "
+      "that cannot hold fail as they must, {} known shortfalls",
+      count.rows, count.not_part, count.holds, count.fails_as_it_must, count.shortfalls);
   if (count.not_run > 0) words += fmt::format(", {} not run", count.not_run);
   words += fmt::format(", {} broken", count.broken);
   if (count.too_good > 0) words += fmt::format(", {} hold that must not", count.too_good);
-  if (count.reached_now > 0) words += fmt::format("; {} listed as shortfalls hold here", count.reached_now);
+  if (count.reached_now > 0)
+    words += fmt::format("; {} listed as shortfalls hold here", count.reached_now);
   return words + ".";
 }
 

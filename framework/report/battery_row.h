@@ -15,45 +15,49 @@ namespace tumble::report {
 
 enum class Outcome {
   kHolds,
-  kFailsAsItMust,   // a method known to fail has failed
-  kNotRun,          // with a reason
-  kShort,           // does not hold, and is a known shortfall
-  kTooGood,         // a method known to fail has not: the measure cannot distinguish right from wrong
-  kBroken,          // does not hold
+  kFailsAsItMust,  // a method known to fail has failed
+  kNotRun,         // with a reason
+  kShort,          // does not hold, and is a known shortfall
+  // a method known to fail has not: the measure cannot distinguish right from wrong
+  kTooGood,
+  kBroken,  // does not hold
 };
 
 /// One number against its threshold.
 struct Measure {
-  std::string what;               // quantity and method
+  std::string what;  // quantity and method
   double value = 0.0, threshold = 0.0;
-  std::string unit;               // empty: none
-  std::string why;                // the threshold's reason
-  bool at_least = false;          // holds when value >= threshold instead of <=
-  bool must_fail = false;         // the method is known to fail
-  bool is_question = false;       // yes (1) or no (0); the threshold is the right answer
-  std::string shortfall{};        // known shortfall: why the threshold is not reached; empty: it must be
-  std::string not_run{};          // why there is no value; empty: there is one
-  std::string error{};            // what stopped the run; empty: nothing
+  std::string unit;          // empty: none
+  std::string why;           // the threshold's reason
+  bool at_least = false;     // holds when value >= threshold instead of <=
+  bool must_fail = false;    // the method is known to fail
+  bool is_question = false;  // yes (1) or no (0); the threshold is the right answer
+  // known shortfall: why the threshold is not reached; empty: it must be
+  std::string shortfall{};
+  std::string not_run{};  // why there is no value; empty: there is one
+  std::string error{};    // what stopped the run; empty: nothing
 };
 
 /// One hard case.
 struct BatteryRow {
-  int row = 0;                    // of the table of hard cases
+  int row = 0;  // of the table of hard cases
   std::string name;
-  std::string about;              // what it is and what goes wrong in it, in two or three sentences
+  std::string about;  // what it is and what goes wrong in it, in two or three sentences
   std::vector<Measure> measures;
   std::vector<Plot> plots;
-  std::string not_part{};         // why the battery does not include this row yet; empty: it does
+  std::string not_part{};  // why the battery does not include this row yet; empty: it does
 };
 
 /// Whether the value is on the right side of the threshold; false for NaN.
 bool within(const Measure& measure);
 Outcome outcome_of(const Measure& measure);
-/// How many times better than the threshold; below 1: worse. Infinite for an error of exactly 0; NaN without a value, and for a question.
+/// How many times better than the threshold; below 1: worse. Infinite for an error of exactly 0;
+/// NaN without a value, and for a question.
 double margin_of(const Measure& measure);
 /// The worst of its measures; kNotRun without any.
 Outcome outcome_of(const BatteryRow& row);
-/// The measure that decides a row: the worst outcome, and of those the smallest margin. Null without measures.
+/// The measure that decides a row: the worst outcome, and of those the smallest margin. Null
+/// without measures.
 const Measure* tightest(const BatteryRow& row);
 
 /// "holds", "fails, as it must", "short", ...
@@ -68,9 +72,12 @@ std::string shown_margin(const Measure& measure);
 std::string shown_threshold(const Measure& measure);
 
 struct BatteryCount {
-  int rows = 0, not_part = 0;                                                              // hard cases, and those not part yet
-  int holds = 0, fails_as_it_must = 0, not_run = 0, shortfalls = 0, too_good = 0, broken = 0;   // measures
-  int reached_now = 0;                                                                     // known shortfalls that hold
+  // hard cases, and those not part yet
+  int rows = 0, not_part = 0;
+  // measures
+  int holds = 0, fails_as_it_must = 0, not_run = 0, shortfalls = 0, too_good = 0, broken = 0;
+  // known shortfalls that hold
+  int reached_now = 0;
   bool good() const { return too_good == 0 && broken == 0; }
 };
 BatteryCount count_of(const std::vector<BatteryRow>& rows);

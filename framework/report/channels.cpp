@@ -14,7 +14,8 @@ namespace tumble::report {
 namespace {
 
 constexpr int kMissing = 4;
-constexpr double kLargest = 4503599627370496.0;   // 2^52: integers that doubles represent exactly, with room for a second difference
+// 2^52: integers that doubles represent exactly, with room for a second difference
+constexpr double kLargest = 4503599627370496.0;
 
 void add_varint(std::int64_t value, std::string& bytes) {
   auto zigzag = (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
@@ -24,13 +25,17 @@ void add_varint(std::int64_t value, std::string& bytes) {
 
 }  // namespace
 
-double quantum_of(double x) { return std::isfinite(x) && x > 0 ? std::exp2(std::floor(std::log2(x))) : std::exp2(-40); }
+double quantum_of(double x) {
+  return std::isfinite(x) && x > 0 ? std::exp2(std::floor(std::log2(x))) : std::exp2(-40);
+}
 
 void ChannelWriter::add(std::span<const double> values, double quantum, int order) {
-  require(quantum > 0 && order >= 0 && order <= 2, "report: a channel needs a positive quantum and an order from 0 to 2");
+  require(quantum > 0 && order >= 0 && order <= 2,
+          "report: a channel needs a positive quantum and an order from 0 to 2");
   double largest = 0.0;
   bool missing = false;
-  for (const double v : values) std::isfinite(v) ? void(largest = std::max(largest, std::abs(v))) : void(missing = true);
+  for (const double v : values)
+    std::isfinite(v) ? void(largest = std::max(largest, std::abs(v))) : void(missing = true);
   quantum = std::max(quantum, quantum_of(2.0 * largest / kLargest * 4.0));
   bytes_ += static_cast<char>(order + (missing ? kMissing : 0));
   char raw[sizeof quantum];
@@ -39,7 +44,8 @@ void ChannelWriter::add(std::span<const double> values, double quantum, int orde
   if (missing)
     for (const double v : values) bytes_ += static_cast<char>(std::isfinite(v) ? 0 : 1);
 
-  std::int64_t before = 0, earlier = 0;   // the last two integers; a missing value is coded as their linear extrapolation
+  // the last two integers; a missing value is coded as their linear extrapolation
+  std::int64_t before = 0, earlier = 0;
   for (const double v : values) {
     const std::int64_t guess = order == 0 ? 0 : order == 1 ? before : 2 * before - earlier;
     const std::int64_t whole = std::isfinite(v) ? std::llround(v / quantum) : before;
@@ -52,20 +58,25 @@ void ChannelWriter::add(std::span<const double> values, double quantum, int orde
 std::string deflated(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string packed(size, '\0');
-  const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+  const int status =
+      compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
   require(status == Z_OK, "report: zlib could not pack a page's data");
   packed.resize(size);
   return packed;
 }
 
 std::string base64(const std::string& bytes) {
-  static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr char kLetters[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kLetters[three >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? kLetters[three >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }

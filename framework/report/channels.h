@@ -2,10 +2,12 @@
 /// variable number of bytes.
 ///
 /// A channel is
-///   order        u8   0: values, 1: first differences, 2: second differences (constant force costs nothing); + 4 where values are missing
+///   order        u8   0: values, 1: first differences, 2: second differences (constant force costs
+///                nothing); + 4 where values are missing
 ///   quantum      f64, little-endian
 ///   missing      one u8 per value, 1 where it is not finite (only with order + 4)
-///   differences  of round(value / quantum), each as a zigzag varint: 7 bits per byte, lowest first, the top bit set in all but the last
+///   differences  of round(value / quantum), each as a zigzag varint: 7 bits per byte, lowest
+///                first, the top bit set in all but the last
 /// The number of values is stored elsewhere. player/decode.js reads channels.
 #pragma once
 

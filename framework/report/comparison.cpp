@@ -11,7 +11,8 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kSameInstant = 1e-9;   // s: rounding of the summed times of frames, which are multiples of the same interval
+// s: rounding of the summed times of frames, which are multiples of the same interval
+constexpr double kSameInstant = 1e-9;
 
 // |x_a - x_b| + r |rotation|, an upper bound of the distance of a point of the body from its place
 // in the other run.
@@ -24,38 +25,55 @@ double apart(const BodyPose& a, const BodyPose& b, double radius_m) {
 std::string bodies_of(const Event& event, const Trajectory& run) {
   const auto name = [&](int body) { return run.bodies[static_cast<std::size_t>(body)].name; };
   if (event.body_a < 0) return "";
-  return event.body_b < 0 ? " of " + name(event.body_a) : " of " + name(event.body_a) + " and " + name(event.body_b);
+  return event.body_b < 0 ? " of " + name(event.body_a)
+                          : " of " + name(event.body_a) + " and " + name(event.body_b);
 }
 
-bool differ(double a, double b, double scale) { return std::abs(a - b) > kEventShare * std::max({std::abs(a), std::abs(b), scale}); }
+bool differ(double a, double b, double scale) {
+  return std::abs(a - b) > kEventShare * std::max({std::abs(a), std::abs(b), scale});
+}
 
 // The difference of two events in words; empty: none.
-std::string difference_of(const Event& a, const Event& b, double impulse_scale, const Trajectory& run_a, const Trajectory& run_b, const std::string& label_a,
-                          const std::string& label_b) {
+std::string difference_of(const Event& a, const Event& b, double impulse_scale,
+                          const Trajectory& run_a, const Trajectory& run_b,
+                          const std::string& label_a, const std::string& label_b) {
   const std::string head = std::string(name_of_event(a.kind)) + bodies_of(a, run_a);
   if (a.kind != b.kind || a.body_a != b.body_a || a.body_b != b.body_b)
-    return fmt::format("{} at {:.6g} s in {}, {}{} at {:.6g} s in {}", head, a.time, label_a, name_of_event(b.kind), bodies_of(b, run_b), b.time, label_b);
-  if (differ(a.time, b.time, 1.0)) return fmt::format("{}: at {:.6g} s in {}, at {:.6g} s in {}", head, a.time, label_a, b.time, label_b);
-  if (differ(a.impulse, b.impulse, impulse_scale)) return fmt::format("{}: impulse {:.6g} N s in {}, {:.6g} N s in {}", head, a.impulse, label_a, b.impulse, label_b);
+    return fmt::format("{} at {:.6g} s in {}, {}{} at {:.6g} s in {}", head, a.time, label_a,
+                       name_of_event(b.kind), bodies_of(b, run_b), b.time, label_b);
+  if (differ(a.time, b.time, 1.0))
+    return fmt::format("{}: at {:.6g} s in {}, at {:.6g} s in {}", head, a.time, label_a, b.time,
+                       label_b);
+  if (differ(a.impulse, b.impulse, impulse_scale))
+    return fmt::format("{}: impulse {:.6g} N s in {}, {:.6g} N s in {}", head, a.impulse, label_a,
+                       b.impulse, label_b);
   return "";
 }
 
-std::optional<Difference> first_event(const Trajectory& a, const std::string& label_a, const Trajectory& b, const std::string& label_b) {
+std::optional<Difference> first_event(const Trajectory& a, const std::string& label_a,
+                                      const Trajectory& b, const std::string& label_b) {
   double strongest = 0.0;
   for (const Trajectory* run : {&a, &b})
-    for (const Event& event : run->events) strongest = std::max(strongest, std::isfinite(event.impulse) ? std::abs(event.impulse) : 0.0);
+    for (const Event& event : run->events)
+      strongest = std::max(strongest, std::isfinite(event.impulse) ? std::abs(event.impulse) : 0.0);
   const std::size_t both = std::min(a.events.size(), b.events.size());
   for (std::size_t i = 0; i < both; ++i) {
-    const std::string what = difference_of(a.events[i], b.events[i], 1e-6 * strongest, a, b, label_a, label_b);
-    if (!what.empty()) return Difference{std::min(a.events[i].time, b.events[i].time), what, a.events[i].body_a};
+    const std::string what =
+        difference_of(a.events[i], b.events[i], 1e-6 * strongest, a, b, label_a, label_b);
+    if (!what.empty())
+      return Difference{std::min(a.events[i].time, b.events[i].time), what, a.events[i].body_a};
   }
   if (a.events.size() == b.events.size()) return std::nullopt;
   const bool a_has_more = a.events.size() > both;
   const Trajectory& more = a_has_more ? a : b;
   const Event& event = more.events[both];
   const Trajectory& other = a_has_more ? b : a;
-  if (other.frames.empty() || other.frames.back().time < event.time) return std::nullopt;   // that run ended earlier: not a difference of the motion
-  return Difference{event.time, fmt::format("{}{} only in {}", name_of_event(event.kind), bodies_of(event, more), a_has_more ? label_a : label_b), event.body_a};
+  // that run ended earlier: not a difference of the motion
+  if (other.frames.empty() || other.frames.back().time < event.time) return std::nullopt;
+  return Difference{event.time,
+                    fmt::format("{}{} only in {}", name_of_event(event.kind),
+                                bodies_of(event, more), a_has_more ? label_a : label_b),
+                    event.body_a};
 }
 
 }  // namespace
@@ -77,9 +95,11 @@ const char* name_of_event(EventKind kind) {
   return "event";
 }
 
-Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_m, const Trajectory& a, const std::string& label_a, const Trajectory& b,
+Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_m,
+                   const Trajectory& a, const std::string& label_a, const Trajectory& b,
                    const std::string& label_b) {
-  require(a.bodies.size() == b.bodies.size() && a.bodies.size() == radius_m.size(), "compare: both runs must be of the same scene");
+  require(a.bodies.size() == b.bodies.size() && a.bodies.size() == radius_m.size(),
+          "compare: both runs must be of the same scene");
   const double threshold = kApart * (scene.camera.eye_m - scene.camera.target_m).norm();
   Comparison result;
   std::optional<Difference> moved;
@@ -94,11 +114,16 @@ Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_
     int body = -1;
     for (std::size_t i = 0; i < radius_m.size(); ++i) {
       const double distance = apart(frame.poses[i], b.frames[at].poses[i], radius_m[i]);
-      if (distance > farthest || (std::isnan(distance) && body < 0)) farthest = distance, body = static_cast<int>(i);
+      if (distance > farthest || (std::isnan(distance) && body < 0))
+        farthest = distance, body = static_cast<int>(i);
     }
     result.apart_m.push_back(farthest);
     if (!moved && !(farthest <= threshold))
-      moved = Difference{frame.time, fmt::format("{} is {:.2g} m from where it is in {}", a.bodies[static_cast<std::size_t>(body)].name, farthest, label_b), body};
+      moved =
+          Difference{frame.time,
+                     fmt::format("{} is {:.2g} m from where it is in {}",
+                                 a.bodies[static_cast<std::size_t>(body)].name, farthest, label_b),
+                     body};
   }
   result.first = first_event(a, label_a, b, label_b);
   if (moved && (!result.first || moved->time_s < result.first->time_s)) result.first = moved;

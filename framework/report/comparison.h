@@ -13,24 +13,29 @@ namespace tumble::report {
 /// The first difference of two runs.
 struct Difference {
   double time_s;
-  std::string what;   // a sentence: "Collision of ball and wall: impulse 6 N s in submission, 9 N s in reference"
-  int body = -1;      // -1: not of a particular body
+  // a sentence: "Collision of ball and wall: impulse 6 N s in submission, 9 N s in reference"
+  std::string what;
+  int body = -1;  // -1: not of a particular body
 };
 
 struct Comparison {
-  std::vector<double> apart_m;         // by frame of the first run: largest distance of any point of any body from its place in the other run; NaN where the other run has no such frame
-  std::optional<Difference> first;     // none: equal to round-off
+  // by frame of the first run: largest distance of any point of any body from its place in the
+  // other run; NaN where the other run has no such frame
+  std::vector<double> apart_m;
+  std::optional<Difference> first;  // none: equal to round-off
 };
 
 /// Bodies differ where a point of one is farther than `kApart`, relative to the distance of the
 /// camera's target, from its place in the other run. Events differ in kind or bodies, or in time or
 /// impulse by a relative `kEventShare`.
-inline constexpr double kApart = 1e-6;        // a thousandth of a pixel, and a million times the round-off of a short run
+// a thousandth of a pixel, and a million times the round-off of a short run
+inline constexpr double kApart = 1e-6;
 inline constexpr double kEventShare = 1e-6;
 
 /// @pre both runs are of the scene
 /// @param radius_m  by body: of its bounding ball about the origin; infinite for planes
-Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_m, const Trajectory& a, const std::string& label_a, const Trajectory& b,
+Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_m,
+                   const Trajectory& a, const std::string& label_a, const Trajectory& b,
                    const std::string& label_b);
 
 /// Name in a list of events: "collision", "comes to rest", ...

@@ -12,24 +12,39 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kExact = 1e-17;                  // m: where an error of exactly 0 is drawn
+constexpr double kExact = 1e-17;  // m: where an error of exactly 0 is drawn
 
 /// Runs that did not finish, or whose error is too large, are not drawn.
-bool is_drawn(const CostPage& page, const CostPoint& point) { return point.stopped_by.empty() && point.error < page.scale; }
+bool is_drawn(const CostPage& page, const CostPoint& point) {
+  return point.stopped_by.empty() && point.error < page.scale;
+}
 
-const std::string& counted_by(const CostPage& page, const CostCurve& curve) { return curve.counted.empty() ? page.counted : curve.counted; }
+const std::string& counted_by(const CostPage& page, const CostCurve& curve) {
+  return curve.counted.empty() ? page.counted : curve.counted;
+}
 
 /// @param counting  draws only the curves with this counted quantity; empty: all
-Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption, const std::string& counting = "") {
-  Plot plot{title, std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {}, caption};
+Plot drawn(const CostPage& page, Axis across, const std::string& title,
+           double (*x)(const CostPoint&), const std::string& caption,
+           const std::string& counting = "") {
+  Plot plot{title,  std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {},
+            caption};
   for (const CostCurve& curve : page.curves) {
-    Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order) : curve.name, {}, {}, true};
+    Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order)
+                                          : curve.name,
+               {},
+               {},
+               true};
     for (const CostPoint& point : curve.points) {
-      if (!is_drawn(page, point) || !(x(point) > 0) || (!counting.empty() && counted_by(page, curve) != counting)) continue;
+      if (!is_drawn(page, point) || !(x(point) > 0) ||
+          (!counting.empty() && counted_by(page, curve) != counting))
+        continue;
       line.x.push_back(x(point));
-      line.y.push_back(std::max({point.error, page.floor, kExact}));   // errors below the error floor cannot be resolved
+      // errors below the error floor cannot be resolved
+      line.y.push_back(std::max({point.error, page.floor, kExact}));
     }
-    if (line.x.empty()) line.name.clear();   // keeps its place, so that a method has the same style in all plots
+    // keeps its place, so that a method has the same style in all plots
+    if (line.x.empty()) line.name.clear();
     plot.curves.push_back(std::move(line));
   }
   if (page.error_unit.empty()) plot.limits.push_back({1.0, "right below"});
@@ -38,12 +53,22 @@ Plot drawn(const CostPage& page, Axis across, const std::string& title, double (
 }
 
 Plot plot_of_energy(const CostPage& page) {
-  Plot plot{"Energy against time, at about the same cost", {"time", "s"}, {page.error_unit.empty() ? "|E - E at the start| / energy" : "|E - E of the reference| / energy", "-", Scale::kLog}, {}, {}, "Each curve is the run of its method whose cost is closest to the median of all: "};
+  Plot plot{"Energy against time, at about the same cost",
+            {"time", "s"},
+            {page.error_unit.empty() ? "|E - E at the start| / energy"
+                                     : "|E - E of the reference| / energy",
+             "-", Scale::kLog},
+            {},
+            {},
+            "Each curve is the run of its method whose cost is closest to the median of all: "};
   std::string which;
   for (const CostCurve& curve : page.curves) {
-    plot.curves.push_back({curve.times.empty() ? "" : curve.name, curve.times, curve.energy_errors});
+    plot.curves.push_back(
+        {curve.times.empty() ? "" : curve.name, curve.times, curve.energy_errors});
     for (double& error : plot.curves.back().y) error = std::max(error, kExact);
-    if (!curve.times.empty()) which += fmt::format("{}{} ({})", which.empty() ? "" : ", ", curve.name, curve.points[curve.example].fineness);
+    if (!curve.times.empty())
+      which += fmt::format("{}{} ({})", which.empty() ? "" : ", ", curve.name,
+                           curve.points[curve.example].fineness);
   }
   plot.caption += which + ".";
   return plot;
@@ -58,19 +83,30 @@ std::string unbroken(const std::string& fineness) {
 
 Table table_of_prices(const CostPage& page) {
   Table table;
-  table.caption = "CPU time for an error of at most this much, and the setting that reaches it. \u2013: not reached.";
-  if (page.error_unit.empty()) table.caption = std::string("CPU time for a run that is right by all its numbers") + (page.marks.size() > 1 ? ", or uses a tenth of what they allow" : "") + ", and the setting that reaches it. \u2013: not reached.";
+  table.caption =
+      "CPU time for an error of at most this much, and the setting that reaches it. \u2013: not "
+      "reached.";
+  if (page.error_unit.empty())
+    table.caption = std::string("CPU time for a run that is right by all its numbers") +
+                    (page.marks.size() > 1 ? ", or uses a tenth of what they allow" : "") +
+                    ", and the setting that reaches it. \u2013: not reached.";
   table.columns = {{""}, {"order", true}};
-  for (const double mark : page.marks) table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
+  for (const double mark : page.marks)
+    table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
   for (const CostCurve& curve : page.curves) {
-    std::vector<Cell> cells{{curve.name}, {std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "\u2013"}};
+    std::vector<Cell> cells{
+        {curve.name}, {std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "\u2013"}};
     for (const double mark : page.marks) {
       const CostPoint* point = cheapest(curve, mark);
       double best = std::numeric_limits<double>::infinity();
       for (const CostCurve& other : page.curves)
         if (const CostPoint* theirs = cheapest(other, mark)) best = std::min(best, theirs->cpu_s);
-      if (point == nullptr) cells.insert(cells.end(), {{"\u2013", "", Look::kMuted}, {""}});
-      else cells.insert(cells.end(), {{price_of(point->cpu_s), "", point->cpu_s <= best ? Look::kGood : Look::kPlain}, {unbroken(point->fineness), "", Look::kMuted}});
+      if (point == nullptr)
+        cells.insert(cells.end(), {{"\u2013", "", Look::kMuted}, {""}});
+      else
+        cells.insert(cells.end(), {{price_of(point->cpu_s), "",
+                                    point->cpu_s <= best ? Look::kGood : Look::kPlain},
+                                   {unbroken(point->fineness), "", Look::kMuted}});
     }
     table.rows.push_back(std::move(cells));
   }
@@ -79,7 +115,7 @@ Table table_of_prices(const CostPage& page) {
 
 /// Stages of each curve's example, the same runs as in the plot of energies.
 StackedBars bars_of_stages(const CostPage& page) {
-  std::set<std::string> stages;   // with any time
+  std::set<std::string> stages;  // with any time
   for (const CostCurve& curve : page.curves)
     for (const auto& [stage, seconds] : curve.stage_seconds)
       if (seconds > 0) stages.insert(stage);
@@ -88,72 +124,100 @@ StackedBars bars_of_stages(const CostPage& page) {
   bars.axis = {"share of the stages' total time", "%"};
   bars.parts.assign(stages.begin(), stages.end());
   for (const CostCurve& curve : page.curves) {
-    const double all = std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0, [](double sum, const auto& stage) { return sum + stage.second; });
+    const double all =
+        std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0,
+                        [](double sum, const auto& stage) { return sum + stage.second; });
     if (!(all > 0)) continue;
-    bars.rows.push_back({fmt::format("{}, {}", curve.name, curve.points[curve.example].fineness), {}});
+    bars.rows.push_back(
+        {fmt::format("{}, {}", curve.name, curve.points[curve.example].fineness), {}});
     for (const std::string& stage : stages) {
       const auto found = curve.stage_seconds.find(stage);
-      bars.rows.back().values.push_back(found == curve.stage_seconds.end() ? 0.0 : std::max(0.0, 100.0 * found->second / all));
+      bars.rows.back().values.push_back(
+          found == curve.stage_seconds.end() ? 0.0 : std::max(0.0, 100.0 * found->second / all));
     }
   }
   return bars;
 }
 
 std::string all_points(const CostPage& page) {
-  std::string text = fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "", fmt::format("error [{}]", page.error_unit.empty() ? "-" : page.error_unit), "CPU", "evaluations");
+  std::string text =
+      fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "",
+                  fmt::format("error [{}]", page.error_unit.empty() ? "-" : page.error_unit), "CPU",
+                  "evaluations");
   for (const CostCurve& curve : page.curves)
     for (const CostPoint& point : curve.points) {
       text += fmt::format("{:32} {:16} ", curve.name, point.fineness);
-      text += point.stopped_by.empty() ? fmt::format("{:>12.2e} {:>10} {:>14.0f}\n", point.error, price_of(point.cpu_s), point.evaluations) : point.stopped_by + "\n";
+      text += point.stopped_by.empty() ? fmt::format("{:>12.2e} {:>10} {:>14.0f}\n", point.error,
+                                                     price_of(point.cpu_s), point.evaluations)
+                                       : point.stopped_by + "\n";
     }
   return text;
 }
 
 }  // namespace
 
-std::vector<std::size_t> not_beaten(const std::vector<double>& price, const std::vector<double>& error) {
+std::vector<std::size_t> not_beaten(const std::vector<double>& price,
+                                    const std::vector<double>& error) {
   std::vector<std::size_t> best;
   for (std::size_t i = 0; i < price.size(); ++i) {
     bool beaten = !std::isfinite(price[i]) || !std::isfinite(error[i]);
-    for (std::size_t j = 0; j < price.size() && !beaten; ++j) beaten = price[j] < price[i] && error[j] <= error[i];
+    for (std::size_t j = 0; j < price.size() && !beaten; ++j)
+      beaten = price[j] < price[i] && error[j] <= error[i];
     if (!beaten) best.push_back(i);
   }
-  std::sort(best.begin(), best.end(), [&](std::size_t i, std::size_t j) { return price[i] < price[j]; });
+  std::sort(best.begin(), best.end(),
+            [&](std::size_t i, std::size_t j) { return price[i] < price[j]; });
   return best;
 }
 
 const CostPoint* cheapest(const CostCurve& curve, double error) {
   const CostPoint* best = nullptr;
   for (const CostPoint& point : curve.points)
-    if (point.stopped_by.empty() && point.error <= error && (best == nullptr || point.cpu_s < best->cpu_s)) best = &point;
+    if (point.stopped_by.empty() && point.error <= error &&
+        (best == nullptr || point.cpu_s < best->cpu_s))
+      best = &point;
   return best;
 }
 
 std::string mark_in_words(const CostPage& page, double mark) {
-  if (!page.error_unit.empty()) return fmt::format("1e{:.0f} {}", std::log10(mark), page.error_unit);
+  if (!page.error_unit.empty())
+    return fmt::format("1e{:.0f} {}", std::log10(mark), page.error_unit);
   return mark == 1.0 ? "right" : fmt::format("{:g} of allowed", mark);
 }
 
 std::string price_of(double seconds) {
   if (!std::isfinite(seconds)) return "\u2013";
-  const double rounded = std::stod(fmt::format("{:.1e}", seconds));   // costs are known to two digits
+  // costs are known to two digits
+  const double rounded = std::stod(fmt::format("{:.1e}", seconds));
   if (rounded < 1e-3) return fmt::format("{:g} \u00b5s", 1e6 * rounded);
   return rounded < 1.0 ? fmt::format("{:g} ms", 1e3 * rounded) : fmt::format("{:g} s", rounded);
 }
 
 Plot plot_of_price(const CostPage& page) {
-  return drawn(page, {"CPU time", "s", Scale::kLog}, "Error against CPU time", [](const CostPoint& point) { return point.cpu_s; }, "Left is cheaper, down is more accurate. The error of a method of order p falls by p decades where its cost rises by one.");
+  return drawn(
+      page, {"CPU time", "s", Scale::kLog}, "Error against CPU time",
+      [](const CostPoint& point) { return point.cpu_s; },
+      "Left is cheaper, down is more accurate. The error of a method of order p falls by p decades "
+      "where its cost rises by one.");
 }
 
 std::vector<Plot> plots_of_evaluations(const CostPage& page) {
   std::vector<std::string> counters;
   for (const CostCurve& curve : page.curves)
-    if (std::find(counters.begin(), counters.end(), counted_by(page, curve)) == counters.end()) counters.push_back(counted_by(page, curve));
+    if (std::find(counters.begin(), counters.end(), counted_by(page, curve)) == counters.end())
+      counters.push_back(counted_by(page, curve));
   std::vector<Plot> plots;
   for (const std::string& counter : counters) {
-    Plot plot = drawn(page, {counter, "-", Scale::kLog}, counters.size() > 1 ? "Error against " + counter : "Error against evaluations", [](const CostPoint& point) { return point.evaluations; },
-                          "The cost of a method on any machine. Methods without evaluations, such as closed forms, are not in this plot.", counter);
-    if (std::any_of(plot.curves.begin(), plot.curves.end(), [](const Curve& curve) { return !curve.x.empty(); })) plots.push_back(std::move(plot));
+    Plot plot = drawn(
+        page, {counter, "-", Scale::kLog},
+        counters.size() > 1 ? "Error against " + counter : "Error against evaluations",
+        [](const CostPoint& point) { return point.evaluations; },
+        "The cost of a method on any machine. Methods without evaluations, such as closed forms, "
+        "are not in this plot.",
+        counter);
+    if (std::any_of(plot.curves.begin(), plot.curves.end(),
+                    [](const Curve& curve) { return !curve.x.empty(); }))
+      plots.push_back(std::move(plot));
   }
   return plots;
 }
@@ -165,14 +229,23 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   for (const std::string& reading : cost.readings) page.paragraph(reading);
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
-  for (const std::string& what : cost.not_run) page.paragraph("Not run: " + what + ".", Look::kMuted);
+  for (const std::string& what : cost.not_run)
+    page.paragraph("Not run: " + what + ".", Look::kMuted);
   const bool by_step = cost.finer.name == "step";
-  const auto has_steps = [&](const CostCurve& curve) { return std::any_of(curve.points.begin(), curve.points.end(), [&](const CostPoint& point) { return is_drawn(cost, point) && point.step > 0; }); };
+  const auto has_steps = [&](const CostCurve& curve) {
+    return std::any_of(curve.points.begin(), curve.points.end(), [&](const CostPoint& point) {
+      return is_drawn(cost, point) && point.step > 0;
+    });
+  };
   page.heading(by_step ? "Order" : "Tolerance");
   if (std::any_of(cost.curves.begin(), cost.curves.end(), has_steps))
-    page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
-                    by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this plot."
-                            : "The tolerance of a root finder, and the error it reaches. Finders without a tolerance are not in this plot."));
+    page.plot(drawn(
+        cost, cost.finer, "Error against the " + cost.finer.name,
+        [](const CostPoint& point) { return point.step; },
+        by_step ? "The slope is the order: halving the step divides the error of a method of order "
+                  "p by 2^p. Methods that choose their own steps are not in this plot."
+                : "The tolerance of a root finder, and the error it reaches. Finders without a "
+                  "tolerance are not in this plot."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
   const std::vector<Plot> evaluations = plots_of_evaluations(cost);
@@ -189,8 +262,12 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   page.heading("How it was measured");
   page.paragraph(cost.about);
   page.paragraph(cost.what_error_is);
-  if (!cost.what_price_is.empty()) page.paragraph(cost.what_price_is);
-  else page.paragraph("CPU time is that of the engine without loading models and shapes, the best of up to five runs, with the overhead of stack samples. Only ratios are meaningful on other machines.");
+  if (!cost.what_price_is.empty())
+    page.paragraph(cost.what_price_is);
+  else
+    page.paragraph(
+        "CPU time is that of the engine without loading models and shapes, the best of up to five "
+        "runs, with the overhead of stack samples. Only ratios are meaningful on other machines.");
   page.fold("Every run", all_points(cost));
   page.record(cost.record);
   page.write(file);

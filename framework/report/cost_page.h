@@ -22,36 +22,40 @@ struct CostPoint {
 /// One method, engine or setting over its refinement sequence.
 struct CostCurve {
   std::string name;
-  std::string reading;               // the sentence that interprets its curve
-  std::string counted;               // CostPoint::evaluations of its points, in words; empty: the page's
-  bool is_subject = false;           // the subject of the page: its sentence is at the head
-  double order = std::numeric_limits<double>::quiet_NaN();   // measured; NaN: none
-  std::vector<CostPoint> points;     // coarse to fine
-  std::size_t example = 0;           // the point whose energy and stages are shown
-  std::vector<double> times, energy_errors;                  // of the example
-  std::map<std::string, double> stage_seconds;               // of the example
+  std::string reading;  // the sentence that interprets its curve
+  // CostPoint::evaluations of its points, in words; empty: the page's
+  std::string counted;
+  bool is_subject = false;  // the subject of the page: its sentence is at the head
+  double order = std::numeric_limits<double>::quiet_NaN();  // measured; NaN: none
+  std::vector<CostPoint> points;                            // coarse to fine
+  std::size_t example = 0;                      // the point whose energy and stages are shown
+  std::vector<double> times, energy_errors;     // of the example
+  std::map<std::string, double> stage_seconds;  // of the example
 };
 
 struct CostPage {
   std::string title, about;
-  std::vector<std::string> readings; // sentences at the head
-  std::string truth;                 // the reference solution, against which errors are measured
+  std::vector<std::string> readings;  // sentences at the head
+  std::string truth;                  // the reference solution, against which errors are measured
   std::string error_name = "error of places", error_unit = "m";
-  std::vector<double> marks = {1e-3, 1e-6, 1e-9};   // tolerances whose cost is listed
-  std::string what_error_is;         // a sentence
-  std::string what_price_is;         // a sentence; empty: that of engines
-  Axis finer = {"step", "s", Scale::kLog};           // the quantity that is refined: CostPoint::step
-  std::string counted = "derivatives asked for";     // CostPoint::evaluations
-  double floor;                      // error of the reference solution [m]
-  double scale;                      // larger errors are not drawn: such a run is useless [m]
+  std::vector<double> marks = {1e-3, 1e-6, 1e-9};  // tolerances whose cost is listed
+  std::string what_error_is;                       // a sentence
+  std::string what_price_is;                       // a sentence; empty: that of engines
+  // the quantity that is refined: CostPoint::step
+  Axis finer = {"step", "s", Scale::kLog};
+  std::string counted = "derivatives asked for";  // CostPoint::evaluations
+  double floor;                                   // error of the reference solution [m]
+  double scale;  // larger errors are not drawn: such a run is useless [m]
   std::vector<CostCurve> curves;
-  std::vector<std::string> not_run;  // methods without a curve, and why: "ca: bodies fall asleep here"
+  // methods without a curve, and why: "ca: bodies fall asleep here"
+  std::vector<std::string> not_run;
   std::string record;
 };
 
 /// The Pareto front: indices of the points that no other point beats in both cost and error, sorted
 /// by cost.
-std::vector<std::size_t> not_beaten(const std::vector<double>& price, const std::vector<double>& error);
+std::vector<std::size_t> not_beaten(const std::vector<double>& price,
+                                    const std::vector<double>& error);
 
 /// The cheapest point with at most this error; nullptr where there is none.
 const CostPoint* cheapest(const CostCurve& curve, double error);

@@ -13,19 +13,20 @@ namespace tumble::report {
 /// One scene in every engine. Paths are relative to the page; an empty one is not linked.
 struct EnginesScene {
   std::string name, title, about, command;
-  std::string problem;                     // why there is no result; empty: there is one
+  std::string problem;  // why there is no result; empty: there is one
   std::vector<EngineRow> rows;
-  std::vector<std::string> checks;         // results of the scene's checks, by run
-  bool is_right = true;                    // all checks hold
+  std::vector<std::string> checks;  // results of the scene's checks, by run
+  bool is_right = true;             // all checks hold
   Figure figure;
   std::filesystem::path page, player;
 };
 
 struct EnginesIndex {
   std::vector<EnginesScene> scenes;
-  std::vector<std::vector<EngineRow>> ladder;   // of atoms, by ascending size
-  std::vector<std::vector<EngineRow>> ghosts, pong;   // of balls on a table that ignore each other, and that collide, by ascending size; may be empty
-  bool is_full = false;                         // with the sizes of the paper
+  std::vector<std::vector<EngineRow>> ladder;  // of atoms, by ascending size
+  // of balls on a table that ignore each other, and that collide, by ascending size; may be empty
+  std::vector<std::vector<EngineRow>> ghosts, pong;
+  bool is_full = false;  // with the sizes of the paper
   std::string record;
 };
 

@@ -7,13 +7,16 @@
 namespace tumble::report {
 namespace {
 
-double measured_integrations(const EngineRow& row) { return static_cast<double>(count_of(row, "integrations")) / row.simulated_s; }
+double measured_integrations(const EngineRow& row) {
+  return static_cast<double>(count_of(row, "integrations")) / row.simulated_s;
+}
 
 bool ran(const EngineRow& row) { return row.stopped_by.empty() && row.simulated_s > 0; }
 
 }  // namespace
 
-std::optional<double> modelled_integrations(const std::string& engine, double n, double w, double h) {
+std::optional<double> modelled_integrations(const std::string& engine, double n, double w,
+                                            double h) {
   const double lambda = 0.5 * n * w;
   if (engine == "rd") {
     const double p = -std::expm1(-lambda * h);
@@ -36,14 +39,19 @@ Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   plot.title = "The model of cost, and measured counts";
   plot.x = {"bodies", "", Scale::kLog};
   plot.y = {"integrations per simulated second", "1/s", Scale::kLog};
-  plot.caption = "With marks: counted. Without: our model at each size's own number of discontinuities per body and second.";
+  plot.caption =
+      "With marks: counted. Without: our model at each size's own number of discontinuities per "
+      "body and second.";
   std::map<std::string, std::pair<std::size_t, std::size_t>> places;
   for (const auto& rows : ladder) {
     const double w = discontinuities_a_body(rows);
     for (const EngineRow& row : rows) {
-      const auto model = ran(row) && w > 0 ? modelled_integrations(row.engine, row.bodies, w, row.step_s) : std::nullopt;
+      const auto model = ran(row) && w > 0
+                             ? modelled_integrations(row.engine, row.bodies, w, row.step_s)
+                             : std::nullopt;
       if (!model) continue;
-      const auto [place, is_new] = places.try_emplace(row.label, plot.curves.size(), plot.curves.size() + 1);
+      const auto [place, is_new] =
+          places.try_emplace(row.label, plot.curves.size(), plot.curves.size() + 1);
       if (is_new) {
         plot.curves.push_back({row.label + ", counted", {}, {}, true});
         plot.curves.push_back({row.label + ", model", {}, {}, false});
@@ -62,14 +70,22 @@ Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
 Table table_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   Table table;
   table.caption = "Integrations per simulated second: by the model, and counted.";
-  table.columns = {{"Bodies", true}, {"Engine"}, {"w [1/s]", true}, {"n w h", true}, {"Model", true}, {"Counted", true}, {"Counted / model", true}};
+  table.columns = {{"Bodies", true}, {"Engine"},        {"w [1/s]", true},        {"n w h", true},
+                   {"Model", true},  {"Counted", true}, {"Counted / model", true}};
   for (const auto& rows : ladder) {
     const double w = discontinuities_a_body(rows);
     for (const EngineRow& row : rows) {
-      const auto model = ran(row) && w > 0 ? modelled_integrations(row.engine, row.bodies, w, row.step_s) : std::nullopt;
+      const auto model = ran(row) && w > 0
+                             ? modelled_integrations(row.engine, row.bodies, w, row.step_s)
+                             : std::nullopt;
       if (!model) continue;
       const double counted = measured_integrations(row);
-      table.rows.push_back({{std::to_string(row.bodies)}, {row.label}, {fmt::format("{:.2f}", w)}, {fmt::format("{:.1f}", row.bodies * w * row.step_s)}, {fmt::format("{:.0f}", *model)}, {fmt::format("{:.0f}", counted)},
+      table.rows.push_back({{std::to_string(row.bodies)},
+                            {row.label},
+                            {fmt::format("{:.2f}", w)},
+                            {fmt::format("{:.1f}", row.bodies * w * row.step_s)},
+                            {fmt::format("{:.0f}", *model)},
+                            {fmt::format("{:.0f}", counted)},
                             {fmt::format("{:.2f}", counted / *model)}});
     }
   }

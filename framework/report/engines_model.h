@@ -1,7 +1,8 @@
 /// This course's cost model: the number of integrations of the three kinds of engine, from the rate
 /// of discontinuities per body.
 ///
-///   RD: n lambda (1 + p) / p      CA: n (1/h + 3 lambda)      TW: n (1/h + 3 w)      in integrations per simulated second
+///   RD: n lambda (1 + p) / p      CA: n (1/h + 3 lambda)      TW: n (1/h + 3 w)
+///       in integrations per simulated second
 ///   lambda = n w / 2 (discontinuities per second, of all bodies),  p = 1 - exp(-lambda h)
 /// n bodies, h the largest step [s], w discontinuities per body and second [1/s]; a discontinuity
 /// involves two bodies.
@@ -22,7 +23,8 @@ namespace tumble::report {
 /// @param engine  "rd", "ca" or "tw"
 /// @param n, w, h  as above, all positive
 /// @return integrations per simulated second, all bodies together; nothing for other engines
-std::optional<double> modelled_integrations(const std::string& engine, double n, double w, double h);
+std::optional<double> modelled_integrations(const std::string& engine, double n, double w,
+                                            double h);
 
 /// Discontinuities per body and second, from a run that counts each once (of an engine that goes
 /// from event to event), else from the first run. 0: no engine ran.

@@ -15,19 +15,22 @@ namespace tumble::report {
 
 /// One engine's run of one scene.
 struct EngineRow {
-  std::string engine, meaning;                 // "tw", "timewarp"
-  std::string label;                           // name of a column or a curve: "rd", "RD-1/30"
-  int bodies = 0;                              // movable
-  double step_s = 0.0;                         // the largest
+  std::string engine, meaning;  // "tw", "timewarp"
+  std::string label;            // name of a column or a curve: "rd", "RD-1/30"
+  int bodies = 0;               // movable
+  double step_s = 0.0;          // the largest
   double simulated_s = 0.0, cpu_s = 0.0;
-  double w_h = 0.0;                            // discontinuities per body and step
-  std::map<std::string, std::uint64_t> counts; // of the run's counters
-  std::vector<double> frame_times, energy_error;   // |E - E0| / scale, by frame
-  std::vector<std::pair<std::string, double>> time_parts;   // shares of the CPU time, in the same parts for every engine; all 0: the run was too short
-  double physics = 0.0;                        // total share of the parts that all engines compute by the same functions
-  std::string agreement;                       // with the first event-driven engine, in words
-  std::string stopped_by;                      // or why it did not run
-  std::string faults;                          // why the run cannot be trusted, in words; empty: it can
+  double w_h = 0.0;                               // discontinuities per body and step
+  std::map<std::string, std::uint64_t> counts;    // of the run's counters
+  std::vector<double> frame_times, energy_error;  // |E - E0| / scale, by frame
+  // shares of the CPU time, in the same parts for every engine; all 0: the run was too short
+  std::vector<std::pair<std::string, double>> time_parts;
+  // total share of the parts that all engines compute by the same functions
+  double physics = 0.0;
+  std::string agreement;   // with the first event-driven engine, in words
+  std::string stopped_by;  // or why it did not run
+  // why the run cannot be trusted, in words; empty: it can
+  std::string faults;
 };
 
 /// The compared counts in order: (name in Counters, heading).
@@ -56,7 +59,9 @@ Plot plot_of_energy(const std::vector<EngineRow>& rows);
 /// @param rows    of the scene
 /// @param ladder  rows of the scene at several sizes, ascending; empty where it has one size
 /// @throws UserError when the file cannot be written
-void write_engines_page(const std::string& title, const std::string& about, const std::vector<EngineRow>& rows, const std::vector<std::vector<EngineRow>>& ladder, const std::string& record,
-                        const std::filesystem::path& file);
+void write_engines_page(const std::string& title, const std::string& about,
+                        const std::vector<EngineRow>& rows,
+                        const std::vector<std::vector<EngineRow>>& ladder,
+                        const std::string& record, const std::filesystem::path& file);
 
 }  // namespace tumble::report

@@ -9,7 +9,8 @@ namespace {
 // No network and no scripts; pictures and video from the page's folder (`file:` for pages opened
 // from disk).
 constexpr const char* kPolicy =
-    "default-src 'none'; img-src 'self' file: data:; media-src 'self' file: data:; style-src 'unsafe-inline'; "
+    "default-src 'none'; img-src 'self' file: data:; media-src 'self' file: data:; style-src "
+    "'unsafe-inline'; "
     "base-uri 'none'; form-action 'none'";
 
 // A table with more columns has less space between them, so that it fits the page and paper.
@@ -63,7 +64,8 @@ const char* class_of(Look look) {
 // A link is a path from link_to or an anchor; a scheme (javascript:, http:) is a bug.
 std::string linked(const Cell& cell) {
   if (cell.link.empty()) return html_escape(cell.text);
-  require(cell.link.find(':') == std::string::npos, "report: a link must be made by link_to or be \"#id\", not: " + cell.link);
+  require(cell.link.find(':') == std::string::npos,
+          "report: a link must be made by link_to or be \"#id\", not: " + cell.link);
   return "<a href=\"" + html_escape(cell.link) + "\">" + html_escape(cell.text) + "</a>";
 }
 
@@ -90,12 +92,14 @@ std::string figure_html(const Figure& figure) {
 
 }  // namespace
 
-Page::Page(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
+Page::Page(std::string title, std::string subtitle)
+    : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 void Page::heading(std::string_view text, int level, std::string_view id) {
   require(level == 2 || level == 3, "report: a heading's level is 2 or 3");
   const std::string tag = "h" + std::to_string(level);
-  body_ += '<' + tag + (id.empty() ? "" : " id=\"" + html_escape(id) + '"') + '>' + html_escape(text) + "</" + tag + ">\n";
+  body_ += '<' + tag + (id.empty() ? "" : " id=\"" + html_escape(id) + '"') + '>' +
+           html_escape(text) + "</" + tag + ">\n";
 }
 
 void Page::paragraph(std::string_view text, Look look) {
@@ -108,25 +112,31 @@ void Page::links(const std::vector<Cell>& links) {
   body_ += "</nav>\n";
 }
 
-void Page::preformatted(std::string_view text) { body_ += "<pre>" + html_escape(text) + "</pre>\n"; }
+void Page::preformatted(std::string_view text) {
+  body_ += "<pre>" + html_escape(text) + "</pre>\n";
+}
 
 void Page::fold(std::string_view summary, std::string_view text, bool open) {
-  body_ += std::string("<details") + (open ? " open" : "") + "><summary>" + html_escape(summary) + "</summary><pre>" +
-           html_escape(text) + "</pre></details>\n";
+  body_ += std::string("<details") + (open ? " open" : "") + "><summary>" + html_escape(summary) +
+           "</summary><pre>" + html_escape(text) + "</pre></details>\n";
 }
 
 void Page::table(const Table& table) {
-  body_ += table.columns.size() > kManyColumns ? "<div class=\"wide\"><table class=\"many\">" : "<div class=\"wide\"><table>";
+  body_ += table.columns.size() > kManyColumns ? "<div class=\"wide\"><table class=\"many\">"
+                                               : "<div class=\"wide\"><table>";
   if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
   body_ += "<thead><tr>";
   for (const Column& column : table.columns)
-    body_ += "<th scope=\"col\"" + class_attribute(Look::kPlain, column.is_number) + '>' + html_escape(column.name) + "</th>";
+    body_ += "<th scope=\"col\"" + class_attribute(Look::kPlain, column.is_number) + '>' +
+             html_escape(column.name) + "</th>";
   body_ += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
-    require(row.size() == table.columns.size(), "report: a table's row must have one cell for each column");
+    require(row.size() == table.columns.size(),
+            "report: a table's row must have one cell for each column");
     body_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i)
-      body_ += "<td" + class_attribute(row[i].look, table.columns[i].is_number) + '>' + linked(row[i]) + "</td>";
+      body_ += "<td" + class_attribute(row[i].look, table.columns[i].is_number) + '>' +
+               linked(row[i]) + "</td>";
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
@@ -150,7 +160,8 @@ void Page::plot(const StackedBars& bars) { figure(svg_of(bars), bars.caption); }
 void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
   body_ += "<div class=\"tiles\">";
   for (const auto& [name, value] : tiles)
-    body_ += "<div class=\"tile\"><b" + class_attribute(value.look) + '>' + linked(value) + "</b><span>" + html_escape(name) + "</span></div>";
+    body_ += "<div class=\"tile\"><b" + class_attribute(value.look) + '>' + linked(value) +
+             "</b><span>" + html_escape(name) + "</span></div>";
   body_ += "</div>\n";
 }
 
@@ -159,10 +170,13 @@ void Page::record(std::string_view text) { record_ = html_escape(text); }
 std::string Page::html() const {
   const std::string title = html_escape(title_);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  html += std::string("<meta http-equiv=\"Content-Security-Policy\" content=\"") + kPolicy + "\">\n";
-  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + title + "</title>\n<style>" + kStyle + plot_style() +
+  html +=
+      std::string("<meta http-equiv=\"Content-Security-Policy\" content=\"") + kPolicy + "\">\n";
+  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+          title + "</title>\n<style>" + kStyle + plot_style() +
           "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1>";
-  html += (subtitle_.empty() ? "" : "<p>" + html_escape(subtitle_) + "</p>") + "</header>\n<main>\n" + body_ + "</main>\n";
+  html += (subtitle_.empty() ? "" : "<p>" + html_escape(subtitle_) + "</p>") +
+          "</header>\n<main>\n" + body_ + "</main>\n";
   if (!record_.empty()) html += "<footer><p>" + record_ + "</p></footer>\n";
   return html + "</body>\n</html>\n";
 }

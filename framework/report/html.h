@@ -2,9 +2,9 @@
 ///
 ///   Page page("Assignment a1", "submission alice");
 ///   page.heading("Score");
-///   page.table({.columns = {{"Test"}, {"Points", true}}, .rows = {{{"impulse"}, {.text = "3", .look = Look::kGood}}}});
-///   page.figures({{.picture = "run.png", .video = "run.mp4", .caption = "A poked box"}});
-///   page.write("out/index.html");
+///   page.table({.columns = {{"Test"}, {"Points", true}}, .rows = {{{"impulse"}, {.text = "3",
+///   .look = Look::kGood}}}}); page.figures({{.picture = "run.png", .video = "run.mp4", .caption =
+///   "A poked box"}}); page.write("out/index.html");
 ///
 /// Everything that comes from a submission is text to these functions: it is escaped here and
 /// nowhere else, and the page forbids scripts and network access, so that a story cannot attack its
@@ -29,13 +29,13 @@ enum class Look { kPlain, kMuted, kGood, kWarning, kBad };
 
 struct Cell {
   std::string text;
-  std::string link = {};     // result of link_to, or "#id"; empty: none
+  std::string link = {};  // result of link_to, or "#id"; empty: none
   Look look = Look::kPlain;
 };
 
 struct Column {
   std::string name;
-  bool is_number = false;    // right-aligned
+  bool is_number = false;  // right-aligned
 };
 
 struct Table {
@@ -49,7 +49,7 @@ struct Figure {
   std::filesystem::path picture;
   std::filesystem::path video;
   std::string caption;
-  std::string label;         // small heading above, e.g. "reference"
+  std::string label;  // small heading above, e.g. "reference"
 };
 
 /// One page, written top to bottom. Every `text` is escaped.

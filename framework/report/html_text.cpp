@@ -7,12 +7,13 @@ namespace tumble::report {
 namespace {
 
 struct Decoded {
-  std::uint32_t code;   // kInvalid for bytes that are not UTF-8
-  std::size_t length;   // bytes consumed, at least 1
+  std::uint32_t code;  // kInvalid for bytes that are not UTF-8
+  std::size_t length;  // bytes consumed, at least 1
 };
 constexpr std::uint32_t kInvalid = 0xffffffff;
 
-// One character. Overlong forms, surrogates and codes past U+10FFFF are invalid (Unicode 15, table 3-7).
+// One character. Overlong forms, surrogates and codes past U+10FFFF are invalid (Unicode 15, table
+// 3-7).
 Decoded decode(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at);
@@ -35,13 +36,15 @@ Decoded decode(std::string_view text, std::size_t at) {
 bool is_dropped(std::uint32_t code) {
   if (code == '\n' || code == '\t') return false;
   if (code < 0x20 || (code >= 0x7f && code <= 0x9f)) return true;
-  const bool bidi = code == 0x061c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
-                    (code >= 0x2066 && code <= 0x2069);
-  const bool invisible = code == 0x200b || code == 0x2060 || code == 0xfeff || (code >= 0xe0000 && code <= 0xe007f);
+  const bool bidi = code == 0x061c || code == 0x200e || code == 0x200f ||
+                    (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  const bool invisible =
+      code == 0x200b || code == 0x2060 || code == 0xfeff || (code >= 0xe0000 && code <= 0xe007f);
   return bidi || invisible;
 }
 
-// Length of a terminal control sequence (ECMA-48: ESC [ parameters final) at `at`, 0 where there is none.
+// Length of a terminal control sequence (ECMA-48: ESC [ parameters final) at `at`, 0 where there is
+// none.
 std::size_t control_sequence(std::string_view text, std::size_t at) {
   if (text[at] != '\x1b' || at + 1 >= text.size() || text[at + 1] != '[') return 0;
   std::size_t end = at + 2;
@@ -71,8 +74,10 @@ std::string html_escape(std::string_view text) {
       continue;
     }
     const Decoded character = decode(text, at);
-    if (character.code == kInvalid) html += "\xef\xbf\xbd";
-    else if (!is_dropped(character.code)) append_escaped(html, text.substr(at, character.length));
+    if (character.code == kInvalid)
+      html += "\xef\xbf\xbd";
+    else if (!is_dropped(character.code))
+      append_escaped(html, text.substr(at, character.length));
     at += character.length;
   }
   return html;
@@ -85,8 +90,10 @@ std::string link_to(const std::filesystem::path& relative) {
     const auto byte = static_cast<unsigned char>(c);
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                        std::string_view("._~/-").find(c) != std::string_view::npos;
-    if (plain) link += c;
-    else link += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    if (plain)
+      link += c;
+    else
+      link += {'%', kHex[byte >> 4], kHex[byte & 15]};
   }
   return link;
 }

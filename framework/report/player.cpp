@@ -25,11 +25,25 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // In the order of the page: each script uses only earlier ones.
-constexpr const char* kScripts[] = {"decode.js", "model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js", "curves.js", "events.js", "player.js", "panel_virtual_times.js", "main.js"};
+constexpr const char* kScripts[] = {"decode.js",
+                                    "model.js",
+                                    "shapes.js",
+                                    "marks.js",
+                                    "pick.js",
+                                    "stage.js",
+                                    "plot.js",
+                                    "curves.js",
+                                    "events.js",
+                                    "player.js",
+                                    "panel_virtual_times.js",
+                                    "main.js"};
 
 std::string library(const fs::path& folder, const char* file) {
   std::ifstream in(folder / file, std::ios::binary);
-  if (!in) throw UserError((folder / file).string(), "three.js is missing, which a page that plays a run needs", "Install Debian's package libjs-three.");
+  if (!in)
+    throw UserError((folder / file).string(),
+                    "three.js is missing, which a page that plays a run needs",
+                    "Install Debian's package libjs-three.");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -42,18 +56,21 @@ std::string script_text() {
 // "</" would end a script element; JSON allows an escape for the less-than sign.
 std::string json_text(const Json& json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) c == '<' ? text += "\\u003c" : text += c;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
+    c == '<' ? text += "\\u003c" : text += c;
   return text;
 }
 
 std::string data_element(const std::string& id, const std::string& deflated_bytes) {
-  return "<script type=\"application/octet-stream\" id=\"" + id + "\">" + base64(deflated_bytes) + "</script>\n";
+  return "<script type=\"application/octet-stream\" id=\"" + id + "\">" + base64(deflated_bytes) +
+         "</script>\n";
 }
 
 std::string filled(std::string_view page, const std::map<std::string, std::string>& words) {
   std::string text;
   for (;;) {
-    const std::size_t open = page.find("{{"), close = open == page.npos ? page.npos : page.find("}}", open);
+    const std::size_t open = page.find("{{"),
+                      close = open == page.npos ? page.npos : page.find("}}", open);
     if (close == page.npos) return text + std::string(page);
     text += page.substr(0, open);
     text += words.at(std::string(page.substr(open + 2, close - open - 2)));
@@ -63,56 +80,79 @@ std::string filled(std::string_view page, const std::map<std::string, std::strin
 
 Json panels_json(const std::vector<PlayerPanel>& panels) {
   Json all = Json::array();
-  for (const PlayerPanel& panel : panels) all.push_back({{"kind", panel.kind}, {"title", panel.title}, {"data", Json::parse(panel.data_json)}});
+  for (const PlayerPanel& panel : panels)
+    all.push_back(
+        {{"kind", panel.kind}, {"title", panel.title}, {"data", Json::parse(panel.data_json)}});
   return all;
 }
 
 std::string record_and_notices(const std::vector<PlayedRun>& runs) {
   std::string record = html_escape(tumble::record_of(runs.front().run.info));
-  for (const PlayedRun& played : runs)   // notes of the run, such as changed initial velocities
-    for (const std::string& notice : played.run.counters.notices) record += "<br>note" + (played.label.empty() ? "" : " (" + html_escape(played.label) + ")") + ": " + html_escape(notice);
+  for (const PlayedRun& played : runs)  // notes of the run, such as changed initial velocities
+    for (const std::string& notice : played.run.counters.notices)
+      record += "<br>note" + (played.label.empty() ? "" : " (" + html_escape(played.label) + ")") +
+                ": " + html_escape(notice);
   return record;
 }
 
 void check(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
   require(runs.size() == 1 || runs.size() == 2, "report: a page plays one run or two");
   for (const PlayedRun& played : runs) {
-    if (played.run.frames.empty()) throw UserError(scene.name, "the run has no frame to show", played.run.stopped_by);
+    if (played.run.frames.empty())
+      throw UserError(scene.name, "the run has no frame to show", played.run.stopped_by);
     if (played.run.bodies.size() != scene.bodies.size())
-      throw UserError(scene.name, fmt::format("the run has {} bodies and the scene {}", played.run.bodies.size(), scene.bodies.size()), "Show a run with the scene that it was made from.");
+      throw UserError(scene.name,
+                      fmt::format("the run has {} bodies and the scene {}",
+                                  played.run.bodies.size(), scene.bodies.size()),
+                      "Show a run with the scene that it was made from.");
   }
 }
 
 }  // namespace
 
-std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options) {
+std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs,
+                        const PlayerOptions& options) {
   check(scene, runs);
-  const std::string three = library(options.three, "three.min.js"), controls = library(options.three, "examples/js/controls/OrbitControls.js");
+  const std::string three = library(options.three, "three.min.js"),
+                    controls = library(options.three, "examples/js/controls/OrbitControls.js");
   std::vector<Shape> shapes;
-  for (const scene::Solid& solid : scene::build_solids(scene, options.root)) shapes.push_back(solid.shape);
+  for (const scene::Solid& solid : scene::build_solids(scene, options.root))
+    shapes.push_back(solid.shape);
 
   Json head = player_scene(scene, shapes, runs.front().run.frames.front());
   Comparison comparison;
   if (runs.size() == 2) {
-    comparison = compare(scene, radii_of(shapes), runs[0].run, runs[0].label, runs[1].run, runs[1].label);
-    head["difference"] = comparison.first ? Json{{"time", comparison.first->time_s}, {"what", comparison.first->what}, {"body", comparison.first->body}} : Json();
+    comparison =
+        compare(scene, radii_of(shapes), runs[0].run, runs[0].label, runs[1].run, runs[1].label);
+    head["difference"] = comparison.first ? Json{{"time", comparison.first->time_s},
+                                                 {"what", comparison.first->what},
+                                                 {"body", comparison.first->body}}
+                                          : Json();
   }
   const double sight_m = (scene.camera.eye_m - scene.camera.target_m).norm();
   std::vector<PackedRun> packed;
   std::string data = data_element("three", deflated(three + "\n" + controls));
   head["runs"] = Json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    packed.push_back(pack_run(scene, runs[r], r == 0 ? comparison.apart_m : std::vector<double>{}, sight_m, options));
+    packed.push_back(pack_run(scene, runs[r], r == 0 ? comparison.apart_m : std::vector<double>{},
+                              sight_m, options));
     head["runs"].push_back(packed.back().head);
     data += data_element("run" + std::to_string(r), packed.back().channels);
   }
   head["panels"] = panels_json(options.panels);
-  return filled(player_file("page.html"), {{"title", html_escape(scene.title.empty() ? scene.name : scene.title)}, {"about", html_escape(scene.about)},
-                                           {"style", std::string(player_file("player.css"))}, {"script", script_text()}, {"head", json_text(head)}, {"data", data},
-                                           {"still", player_still(runs, packed)}, {"record", record_and_notices(runs)}});
+  return filled(player_file("page.html"),
+                {{"title", html_escape(scene.title.empty() ? scene.name : scene.title)},
+                 {"about", html_escape(scene.about)},
+                 {"style", std::string(player_file("player.css"))},
+                 {"script", script_text()},
+                 {"head", json_text(head)},
+                 {"data", data},
+                 {"still", player_still(runs, packed)},
+                 {"record", record_and_notices(runs)}});
 }
 
-std::size_t write_player(const fs::path& file, const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options) {
+std::size_t write_player(const fs::path& file, const scene::Scene& scene,
+                         const std::vector<PlayedRun>& runs, const PlayerOptions& options) {
   const std::string page = player_page(scene, runs, options);
   write_whole(file, page);
   return page.size();

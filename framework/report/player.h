@@ -21,10 +21,12 @@ namespace tumble::report {
 /// The page.
 /// @param runs  one or two, each of the scene and with at least one frame
 /// @throws UserError when three.js is missing, or a run has no frame
-std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options = {});
+std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs,
+                        const PlayerOptions& options = {});
 
 /// Writes the page whole or not at all.
 /// @return its size in bytes
-std::size_t write_player(const std::filesystem::path& file, const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options = {});
+std::size_t write_player(const std::filesystem::path& file, const scene::Scene& scene,
+                         const std::vector<PlayedRun>& runs, const PlayerOptions& options = {});
 
 }  // namespace tumble::report

@@ -17,7 +17,9 @@ Json triple(const Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 class Meshes {
  public:
   /// For a shape that the page draws by its triangles.
-  std::size_t index_of_surface(const Shape& shape) { return index_of(made_.emplace_back(surface_of(shape))); }
+  std::size_t index_of_surface(const Shape& shape) {
+    return index_of(made_.emplace_back(surface_of(shape)));
+  }
   std::size_t index_of(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < meshes_.size(); ++i)
       if (meshes_[i]->vertices == mesh.vertices && meshes_[i]->faces == mesh.faces) return i;
@@ -43,10 +45,14 @@ class Meshes {
 };
 
 Json shape_json(const Shape& shape, const scene::BodySpec& spec, Meshes& meshes) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return {{"kind", "sphere"}, {"radius", sphere->radius}};
-  if (const auto* box = std::get_if<Box>(&shape)) return {{"kind", "box"}, {"half", triple(box->half_extents_body)}};
-  if (const auto* solid = std::get_if<MeshSolid>(&shape)) return {{"kind", "mesh"}, {"mesh", meshes.index_of(solid->mesh_body)}};
-  if (std::holds_alternative<Ellipsoid>(shape)) return {{"kind", "mesh"}, {"mesh", meshes.index_of_surface(shape)}};
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    return {{"kind", "sphere"}, {"radius", sphere->radius}};
+  if (const auto* box = std::get_if<Box>(&shape))
+    return {{"kind", "box"}, {"half", triple(box->half_extents_body)}};
+  if (const auto* solid = std::get_if<MeshSolid>(&shape))
+    return {{"kind", "mesh"}, {"mesh", meshes.index_of(solid->mesh_body)}};
+  if (std::holds_alternative<Ellipsoid>(shape))
+    return {{"kind", "mesh"}, {"mesh", meshes.index_of_surface(shape)}};
   const auto* plane = std::get_if<scene::PlaneSpec>(&spec.shape);
   return {{"kind", "plane"}, {"extent", plane != nullptr ? plane->drawn_half_extent_m : 5.0}};
 }
@@ -55,16 +61,20 @@ Json shape_json(const Shape& shape, const scene::BodySpec& spec, Meshes& meshes)
 class Anchors {
  public:
   Anchors(const scene::Scene& scene, const Frame& first) : first_(first) {
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) index_[scene.bodies[i].name] = static_cast<int>(i);
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+      index_[scene.bodies[i].name] = static_cast<int>(i);
   }
   int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
-  Json of(const effects::DrawnPoint& point) const { return {{"body", body(point.body)}, {"point", triple(point.point)}}; }
+  Json of(const effects::DrawnPoint& point) const {
+    return {{"body", body(point.body)}, {"point", triple(point.point)}};
+  }
   /// A point in world coordinates at the start.
   Json fixed(const std::string& name, const Vector3d& point_world) const {
     const int index = body(name);
     if (index < 0) return {{"body", -1}, {"point", triple(point_world)}};
     const BodyPose& pose = first_.poses[static_cast<std::size_t>(index)];
-    return {{"body", index}, {"point", triple(pose.world_from_body.conjugate() * (point_world - pose.com_world))}};
+    return {{"body", index},
+            {"point", triple(pose.world_from_body.conjugate() * (point_world - pose.com_world))}};
   }
 
  private:
@@ -76,21 +86,34 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
   page["springs"] = page["rods"] = page["joints"] = page["forces"] = page["sheets"] = Json::array();
   const effects::Drawables drawn = effects::drawn(scene);
   for (const effects::DrawnCoil& coil : drawn.coils)
-    page["springs"].push_back({{"name", coil.name}, {"a", anchors.of(coil.a)}, {"b", anchors.of(coil.b)}, {"rest", coil.rest_length}});
-  for (const effects::DrawnBar& bar : drawn.bars) page["rods"].push_back({{"name", bar.name}, {"a", anchors.of(bar.a)}, {"b", anchors.of(bar.b)}});
+    page["springs"].push_back({{"name", coil.name},
+                               {"a", anchors.of(coil.a)},
+                               {"b", anchors.of(coil.b)},
+                               {"rest", coil.rest_length}});
+  for (const effects::DrawnBar& bar : drawn.bars)
+    page["rods"].push_back(
+        {{"name", bar.name}, {"a", anchors.of(bar.a)}, {"b", anchors.of(bar.b)}});
   for (const effects::DrawnPivot& pivot : drawn.pivots) {
     using Kind = effects::DrawnPivot::Kind;
     const bool is_pin = pivot.kind == Kind::kPin;
     // In a joint with the world, body_a is the moving body.
-    Json entry{{"name", pivot.name}, {"kind", is_pin ? "hinge" : pivot.kind == Kind::kBall ? "ball" : "weld"}};
+    Json entry{{"name", pivot.name},
+               {"kind", is_pin                      ? "hinge"
+                        : pivot.kind == Kind::kBall ? "ball"
+                                                    : "weld"}};
     entry["a"] = anchors.fixed(pivot.body_a, pivot.point_world);
-    if (is_pin) entry["b"] = anchors.fixed(pivot.body_a, pivot.point_world + pivot.axis_world.normalized());
+    if (is_pin)
+      entry["b"] = anchors.fixed(pivot.body_a, pivot.point_world + pivot.axis_world.normalized());
     page["joints"].push_back(std::move(entry));
   }
   for (const effects::DrawnArrow& force : drawn.arrows)
-    page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_world)}, {"point", triple(force.point_world)},
-                              {"start", force.start_s}, {"duration", force.duration_s}});
-  for (const effects::DrawnSheet& sheet : drawn.sheets) page["sheets"].push_back({{"height", sheet.height_m}, {"color", triple(sheet.color)}});
+    page["forces"].push_back({{"body", anchors.body(force.body)},
+                              {"force", triple(force.force_world)},
+                              {"point", triple(force.point_world)},
+                              {"start", force.start_s},
+                              {"duration", force.duration_s}});
+  for (const effects::DrawnSheet& sheet : drawn.sheets)
+    page["sheets"].push_back({{"height", sheet.height_m}, {"color", triple(sheet.color)}});
 }
 
 }  // namespace
@@ -107,15 +130,21 @@ Json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes, c
   page["scene"] = scene.name;
   page["title"] = scene.title.empty() ? scene.name : scene.title;
   page["about"] = scene.about;
-  page["camera"] = {{"eye", triple(scene.camera.eye_m)}, {"target", triple(scene.camera.target_m)}, {"fov", scene.camera.field_of_view_deg},
+  page["camera"] = {{"eye", triple(scene.camera.eye_m)},
+                    {"target", triple(scene.camera.target_m)},
+                    {"fov", scene.camera.field_of_view_deg},
                     {"follow", scene.camera.follow ? anchors.body(*scene.camera.follow) : -1}};
-  page["grid"] = {{"spacing", scene.grid_spacing_m ? Json(*scene.grid_spacing_m) : Json()}, {"height", scene.grid_height_m}};
+  page["grid"] = {{"spacing", scene.grid_spacing_m ? Json(*scene.grid_spacing_m) : Json()},
+                  {"height", scene.grid_height_m}};
   Meshes meshes;
   page["bodies"] = Json::array();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodySpec& spec = scene.bodies[i];
     const double radius = bounding_radius(shapes[i]);
-    Json body{{"name", spec.name}, {"immovable", spec.immovable}, {"shape", shape_json(shapes[i], spec, meshes)}, {"radius", std::isfinite(radius) ? Json(radius) : Json()}};
+    Json body{{"name", spec.name},
+              {"immovable", spec.immovable},
+              {"shape", shape_json(shapes[i], spec, meshes)},
+              {"radius", std::isfinite(radius) ? Json(radius) : Json()}};
     if (spec.color) body["color"] = triple(*spec.color);
     page["bodies"].push_back(std::move(body));
   }

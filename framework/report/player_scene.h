@@ -17,6 +17,7 @@ std::vector<double> radii_of(const std::vector<Shape>& shapes);
 /// Bodies (shape, colour), links with their anchors, camera, ground, point forces. SI units, world
 /// and body frames as in scene.h.
 /// @param first  the run's first frame: joints are given in world coordinates at the start
-nlohmann::ordered_json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes, const Frame& first);
+nlohmann::ordered_json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes,
+                                    const Frame& first);
 
 }  // namespace tumble::report

@@ -1,7 +1,7 @@
 /// Plots as inline SVG: curves over linear or logarithmic axes, with units and limits.
 ///
-///   Plot plot{.title = "Energy of a stiff spring", .x = {"step"}, .y = {"E / E0", "-", Scale::kLog}};
-///   plot.curves.push_back({"explicit Euler", steps, energies});
+///   Plot plot{.title = "Energy of a stiff spring", .x = {"step"}, .y = {"E / E0", "-",
+///   Scale::kLog}}; plot.curves.push_back({"explicit Euler", steps, energies});
 ///   plot.limits.push_back({39.0, "band of symplectic Euler"});
 ///   page.plot(plot);
 ///
@@ -21,16 +21,18 @@ inline constexpr std::size_t kReferenceStyles = 8;
 enum class Scale { kLinear, kLog };
 
 struct Axis {
-  std::string name;             // "time", "error of the top rod's tension"
-  std::string unit = {};        // "s"; empty: a number, written [-]
+  std::string name;       // "time", "error of the top rod's tension"
+  std::string unit = {};  // "s"; empty: a number, written [-]
   Scale scale = Scale::kLinear;
 };
 
-/// Points in order, joined by lines. Points that are not finite, or not positive on a logarithmic axis, break the line.
+/// Points in order, joined by lines. Points that are not finite, or not positive on a logarithmic
+/// axis, break the line.
 struct Curve {
-  std::string name;             // "" : not in the legend
-  std::vector<double> x, y;     // of equal length
-  bool marks = false;           // a mark at every point; otherwise a few marks, where there are more than 8 curves
+  std::string name;          // "" : not in the legend
+  std::vector<double> x, y;  // of equal length
+  // a mark at every point; otherwise a few marks, where there are more than 8 curves
+  bool marks = false;
 };
 
 /// A horizontal line, such as a threshold.
@@ -42,9 +44,9 @@ struct Limit {
 struct Plot {
   std::string title;
   Axis x, y;
-  std::vector<Curve> curves;    // distinguishable up to 16
+  std::vector<Curve> curves;  // distinguishable up to 16
   std::vector<Limit> limits;
-  std::string caption = {};     // what the plot shows
+  std::string caption = {};  // what the plot shows
 };
 
 /// The ticks of an axis: about 4 to 8 round numbers in [low, high]; powers of ten (or some of them)

@@ -8,9 +8,9 @@
 namespace tumble::report {
 
 struct PlotDocument {
-  std::string title;   // of the plot
-  std::string name;    // of a file: lower-case letters, digits and underscores; unique
-  std::string svg;     // a complete document with its style and a white background
+  std::string title;  // of the plot
+  std::string name;   // of a file: lower-case letters, digits and underscores; unique
+  std::string svg;    // a complete document with its style and a white background
 };
 
 /// Every plot (svg_of) of a page, in the page's order.

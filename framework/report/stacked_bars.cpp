@@ -13,24 +13,30 @@ namespace tumble::report {
 namespace {
 
 // Units of the drawing, with the width of plot.cpp; names are at the left.
-constexpr double kWidth = 640, kLeft = 214, kRight = 622, kTop = 34, kRow = 24, kBar = 17, kTextHeight = 17;
-constexpr double kLetter = 6.2;         // mean width of a letter
+constexpr double kWidth = 640, kLeft = 214, kRight = 622, kTop = 34, kRow = 24, kBar = 17,
+                 kTextHeight = 17;
+constexpr double kLetter = 6.2;  // mean width of a letter
 constexpr double kLegendLetter = 6.6;
-constexpr double kRoomForNumber = 30;   // a narrower part shows no number
+constexpr double kRoomForNumber = 30;  // a narrower part shows no number
 
 // Neighbours differ in lightness, and parts of equal lightness in hatching, so that they are
 // distinguishable in grey.
 struct Paint {
-  const char *ground, *lines, *ink;     // colours: background; hatching, empty: none; number
-  int turned;                           // angle of the hatching [deg]
+  const char *ground, *lines, *ink;  // colours: background; hatching, empty: none; number
+  int turned;                        // angle of the hatching [deg]
 };
-constexpr Paint kPaints[] = {{"#00446b", "", "#fff", 0},         {"#f0c27b", "", "#1c2733", 0},        {"#007a57", "#bfe3d6", "#fff", 45},     {"#d8e8f3", "#7fa6c4", "#1c2733", 135},
-                             {"#9a4f86", "", "#fff", 0},         {"#ffffff", "#8a6d00", "#1c2733", 0}, {"#222222", "#9aa3ab", "#fff", 135},    {"#b9c3cc", "#5b6875", "#1c2733", 90}};
+constexpr Paint kPaints[] = {
+    {"#00446b", "", "#fff", 0},          {"#f0c27b", "", "#1c2733", 0},
+    {"#007a57", "#bfe3d6", "#fff", 45},  {"#d8e8f3", "#7fa6c4", "#1c2733", 135},
+    {"#9a4f86", "", "#fff", 0},          {"#ffffff", "#8a6d00", "#1c2733", 0},
+    {"#222222", "#9aa3ab", "#fff", 135}, {"#b9c3cc", "#5b6875", "#1c2733", 90}};
 
 const Paint& paint_of(std::size_t part) { return kPaints[part % std::size(kPaints)]; }
 
 std::string fill_of(std::size_t part) {
-  return *paint_of(part).lines == '\0' ? fmt::format("fill=\"{}\"", paint_of(part).ground) : fmt::format("fill=\"url(#bar{})\"", part % std::size(kPaints));
+  return *paint_of(part).lines == '\0'
+             ? fmt::format("fill=\"{}\"", paint_of(part).ground)
+             : fmt::format("fill=\"url(#bar{})\"", part % std::size(kPaints));
 }
 
 std::string hatches(std::size_t parts) {
@@ -38,20 +44,28 @@ std::string hatches(std::size_t parts) {
   for (std::size_t part = 0; part < std::min(parts, std::size(kPaints)); ++part) {
     const Paint& paint = paint_of(part);
     if (*paint.lines == '\0') continue;
-    defs += fmt::format("<pattern id=\"bar{}\" width=\"5\" height=\"5\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate({})\"><rect width=\"5\" height=\"5\" fill=\"{}\"/>"
-                        "<path d=\"M0 0V5\" stroke=\"{}\" stroke-width=\"2\"/></pattern>\n", part, paint.turned, paint.ground, paint.lines);
+    defs += fmt::format(
+        "<pattern id=\"bar{}\" width=\"5\" height=\"5\" patternUnits=\"userSpaceOnUse\" "
+        "patternTransform=\"rotate({})\"><rect width=\"5\" height=\"5\" fill=\"{}\"/>"
+        "<path d=\"M0 0V5\" stroke=\"{}\" stroke-width=\"2\"/></pattern>\n",
+        part, paint.turned, paint.ground, paint.lines);
   }
   return defs.empty() ? "" : "<defs>\n" + defs + "</defs>\n";
 }
 
-std::string text(double x, double y, const std::string& words, const char* anchor, const std::string& more = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, html_escape(words));
+std::string text(double x, double y, const std::string& words, const char* anchor,
+                 const std::string& more = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y,
+                     anchor, more, html_escape(words));
 }
 
 /// In a font small enough to fit at the left of its bar.
 std::string name_of(const StackedBars::Row& row, double y) {
-  const double size = std::min(11.5, 11.5 * (kLeft - 12) / (kLetter * std::max<double>(1.0, static_cast<double>(row.name.size()))));
-  return text(kLeft - 7, y + 0.5 * kBar + 4, row.name, "end", fmt::format(" font-size=\"{:.3g}\"", size));
+  const double size =
+      std::min(11.5, 11.5 * (kLeft - 12) /
+                         (kLetter * std::max<double>(1.0, static_cast<double>(row.name.size()))));
+  return text(kLeft - 7, y + 0.5 * kBar + 4, row.name, "end",
+              fmt::format(" font-size=\"{:.3g}\"", size));
 }
 
 std::string bar(const StackedBars::Row& row, double y, double longest) {
@@ -60,9 +74,18 @@ std::string bar(const StackedBars::Row& row, double y, double longest) {
   for (std::size_t part = 0; part < row.values.size(); ++part) {
     const double wide = longest > 0.0 ? row.values[part] / longest * (kRight - kLeft) : 0.0;
     if (wide <= 0.0) continue;
-    svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" {} stroke=\"#fff\" stroke-width=\".8\"/>\n", x, y, wide, kBar, fill_of(part));
-    const std::string halo = *paint_of(part).lines == '\0' ? "" : fmt::format(" paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"3\"", paint_of(part).ground);
-    if (wide >= kRoomForNumber) svg += text(x + 0.5 * wide, y + 0.5 * kBar + 4, fmt::format("{:.0f}", row.values[part]), "middle", fmt::format(" fill=\"{}\"{}", paint_of(part).ink, halo));
+    svg += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" {} stroke=\"#fff\" "
+        "stroke-width=\".8\"/>\n",
+        x, y, wide, kBar, fill_of(part));
+    const std::string halo =
+        *paint_of(part).lines == '\0'
+            ? ""
+            : fmt::format(" paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"3\"",
+                          paint_of(part).ground);
+    if (wide >= kRoomForNumber)
+      svg += text(x + 0.5 * wide, y + 0.5 * kBar + 4, fmt::format("{:.0f}", row.values[part]),
+                  "middle", fmt::format(" fill=\"{}\"{}", paint_of(part).ink, halo));
     x += wide;
   }
   return svg;
@@ -77,7 +100,10 @@ std::string legend(const StackedBars& bars, double& y) {
       x = 18;
       y += kTextHeight;
     }
-    svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"14\" height=\"11\" {} stroke=\"#5b6875\" stroke-width=\".8\"/>\n", x, y - 10, fill_of(part));
+    svg += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"14\" height=\"11\" {} stroke=\"#5b6875\" "
+        "stroke-width=\".8\"/>\n",
+        x, y - 10, fill_of(part));
     svg += text(x + 19, y, bars.parts[part], "start");
     x += wide;
   }
@@ -89,22 +115,37 @@ std::string legend(const StackedBars& bars, double& y) {
 std::string svg_of(const StackedBars& bars) {
   double longest = 0.0;
   for (const StackedBars::Row& row : bars.rows) {
-    require(row.values.size() == bars.parts.size(), "report: a row of bars needs a value for each part");
-    for (const double value : row.values) require(std::isfinite(value) && value >= 0.0, "report: a part of a bar must be finite and not negative");
+    require(row.values.size() == bars.parts.size(),
+            "report: a row of bars needs a value for each part");
+    for (const double value : row.values)
+      require(std::isfinite(value) && value >= 0.0,
+              "report: a part of a bar must be finite and not negative");
     longest = std::max(longest, std::accumulate(row.values.begin(), row.values.end(), 0.0));
   }
   const double bottom = kTop + kRow * static_cast<double>(bars.rows.size());
-  std::string body = hatches(bars.parts.size()) + text(18, 20, bars.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+  std::string body = hatches(bars.parts.size()) +
+                     text(18, 20, bars.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
   if (longest > 0.0)
     for (const double tick : ticks_of(0.0, longest, Scale::kLinear)) {
       const double x = kLeft + tick / longest * (kRight - kLeft);
-      body += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>\n", x, kTop, bottom) + text(x, bottom + 15, fmt::format("{:.6g}", std::abs(tick)), "middle");   // the first may be -0
+      // the first may be -0
+      body +=
+          fmt::format(
+              "<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>\n", x,
+              kTop, bottom) +
+          text(x, bottom + 15, fmt::format("{:.6g}", std::abs(tick)), "middle");
     }
-  for (std::size_t i = 0; i < bars.rows.size(); ++i) body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest);
-  body += text(0.5 * (kLeft + kRight), bottom + 34, fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit), "middle");
+  for (std::size_t i = 0; i < bars.rows.size(); ++i)
+    body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest);
+  body +=
+      text(0.5 * (kLeft + kRight), bottom + 34,
+           fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit),
+           "middle");
   double y = bottom + 58;
   body += legend(bars, y);
-  return fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", kWidth, y + 10, html_escape(bars.title), body);
+  return fmt::format(
+      "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
+      kWidth, y + 10, html_escape(bars.title), body);
 }
 
 }  // namespace tumble::report

@@ -1,6 +1,7 @@
 /// Horizontal stacked bars as inline SVG, in the style of plot.h.
 ///
-///   page.plot(StackedBars{.title = "Where the time went", .axis = {"share of the time", "%"}, .parts = {"detect", "integrate"}, .rows = {{"RK4, 1/60 s", {30.0, 70.0}}}});
+///   page.plot(StackedBars{.title = "Where the time went", .axis = {"share of the time", "%"},
+///   .parts = {"detect", "integrate"}, .rows = {{"RK4, 1/60 s", {30.0, 70.0}}}});
 ///
 /// Parts differ in lightness and hatching, and wide ones show their number, so that they are
 /// distinguishable in print and to colour-blind readers.
@@ -16,13 +17,13 @@ namespace tumble::report {
 struct StackedBars {
   struct Row {
     std::string name;
-    std::vector<double> values;   // >= 0, one for each part; all 0: an empty bar
+    std::vector<double> values;  // >= 0, one for each part; all 0: an empty bar
   };
   std::string title;
-  Axis axis;                      // linear, from 0 to the longest row's sum
-  std::vector<std::string> parts; // distinguishable up to 8
-  std::vector<Row> rows;          // from the top
-  std::string caption = {};       // what the bars show
+  Axis axis;                       // linear, from 0 to the longest row's sum
+  std::vector<std::string> parts;  // distinguishable up to 8
+  std::vector<Row> rows;           // from the top
+  std::string caption = {};        // what the bars show
 };
 
 /// An <svg> element, 640 units wide.

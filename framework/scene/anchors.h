@@ -32,14 +32,15 @@ class Anchors {
   Vector3d place_at_start(const AnchorSpec& anchor);
 
  private:
-  const std::vector<Vector3d>& vertices_of(const BodySpec& body, const std::string& pointer);   // body frame
+  // body frame
+  const std::vector<Vector3d>& vertices_of(const BodySpec& body, const std::string& pointer);
   Vector3d vertex(const nlohmann::json& value, const BodySpec& body, const std::string& pointer);
 
   const Document& document_;
   const Scene& scene_;
   std::map<std::string, std::size_t> index_;
   std::size_t indexed_ = 0;
-  std::map<std::string, std::vector<Vector3d>> vertices_;   // by the definition of the shape
+  std::map<std::string, std::vector<Vector3d>> vertices_;  // by the definition of the shape
 };
 
 }  // namespace tumble::scene

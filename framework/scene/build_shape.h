@@ -11,9 +11,11 @@
 namespace tumble::scene {
 
 struct Solid {
-  Shape shape = HalfSpace{};                                           // body frame
-  double mass_kg = std::numeric_limits<double>::infinity();            // > 0; +infinity for an immovable body
-  Matrix3d inertia_body_kg_m2 = Matrix3d::Constant(kUnset);            // (3,3), about the centre of mass; unset where the mass is infinite
+  Shape shape = HalfSpace{};  // body frame
+  // > 0; +infinity for an immovable body
+  double mass_kg = std::numeric_limits<double>::infinity();
+  // (3,3), about the centre of mass; unset where the mass is infinite
+  Matrix3d inertia_body_kg_m2 = Matrix3d::Constant(kUnset);
   bool is_immovable() const { return mass_kg == std::numeric_limits<double>::infinity(); }
 };
 
@@ -27,7 +29,8 @@ struct Solid {
 ///   m)^2, which keeps the equations regular.
 /// @throws UserError with the body when a model is missing, not closed, or has no or several
 ///   objects of that name
-Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file, const std::filesystem::path& root = {});
+Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file,
+                  const std::filesystem::path& root = {});
 
 /// The solids of all bodies, by body index; a model of several bodies is read once.
 std::vector<Solid> build_solids(const Scene& scene, const std::filesystem::path& root = {});

@@ -11,7 +11,7 @@ namespace {
 /// The values that a kind of check requires.
 struct CheckNeeds {
   bool body = false, other = false, axis = false, link = false, bodies = false;
-  int expected = 0;   // number of values; kAny: at least one
+  int expected = 0;  // number of values; kAny: at least one
 };
 constexpr int kAny = -1;
 
@@ -58,13 +58,19 @@ const Words* words_of_check(const std::string& kind) {
   return nullptr;
 }
 
-void check_link(const CheckSpec& check, const std::string& pointer, const Scene& scene, const Refuse& refuse) {
+void check_link(const CheckSpec& check, const std::string& pointer, const Scene& scene,
+                const Refuse& refuse) {
   if (const Words* words = words_of_check(check.kind)) {
     const std::vector<std::string> names = names_of(words->links(scene));
-    if (names.empty()) refuse(pointer + "/kind", "a check of kind " + check.kind + " is about " + words->key() + ", and the scene has none", "Delete it, or add a " + words->name() + ".");
+    if (names.empty())
+      refuse(pointer + "/kind",
+             "a check of kind " + check.kind + " is about " + words->key() +
+                 ", and the scene has none",
+             "Delete it, or add a " + words->name() + ".");
     std::string plural = words->key();
     plural[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(plural[0])));
-    if (!check.link.empty()) Names(words->name(), plural, names).expect(check.link, pointer + "/link", refuse);
+    if (!check.link.empty())
+      Names(words->name(), plural, names).expect(check.link, pointer + "/link", refuse);
     return;
   }
   if (check.link.empty()) return;
@@ -74,20 +80,27 @@ void check_link(const CheckSpec& check, const std::string& pointer, const Scene&
   Names("spring, rod or joint", "Links", all).expect(check.link, pointer + "/link", refuse);
 }
 
-void check_expected(const CheckSpec& check, const std::string& pointer, int needed, const Refuse& refuse) {
+void check_expected(const CheckSpec& check, const std::string& pointer, int needed,
+                    const Refuse& refuse) {
   const bool is_vector = needed == 3 || check.kind.ends_with("momentum");
   const auto found = "found a list of " + std::to_string(check.expected.size());
-  if (check.expected.empty()) return;   // refused before, where it is required
-  if (is_vector && check.expected.size() != 3) refuse(pointer + "/expected", found + ", expected [x, y, z]", "");
-  if (needed == 1 && check.expected.size() != 1) refuse(pointer + "/expected", found + ", expected a list of one number", "");
+  if (check.expected.empty()) return;  // refused before, where it is required
+  if (is_vector && check.expected.size() != 3)
+    refuse(pointer + "/expected", found + ", expected [x, y, z]", "");
+  if (needed == 1 && check.expected.size() != 1)
+    refuse(pointer + "/expected", found + ", expected a list of one number", "");
 }
 
-void check_check(const CheckSpec& check, const std::string& pointer, const Names& bodies, const Scene& scene, const Refuse& refuse) {
+void check_check(const CheckSpec& check, const std::string& pointer, const Names& bodies,
+                 const Scene& scene, const Refuse& refuse) {
   const auto found = check_needs().find(check.kind);
-  if (found == check_needs().end() && words_of_check(check.kind) == nullptr) refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
-  const CheckNeeds needs = found == check_needs().end() ? CheckNeeds{} : found->second;   // checks of links require nothing
+  if (found == check_needs().end() && words_of_check(check.kind) == nullptr)
+    refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
+  // checks of links require nothing
+  const CheckNeeds needs = found == check_needs().end() ? CheckNeeds{} : found->second;
   const auto need = [&](bool needed, bool given, const char* key) {
-    if (needed && !given) refuse(pointer, "a check of kind " + check.kind + " needs the key '" + key + "'", "Add it.");
+    if (needed && !given)
+      refuse(pointer, "a check of kind " + check.kind + " needs the key '" + key + "'", "Add it.");
   };
   need(needs.body, !check.body.empty(), "body");
   need(needs.other, !check.other.empty(), "other");
@@ -97,8 +110,10 @@ void check_check(const CheckSpec& check, const std::string& pointer, const Names
   need(needs.expected != 0, !check.expected.empty(), "expected");
   if (!check.body.empty()) bodies.expect(check.body, pointer + "/body", refuse);
   if (!check.other.empty()) bodies.expect(check.other, pointer + "/other", refuse);
-  for (std::size_t i = 0; i < check.bodies.size(); ++i) bodies.expect(check.bodies[i], pointer + "/bodies/" + std::to_string(i), refuse);
-  if (check.axis && check.axis->norm() == 0.0) refuse(pointer + "/axis", "found the zero vector, expected a direction", "");
+  for (std::size_t i = 0; i < check.bodies.size(); ++i)
+    bodies.expect(check.bodies[i], pointer + "/bodies/" + std::to_string(i), refuse);
+  if (check.axis && check.axis->norm() == 0.0)
+    refuse(pointer + "/axis", "found the zero vector, expected a direction", "");
   check_link(check, pointer, scene, refuse);
   check_expected(check, pointer, needs.expected, refuse);
 }
@@ -107,7 +122,8 @@ void check_check(const CheckSpec& check, const std::string& pointer, const Names
 
 void check_checks(const Scene& scene, const Refuse& refuse) {
   const Names bodies = names_of_bodies(scene);
-  for (std::size_t i = 0; i < scene.checks.size(); ++i) check_check(scene.checks[i], "/checks/" + std::to_string(i), bodies, scene, refuse);
+  for (std::size_t i = 0; i < scene.checks.size(); ++i)
+    check_check(scene.checks[i], "/checks/" + std::to_string(i), bodies, scene, refuse);
 }
 
 }  // namespace tumble::scene

@@ -12,6 +12,7 @@ void check_links(const Scene& scene, const Refuse& refuse);
 std::string ending(const AnchorSpec& anchor);
 /// Refuses a link from a body to itself, and one with two immovable ends. @param who  such as
 /// "spring 'a'"
-void check_ends(const std::string& who, const AnchorSpec& a, const AnchorSpec& b, const std::string& pointer, const BodiesByName& bodies, const Refuse& refuse);
+void check_ends(const std::string& who, const AnchorSpec& a, const AnchorSpec& b,
+                const std::string& pointer, const BodiesByName& bodies, const Refuse& refuse);
 
 }  // namespace tumble::scene

@@ -71,21 +71,23 @@ class LineNotes {
   }
 
   std::map<std::string, int> lines;
-  std::optional<std::string> twice;   // first duplicate key of one object
+  std::optional<std::string> twice;  // first duplicate key of one object
 
  private:
   struct Level {
     std::string prefix;
-    int index;         // of the next element; -1 in an object
+    int index;  // of the next element; -1 in an object
     std::string key;
   };
 
   std::string pointer() const {
     if (levels_.empty()) return "";
     const Level& level = levels_.back();
-    return level.prefix + '/' + (level.index >= 0 ? std::to_string(level.index) : escaped(level.key));
+    return level.prefix + '/' +
+           (level.index >= 0 ? std::to_string(level.index) : escaped(level.key));
   }
-  void note_value() { lines.emplace(pointer(), line()); }   // keeps the key's line where there is one
+  // keeps the key's line where there is one
+  void note_value() { lines.emplace(pointer(), line()); }
   void advance() {
     if (!levels_.empty() && levels_.back().index >= 0) ++levels_.back().index;
   }
@@ -107,9 +109,11 @@ class LineNotes {
 
 std::string line_and_column(const std::string& text, std::size_t byte) {
   const std::size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
   const std::size_t start = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
-  return std::to_string(line) + ':' + std::to_string(end - (start == std::string::npos ? 0 : start + 1) + 1);
+  return std::to_string(line) + ':' +
+         std::to_string(end - (start == std::string::npos ? 0 : start + 1) + 1);
 }
 
 /// The problem in a message of nlohmann::json, without its prefix and position.
@@ -122,13 +126,15 @@ std::string essence(const std::string& what) {
 
 const json& resolve(const json& schema, const json& node) {
   const auto ref = node.find("$ref");
-  return ref == node.end() ? node : schema.at(json::json_pointer(ref->get<std::string>().substr(1)));
+  return ref == node.end() ? node
+                           : schema.at(json::json_pointer(ref->get<std::string>().substr(1)));
 }
 
 std::string description(const json& schema, const json& node) {
   if (node.contains("description")) return node.at("description");
   const json& target = resolve(schema, node);
-  return target.contains("description") ? target.at("description").get<std::string>() : "something else";
+  return target.contains("description") ? target.at("description").get<std::string>()
+                                        : "something else";
 }
 
 std::vector<std::string> keys(const json& object) {
@@ -153,28 +159,41 @@ bool has_type(const json& value, const std::string& type) {
 }
 
 /// Reports the problem of one value, whose children are all valid.
-[[noreturn]] void explain(const Document& document, const std::string& pointer, const json& schema, const json& node) {
+[[noreturn]] void explain(const Document& document, const std::string& pointer, const json& schema,
+                          const json& node) {
   const json& value = document.json.at(json::json_pointer(pointer));
   const json& rule = resolve(schema, node);
   const std::string expected = description(schema, node);
   if (rule.contains("type") && has_type(value, rule.at("type")) && value.is_object()) {
-    const auto known = rule.contains("properties") ? keys(rule.at("properties")) : std::vector<std::string>{};
+    const auto known =
+        rule.contains("properties") ? keys(rule.at("properties")) : std::vector<std::string>{};
     for (const auto& key : keys(value))
       if (std::find(known.begin(), known.end(), key) == known.end())
-        document.refuse(pointer + '/' + escaped(key), "unknown key '" + key + "'." + did_you_mean(key, known), "Known here: " + joined(known) + ".");
+        document.refuse(pointer + '/' + escaped(key),
+                        "unknown key '" + key + "'." + did_you_mean(key, known),
+                        "Known here: " + joined(known) + ".");
     for (const auto& key : rule.value("required", std::vector<std::string>{}))
       if (!value.contains(key))
-        document.refuse(pointer, "key '" + key + "' is missing: " + description(schema, rule.at("properties").at(key)), "Add it.");
-    document.refuse(pointer, "found the keys " + (value.empty() ? "(none)" : joined(keys(value))) + ", expected " + expected);
+        document.refuse(
+            pointer,
+            "key '" + key + "' is missing: " + description(schema, rule.at("properties").at(key)),
+            "Add it.");
+    document.refuse(pointer, "found the keys " + (value.empty() ? "(none)" : joined(keys(value))) +
+                                 ", expected " + expected);
   }
   if (rule.contains("enum")) {
     const auto words = rule.at("enum").get<std::vector<std::string>>();
     const std::string hint = value.is_string() ? did_you_mean(value.get<std::string>(), words) : "";
-    document.refuse(pointer, "found " + show(value) + ", expected one of " + joined(words) + "." + hint);
+    document.refuse(pointer,
+                    "found " + show(value) + ", expected one of " + joined(words) + "." + hint);
   }
-  if (value.is_array() && rule.value("type", "") == "array" && value.size() != rule.value("minItems", value.size()))
-    document.refuse(pointer, "found a list of " + std::to_string(value.size()) + ", expected " + expected);
-  document.refuse(pointer, "found " + show(value) + ", expected " + (pointer.empty() ? "an object, { ... }: what a scene says" : expected));
+  if (value.is_array() && rule.value("type", "") == "array" &&
+      value.size() != rule.value("minItems", value.size()))
+    document.refuse(pointer,
+                    "found a list of " + std::to_string(value.size()) + ", expected " + expected);
+  document.refuse(pointer,
+                  "found " + show(value) + ", expected " +
+                      (pointer.empty() ? "an object, { ... }: what a scene says" : expected));
 }
 
 // Squares and cubes of a scene's numbers must stay within doubles, and so must products of three of
@@ -182,25 +201,37 @@ bool has_type(const json& value, const std::string& type) {
 constexpr int kDeepest = 100;
 constexpr double kLargest = 1e60, kSmallest = 1e-60;
 
-void refuse_extreme_numbers(const Document& document, const json& value, const std::string& pointer, int depth = 0) {
-  if (depth > kDeepest) document.refuse(pointer.substr(0, pointer.find('/', 1)), "found lists within lists, deeper than any scene needs", "Check its brackets.");
+void refuse_extreme_numbers(const Document& document, const json& value, const std::string& pointer,
+                            int depth = 0) {
+  if (depth > kDeepest)
+    document.refuse(pointer.substr(0, pointer.find('/', 1)),
+                    "found lists within lists, deeper than any scene needs", "Check its brackets.");
   if (value.is_object())
-    for (const auto& [key, member] : value.items()) refuse_extreme_numbers(document, member, pointer + '/' + escaped(key), depth + 1);
+    for (const auto& [key, member] : value.items())
+      refuse_extreme_numbers(document, member, pointer + '/' + escaped(key), depth + 1);
   if (value.is_array())
-    for (std::size_t i = 0; i < value.size(); ++i) refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i), depth + 1);
+    for (std::size_t i = 0; i < value.size(); ++i)
+      refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i), depth + 1);
   if (!value.is_number()) return;
   const double size = std::abs(value.get<double>());
-  if (size > kLargest) document.refuse(pointer, "found " + show(value) + ", too large to compute with", "Numbers may be up to 1e60: check its digits and its unit.");
-  if (size > 0.0 && size < kSmallest) document.refuse(pointer, "found " + show(value) + ", too small to compute with", "Numbers are 0 or at least 1e-60 in size: write 0, or check its unit.");
+  if (size > kLargest)
+    document.refuse(pointer, "found " + show(value) + ", too large to compute with",
+                    "Numbers may be up to 1e60: check its digits and its unit.");
+  if (size > 0.0 && size < kSmallest)
+    document.refuse(pointer, "found " + show(value) + ", too small to compute with",
+                    "Numbers are 0 or at least 1e-60 in size: write 0, or check its unit.");
 }
 
 }  // namespace
 
-void Document::refuse(const std::string& pointer, const std::string& problem, const std::string& remedy) const {
+void Document::refuse(const std::string& pointer, const std::string& problem,
+                      const std::string& remedy) const {
   std::string at = pointer;
   while (!lines.contains(at) && !at.empty()) at.erase(at.rfind('/'));
   const int line = lines.contains(at) ? lines.at(at) : 1;
-  throw UserError(file.string() + ':' + std::to_string(line) + (pointer.empty() ? "" : ": " + pointer), problem, remedy);
+  throw UserError(
+      file.string() + ':' + std::to_string(line) + (pointer.empty() ? "" : ": " + pointer), problem,
+      remedy);
 }
 
 Document parse_document(const std::string& text, const std::filesystem::path& file) {
@@ -209,16 +240,23 @@ Document parse_document(const std::string& text, const std::filesystem::path& fi
   const char* seen = text.data();
   LineNotes notes(text, &seen);
   try {
-    document.json = json::parse(WatchedIterator{text.data(), &seen}, WatchedIterator{text.data() + text.size(), &seen},
-                                [&](int, json::parse_event_t event, json& parsed) { return notes(event, parsed); });
+    document.json = json::parse(
+        WatchedIterator{text.data(), &seen}, WatchedIterator{text.data() + text.size(), &seen},
+        [&](int, json::parse_event_t event, json& parsed) { return notes(event, parsed); });
   } catch (const json::parse_error& error) {
-    throw UserError(file.string() + ':' + line_and_column(text, error.byte), "this is not JSON: " + essence(error.what()),
-                    "JSON wants double quotes, a comma between entries and none after the last, and no NaN or infinity.");
-  } catch (const json::exception& error) {   // a number beyond a double
-    throw UserError(file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())), essence(error.what()), "Write a number that a double can hold: check its digits.");
+    throw UserError(file.string() + ':' + line_and_column(text, error.byte),
+                    "this is not JSON: " + essence(error.what()),
+                    "JSON wants double quotes, a comma between entries and none after the last, "
+                    "and no NaN or infinity.");
+  } catch (const json::exception& error) {  // a number beyond a double
+    throw UserError(
+        file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())),
+        essence(error.what()), "Write a number that a double can hold: check its digits.");
   }
   document.lines = std::move(notes.lines);
-  if (notes.twice) document.refuse(*notes.twice, "this key occurs twice in the same object", "Delete one of the two.");
+  if (notes.twice)
+    document.refuse(*notes.twice, "this key occurs twice in the same object",
+                    "Delete one of the two.");
   refuse_extreme_numbers(document, document.json, "");
   return document;
 }
@@ -229,7 +267,8 @@ void check_against_schema(const Document& document, const json& schema) {
   parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(schema), rules);
   valijson::Validator validator(valijson::Validator::kStrongTypes);
   valijson::ValidationResults results;
-  if (validator.validate(rules, valijson::adapters::NlohmannJsonAdapter(document.json), &results)) return;
+  if (validator.validate(rules, valijson::adapters::NlohmannJsonAdapter(document.json), &results))
+    return;
 
   // The innermost problem, the first of several, is the cause; those around it are its
   // consequences.
@@ -239,14 +278,14 @@ void check_against_schema(const Document& document, const json& schema) {
   std::string pointer;
   const json* node = &schema;
   for (std::size_t i = 1; i < deepest.size(); ++i) {
-    const std::string token = deepest[i].substr(1, deepest[i].size() - 2);   // "[name]"
+    const std::string token = deepest[i].substr(1, deepest[i].size() - 2);  // "[name]"
     const json& rule = resolve(schema, *node);
     if (rule.contains("properties") && rule.at("properties").contains(token)) {
       node = &rule.at("properties").at(token);
     } else if (rule.contains("items")) {
       node = &rule.at("items");
     } else {
-      break;   // an unknown key, or inside a choice that is explained as a whole
+      break;  // an unknown key, or inside a choice that is explained as a whole
     }
     pointer += '/' + escaped(token);
   }
@@ -256,7 +295,11 @@ void check_against_schema(const Document& document, const json& schema) {
 std::string show(const json& value) {
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return (value.is_string() ? "the text " : value.is_object() ? "the object " : value.is_array() ? "the list " : "") + text;
+  return (value.is_string()   ? "the text "
+          : value.is_object() ? "the object "
+          : value.is_array()  ? "the list "
+                              : "") +
+         text;
 }
 
 }  // namespace tumble::scene

@@ -15,12 +15,13 @@ namespace tumble::scene {
 
 struct Document {
   nlohmann::json json;
-  std::map<std::string, int> lines;   // by JSON pointer: the line (from 1) of the value or its key
+  std::map<std::string, int> lines;  // by JSON pointer: the line (from 1) of the value or its key
   std::filesystem::path file;
 
   /// Refuses the value at `pointer` ("" is the whole file); a pointer without a line of its own is
   /// reported at its parent's.
-  [[noreturn]] void refuse(const std::string& pointer, const std::string& problem, const std::string& remedy = "") const;
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& problem,
+                           const std::string& remedy = "") const;
 };
 
 /// @throws UserError with line and column for text that is no JSON, a duplicate key, or a number

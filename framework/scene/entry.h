@@ -9,12 +9,13 @@
 
 namespace tumble::scene {
 
-struct EntrySource;   // the JSON and its context: read_entry.h
+struct EntrySource;  // the JSON and its context: read_entry.h
 
 class Entry {
  public:
   /// @param pointer  JSON pointer of the entry  @param number  its number in its list, from 1
-  Entry(EntrySource& source, std::string pointer, int number) : source_(source), pointer_(std::move(pointer)), number_(number) {}
+  Entry(EntrySource& source, std::string pointer, int number)
+      : source_(source), pointer_(std::move(pointer)), number_(number) {}
 
   const std::string& pointer() const { return pointer_; }
   int number() const { return number_; }
@@ -37,7 +38,8 @@ class Entry {
 
   /// Refuses the value under a key; with an empty key the whole entry.
   /// @throws UserError with file, line and pointer
-  [[noreturn]] void refuse(const std::string& key, const std::string& problem, const std::string& remedy = "") const;
+  [[noreturn]] void refuse(const std::string& key, const std::string& problem,
+                           const std::string& remedy = "") const;
 
  private:
   EntrySource& source_;

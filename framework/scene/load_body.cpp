@@ -35,17 +35,21 @@ ShapeSpec shape(const json& value) {
 Quaterniond orientation(const json& value, const Document& document, const std::string& pointer) {
   if (value.contains("quaternion")) {
     const json& q = value.at("quaternion");
-    const Quaterniond given(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>());
+    const Quaterniond given(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(),
+                            q.at(3).get<double>());
     // 0.1 %: the rounding to three digits is repaired; a larger deviation is a mistake.
     if (std::abs(given.norm() - 1.0) > 1e-3)
-      document.refuse(pointer + "/quaternion", "found " + show(q) + " of length " + std::to_string(given.norm()) + ", expected a unit quaternion [w, x, y, z]",
+      document.refuse(pointer + "/quaternion",
+                      "found " + show(q) + " of length " + std::to_string(given.norm()) +
+                          ", expected a unit quaternion [w, x, y, z]",
                       "Divide by its length, or give euler_deg or rotation_vector_rad.");
     return given.normalized();
   }
   using Axis = Eigen::AngleAxisd;
   if (value.contains("euler_deg")) {
     const Vector3d angles = read_vector(value.at("euler_deg")) * (std::numbers::pi / 180.0);
-    return Axis(angles[0], Vector3d::UnitZ()) * Axis(angles[1], Vector3d::UnitY()) * Axis(angles[2], Vector3d::UnitX());
+    return Axis(angles[0], Vector3d::UnitZ()) * Axis(angles[1], Vector3d::UnitY()) *
+           Axis(angles[2], Vector3d::UnitX());
   }
   const Vector3d rotation = read_vector(value.at("rotation_vector_rad"));
   const double angle = rotation.norm();
@@ -55,7 +59,8 @@ Quaterniond orientation(const json& value, const Document& document, const std::
 Matrix3d inertia(const json& value) {
   if (value.at(0).is_number()) return read_vector(value).asDiagonal();
   Matrix3d matrix;
-  for (int row = 0; row < 3; ++row) matrix.row(row) = read_vector(value.at(static_cast<std::size_t>(row))).transpose();
+  for (int row = 0; row < 3; ++row)
+    matrix.row(row) = read_vector(value.at(static_cast<std::size_t>(row))).transpose();
   return matrix;
 }
 
@@ -68,7 +73,8 @@ Vector3d read_color(const json& value) {
   const std::string text = value;
   Vector3d linear;
   for (int i = 0; i < 3; ++i) {
-    const double c = std::stoi(text.substr(1 + 2 * static_cast<std::size_t>(i), 2), nullptr, 16) / 255.0;
+    const double c =
+        std::stoi(text.substr(1 + 2 * static_cast<std::size_t>(i), 2), nullptr, 16) / 255.0;
     linear[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
   }
   return linear;
@@ -82,7 +88,8 @@ BodySpec read_body(const json& value, const Document& document, const std::strin
   read(value, "immovable", spec.immovable);
   read(value, "density_kg_m3", spec.density_kg_m3);
   read(value, "mass_kg", spec.mass_kg);
-  if (value.contains("inertia_body_kg_m2")) spec.inertia_body_kg_m2 = inertia(value.at("inertia_body_kg_m2"));
+  if (value.contains("inertia_body_kg_m2"))
+    spec.inertia_body_kg_m2 = inertia(value.at("inertia_body_kg_m2"));
   if (value.contains("motion")) {
     spec.motion.emplace();
     read(value.at("motion"), "velocity_m_s", spec.motion->velocity_m_s);
@@ -90,15 +97,18 @@ BodySpec read_body(const json& value, const Document& document, const std::strin
     read(value.at("motion"), "angular_frequency_rad_s", spec.motion->angular_frequency_rad_s);
   }
   read(value, "position_m", spec.position_m);
-  if (value.contains("orientation")) spec.world_from_body = orientation(value.at("orientation"), document, pointer + "/orientation");
+  if (value.contains("orientation"))
+    spec.world_from_body = orientation(value.at("orientation"), document, pointer + "/orientation");
   read(value, "velocity_m_s", spec.velocity_m_s);
   read(value, "angular_velocity_rad_s", spec.omega_world_rad_s);
   read(value, "restitution", spec.restitution);
   read(value, "friction", spec.friction);
   read(value, "collides", spec.collides);
   if (value.contains("color")) spec.color = read_color(value.at("color"));
-  check_body(spec, [&](const std::string& key, const std::string& problem, const std::string& remedy) {
-    document.refuse(value.contains(key.substr(0, key.find('/'))) ? pointer + '/' + key : pointer, "body '" + spec.name + "': " + problem, remedy);
+  check_body(spec, [&](const std::string& key, const std::string& problem,
+                       const std::string& remedy) {
+    document.refuse(value.contains(key.substr(0, key.find('/'))) ? pointer + '/' + key : pointer,
+                    "body '" + spec.name + "': " + problem, remedy);
   });
   return spec;
 }
@@ -115,7 +125,8 @@ RepeatSpec read_repeat(const json& value, const Document& document, const std::s
   if (value.contains("colors"))
     for (const auto& entry : value.at("colors")) spec.colors.push_back(read_color(entry));
   if (!value.contains("seed") && (value.contains("jitter_m") || value.contains("speed_m_s")))
-    document.refuse(pointer, "random positions or directions without a seed", "Add \"seed\": 1, or any other whole number, so that every run is the same.");
+    document.refuse(pointer, "random positions or directions without a seed",
+                    "Add \"seed\": 1, or any other whole number, so that every run is the same.");
   if (1.0 * spec.counts[0] * spec.counts[1] * spec.counts[2] > 100000.0)
     document.refuse(pointer + "/counts", "found more than 100000 copies", "Ask for fewer.");
   return spec;

@@ -12,10 +12,12 @@ namespace tumble::scene {
 /// @param value    an entry of the schema's kind "body"
 /// @param pointer  its position in the document
 /// @throws UserError for what check_body refuses
-BodySpec read_body(const nlohmann::json& value, const Document& document, const std::string& pointer);
+BodySpec read_body(const nlohmann::json& value, const Document& document,
+                   const std::string& pointer);
 
 /// @param value  an entry of the schema's kind "repeat"
-RepeatSpec read_repeat(const nlohmann::json& value, const Document& document, const std::string& pointer);
+RepeatSpec read_repeat(const nlohmann::json& value, const Document& document,
+                       const std::string& pointer);
 
 /// "#rrggbb" or three numbers, as linear light.
 Vector3d read_color(const nlohmann::json& value);

@@ -25,8 +25,15 @@ struct ChainLine {
 
 class ChainWriter {
  public:
-  ChainWriter(const json& value, const Document& document, Anchors& anchors, const std::string& pointer, Scene& scene)
-      : value_(value), document_(document), anchors_(anchors), pointer_(pointer), scene_(scene), kind_(value.at("kind")), links_(value.at("links")) {}
+  ChainWriter(const json& value, const Document& document, Anchors& anchors,
+              const std::string& pointer, Scene& scene)
+      : value_(value),
+        document_(document),
+        anchors_(anchors),
+        pointer_(pointer),
+        scene_(scene),
+        kind_(value.at("kind")),
+        links_(value.at("links")) {}
 
   void write() {
     refuse_foreign_keys();
@@ -46,17 +53,30 @@ class ChainWriter {
 
  private:
   bool is_jointed() const { return kind_ == "ball_joints" || kind_ == "hinges"; }
-  std::string tie_word() const { return kind_ == "rods" ? "rod" : kind_ == "springs" ? "spring" : "joint"; }
+  std::string tie_word() const {
+    return kind_ == "rods" ? "rod" : kind_ == "springs" ? "spring" : "joint";
+  }
 
   /// Refuses keys of another kind of chain.
   void refuse_foreign_keys() const {
     for (const char* key : {"stiffness_n_m", "damping_n_s_m", "rest_length_m"})
-      if (kind_ != "springs" && value_.contains(key)) document_.refuse(pointer_ + '/' + key, "a chain of " + kind_ + " has none", "Delete it, or choose \"springs\".");
-    if (kind_ == "springs" && !value_.contains("stiffness_n_m")) document_.refuse(pointer_, "a chain of springs needs the key 'stiffness_n_m'", "Add it.");
-    if (kind_ != "hinges" && value_.contains("axis")) document_.refuse(pointer_ + "/axis", "a chain of " + kind_ + " has no axis", "Delete it, or choose \"hinges\".");
-    if (kind_ == "hinges" && !value_.contains("axis")) document_.refuse(pointer_, "a chain of hinges needs the key 'axis': their direction in the world", "Add it.");
-    if (is_jointed() && value_.contains("neighbours_apart")) document_.refuse(pointer_ + "/neighbours_apart", "joined bodies never collide", "Delete it.");
-    if (value_.at("link").contains("position_m")) document_.refuse(pointer_ + "/link/position_m", "the chain determines the positions of its links", "Delete it.");
+      if (kind_ != "springs" && value_.contains(key))
+        document_.refuse(pointer_ + '/' + key, "a chain of " + kind_ + " has none",
+                         "Delete it, or choose \"springs\".");
+    if (kind_ == "springs" && !value_.contains("stiffness_n_m"))
+      document_.refuse(pointer_, "a chain of springs needs the key 'stiffness_n_m'", "Add it.");
+    if (kind_ != "hinges" && value_.contains("axis"))
+      document_.refuse(pointer_ + "/axis", "a chain of " + kind_ + " has no axis",
+                       "Delete it, or choose \"hinges\".");
+    if (kind_ == "hinges" && !value_.contains("axis"))
+      document_.refuse(pointer_,
+                       "a chain of hinges needs the key 'axis': their direction in the world",
+                       "Add it.");
+    if (is_jointed() && value_.contains("neighbours_apart"))
+      document_.refuse(pointer_ + "/neighbours_apart", "joined bodies never collide", "Delete it.");
+    if (value_.at("link").contains("position_m"))
+      document_.refuse(pointer_ + "/link/position_m",
+                       "the chain determines the positions of its links", "Delete it.");
   }
 
   ChainLine lay_line(const AnchorSpec& from, const std::optional<AnchorSpec>& to) {
@@ -64,17 +84,24 @@ class ChainWriter {
     line.start_m = anchors_.place_at_start(from);
     if (to) {
       for (const char* key : {"direction", "spacing_m"})
-        if (value_.contains(key)) document_.refuse(pointer_ + '/' + key, "the chain ends at \"to\", which says its direction and spacing", "Delete it, or \"to\".");
+        if (value_.contains(key))
+          document_.refuse(pointer_ + '/' + key,
+                           "the chain ends at \"to\", which says its direction and spacing",
+                           "Delete it, or \"to\".");
       const Vector3d whole_m = anchors_.place_at_start(*to) - line.start_m;
-      if (whole_m.isZero(0.0)) document_.refuse(pointer_ + "/to", "the chain ends where it begins", "Give another point.");
+      if (whole_m.isZero(0.0))
+        document_.refuse(pointer_ + "/to", "the chain ends where it begins", "Give another point.");
       line.direction = whole_m.normalized();
       line.spacing_m = whole_m.norm() / (is_jointed() ? links_ : links_ + 1);
       return line;
     }
     for (const char* key : {"direction", "spacing_m"})
-      if (!value_.contains(key)) document_.refuse(pointer_, std::string("key '") + key + "' is missing", "Give direction and spacing_m, or \"to\".");
+      if (!value_.contains(key))
+        document_.refuse(pointer_, std::string("key '") + key + "' is missing",
+                         "Give direction and spacing_m, or \"to\".");
     line.direction = read_vector(value_.at("direction"));
-    if (line.direction.isZero(0.0)) document_.refuse(pointer_ + "/direction", "found the zero vector, expected a direction");
+    if (line.direction.isZero(0.0))
+      document_.refuse(pointer_ + "/direction", "found the zero vector, expected a direction");
     line.direction.normalize();
     line.spacing_m = value_.at("spacing_m");
     return line;
@@ -84,8 +111,11 @@ class ChainWriter {
     BodySpec link = read_body(value_.at("link"), document_, pointer_ + "/link");
     if (value_.contains("along")) {
       const std::string along = value_.at("along");
-      const Vector3d axis = along == "x" ? Vector3d::UnitX() : along == "y" ? Vector3d::UnitY() : Vector3d::UnitZ();
-      link.world_from_body = shortest_turn(link.world_from_body * axis, line_.direction) * link.world_from_body;
+      const Vector3d axis = along == "x"   ? Vector3d::UnitX()
+                            : along == "y" ? Vector3d::UnitY()
+                                           : Vector3d::UnitZ();
+      link.world_from_body =
+          shortest_turn(link.world_from_body * axis, line_.direction) * link.world_from_body;
     }
     return link;
   }
@@ -93,7 +123,8 @@ class ChainWriter {
   /// @return the name of link k (from 1)
   std::string add_body(BodySpec body, int k) {
     body.name += '_' + std::to_string(k);
-    body.position_m = line_.start_m + (k - (is_jointed() ? 0.5 : 0.0)) * line_.spacing_m * line_.direction;
+    body.position_m =
+        line_.start_m + (k - (is_jointed() ? 0.5 : 0.0)) * line_.spacing_m * line_.direction;
     if (value_.contains("colors")) {
       const json& colors = value_.at("colors");
       body.color = read_color(colors.at(static_cast<std::size_t>(k - 1) % colors.size()));
@@ -106,30 +137,39 @@ class ChainWriter {
   void tie(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
     const double distance_m = (anchors_.place_at_start(b) - anchors_.place_at_start(a)).norm();
     if (kind_ == "rods") {
-      add_entry("rods", {{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"length_m", distance_m}});
+      add_entry("rods",
+                {{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"length_m", distance_m}});
     } else if (kind_ == "springs") {
-      json entry{{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"rest_length_m", distance_m}};
+      json entry{
+          {"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"rest_length_m", distance_m}};
       for (const char* key : {"stiffness_n_m", "damping_n_s_m", "rest_length_m"})
         if (value_.contains(key)) entry[key] = value_.at(key);
       add_entry("springs", entry);
     } else {
       add_joint(a, b, k, name);
     }
-    if (value_.value("neighbours_apart", false) && !a.body.empty() && !b.body.empty()) scene_.apart.emplace_back(a.body, b.body);
+    if (value_.value("neighbours_apart", false) && !a.body.empty() && !b.body.empty())
+      scene_.apart.emplace_back(a.body, b.body);
   }
 
   /// Adds an entry as in a file, with the chain's own position for messages.
   void add_entry(const char* key, const json& entry) {
     const Words* words = words_of(key);
-    if (words == nullptr) document_.refuse(pointer_ + "/kind", std::string("this program is built without \"") + key + "\"");
+    if (words == nullptr)
+      document_.refuse(pointer_ + "/kind",
+                       std::string("this program is built without \"") + key + "\"");
     EntrySource source{entry, document_, anchors_};
     Entry read(source, pointer_, 1);
     words->read(read, scene_);
   }
 
   void add_joint(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
-    json entry{{"name", name}, {"kind", kind_ == "hinges" ? "hinge" : "ball"}, {"body_a", a.body.empty() ? b.body : a.body},   // the world is always the second
-               {"point_m", json_of(Vector3d(line_.start_m + (k - 1) * line_.spacing_m * line_.direction))}};
+    // the world is always the second
+    json entry{{"name", name},
+               {"kind", kind_ == "hinges" ? "hinge" : "ball"},
+               {"body_a", a.body.empty() ? b.body : a.body},
+               {"point_m",
+                json_of(Vector3d(line_.start_m + (k - 1) * line_.spacing_m * line_.direction))}};
     if (!a.body.empty() && !b.body.empty()) entry["body_b"] = b.body;
     if (kind_ == "hinges") entry["axis"] = value_.at("axis");
     add_entry("joints", entry);
@@ -150,7 +190,8 @@ class ChainWriter {
 void read_chains(const Document& document, Anchors& anchors, Scene& scene) {
   if (!document.json.contains("chains")) return;
   const json& chains = document.json.at("chains");
-  for (std::size_t i = 0; i < chains.size(); ++i) ChainWriter(chains.at(i), document, anchors, "/chains/" + std::to_string(i), scene).write();
+  for (std::size_t i = 0; i < chains.size(); ++i)
+    ChainWriter(chains.at(i), document, anchors, "/chains/" + std::to_string(i), scene).write();
 }
 
 }  // namespace tumble::scene

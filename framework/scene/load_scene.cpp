@@ -27,7 +27,8 @@ CheckSpec check(const json& value) {
   read(value, "body", spec.body);
   read(value, "other", spec.other);
   read(value, "axis", spec.axis);
-  if (spec.axis && spec.axis->norm() > 0) spec.axis->normalize();   // check_scene refuses a zero axis
+  // check_scene refuses a zero axis
+  if (spec.axis && spec.axis->norm() > 0) spec.axis->normalize();
   read(value, "link", spec.link);
   read(value, "bodies", spec.bodies);
   read(value, "expected", spec.expected);
@@ -44,7 +45,8 @@ const json& entries(const json& root, const char* key) {
 void read_bodies(const Document& document, Scene& scene) {
   const json& bodies = entries(document.json, "bodies");
   const json& repeats = entries(document.json, "repeat");
-  for (std::size_t i = 0; i < bodies.size(); ++i) scene.bodies.push_back(read_body(bodies.at(i), document, "/bodies/" + std::to_string(i)));
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    scene.bodies.push_back(read_body(bodies.at(i), document, "/bodies/" + std::to_string(i)));
   for (std::size_t i = 0; i < repeats.size(); ++i) {
     const RepeatSpec repeat = read_repeat(repeats.at(i), document, "/repeat/" + std::to_string(i));
     if (repeats.at(i).contains("seed")) scene.seeds.push_back(repeat.seed);
@@ -56,7 +58,10 @@ void check_names(const Document& document, const Scene& scene) {
   std::map<std::string, std::string> first;
   for (const BodySpec& body : scene.bodies) {
     const auto [at, is_new] = first.emplace(body.name, body.pointer);
-    if (!is_new) document.refuse(body.pointer + "/name", "the name '" + body.name + "' is taken by " + at->second, "Give every body a name of its own.");
+    if (!is_new)
+      document.refuse(body.pointer + "/name",
+                      "the name '" + body.name + "' is taken by " + at->second,
+                      "Give every body a name of its own.");
   }
 }
 
@@ -83,7 +88,8 @@ void read_effects(const Document& document, Anchors& anchors, Scene& scene) {
     const bool is_list = scene_schema().at("properties").at(key).value("type", "") == "array";
     for (std::size_t i = 0; i < (is_list ? value.size() : 1); ++i) {
       EntrySource source{is_list ? value.at(i) : value, document, anchors};
-      Entry entry(source, "/" + key + (is_list ? "/" + std::to_string(i) : ""), static_cast<int>(i) + 1);
+      Entry entry(source, "/" + key + (is_list ? "/" + std::to_string(i) : ""),
+                  static_cast<int>(i) + 1);
       words->read(entry, scene);
     }
   }
@@ -126,22 +132,24 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   read_bodies(document, scene);
   Anchors anchors(document, scene);
   read_chains(document, anchors, scene);
-  check_names(document, scene);   // before any look-up by name
+  check_names(document, scene);  // before any look-up by name
   read_effects(document, anchors, scene);
   read_links(document, anchors, scene);
   read_view(root, scene);
   for (const auto& entry : entries(root, "checks")) scene.checks.push_back(check(entry));
 
-  check_scene(scene, [&](const std::string& pointer, const std::string& problem, const std::string& remedy) {
-    document.refuse(pointer, problem, remedy);
-  });
+  check_scene(scene, [&](const std::string& pointer, const std::string& problem,
+                         const std::string& remedy) { document.refuse(pointer, problem, remedy); });
   return scene;
 }
 
 Scene load_scene(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
-    throw UserError(file.string(), std::filesystem::exists(file) ? "this cannot be read as a file" : "there is no such scene file", "Scenes are in assignments/*/scenes.");
+    throw UserError(file.string(),
+                    std::filesystem::exists(file) ? "this cannot be read as a file"
+                                                  : "there is no such scene file",
+                    "Scenes are in assignments/*/scenes.");
   std::ostringstream text;
   text << stream.rdbuf();
   return parse_scene(text.str(), file);

@@ -13,10 +13,11 @@
 namespace tumble::scene {
 
 struct ModelSceneOptions {
-  double metres_per_unit = 1.0;    // length of the file's unit [m], > 0: the format does not contain it
-  double density_kg_m3 = 1000.0;   // > 0; that of water
-  bool is_dropped = false;         // onto a floor, under gravity; else free in space
-  bool turns = true;               // free in space: slowly, about a skew axis; else it is at rest
+  // length of the file's unit [m], > 0: the format does not contain it
+  double metres_per_unit = 1.0;
+  double density_kg_m3 = 1000.0;  // > 0; that of water
+  bool is_dropped = false;        // onto a floor, under gravity; else free in space
+  bool turns = true;              // free in space: slowly, about a skew axis; else it is at rest
 };
 
 /// Whether a word names a model and not a scene: by its extension, or the first bytes of the file.

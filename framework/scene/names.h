@@ -13,13 +13,15 @@ namespace tumble::scene {
 
 /// Called with a position (a key of the body, or a JSON pointer of the scene), the problem, and the
 /// remedy. Must throw.
-using Refuse = std::function<void(const std::string& place, const std::string& problem, const std::string& remedy)>;
+using Refuse = std::function<void(const std::string& place, const std::string& problem,
+                                  const std::string& remedy)>;
 
 /// The known names of one kind of entry.
 class Names {
  public:
   /// @param what, plural  for errors: "body", "Bodies"
-  Names(std::string what, std::string plural, std::vector<std::string> names) : what_(std::move(what)), plural_(std::move(plural)), names_(std::move(names)) {}
+  Names(std::string what, std::string plural, std::vector<std::string> names)
+      : what_(std::move(what)), plural_(std::move(plural)), names_(std::move(names)) {}
 
   /// Refuses an unknown name, with the nearest known one.
   void expect(const std::string& name, const std::string& pointer, const Refuse& refuse) const;

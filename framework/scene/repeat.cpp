@@ -26,16 +26,20 @@ Vector3d random_direction(Random& random, const std::string& directions) {
 std::vector<BodySpec> write_out(const RepeatSpec& repeat) {
   Random random(repeat.seed);
   std::vector<BodySpec> copies;
-  const Vector3d middle(0.5 * (repeat.counts[0] - 1), 0.5 * (repeat.counts[1] - 1), 0.5 * (repeat.counts[2] - 1));
+  const Vector3d middle(0.5 * (repeat.counts[0] - 1), 0.5 * (repeat.counts[1] - 1),
+                        0.5 * (repeat.counts[2] - 1));
   for (int k = 0; k < repeat.counts[2]; ++k)
     for (int j = 0; j < repeat.counts[1]; ++j)
       for (int i = 0; i < repeat.counts[0]; ++i) {
         BodySpec copy = repeat.body;
         copy.name += '_' + std::to_string(copies.size() + 1);
         copy.position_m += (Vector3d(i, j, k) - middle).cwiseProduct(repeat.spacing_m);
-        for (int axis = 0; axis < 3; ++axis) copy.position_m[axis] += repeat.jitter_m[axis] * random.between(-1.0, 1.0);
-        if (repeat.speed_m_s > 0) copy.velocity_m_s += repeat.speed_m_s * random_direction(random, repeat.directions);
-        if (!repeat.colors.empty()) copy.color = repeat.colors[copies.size() % repeat.colors.size()];
+        for (int axis = 0; axis < 3; ++axis)
+          copy.position_m[axis] += repeat.jitter_m[axis] * random.between(-1.0, 1.0);
+        if (repeat.speed_m_s > 0)
+          copy.velocity_m_s += repeat.speed_m_s * random_direction(random, repeat.directions);
+        if (!repeat.colors.empty())
+          copy.color = repeat.colors[copies.size() % repeat.colors.size()];
         copies.push_back(std::move(copy));
       }
   return copies;

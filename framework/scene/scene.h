@@ -20,20 +20,26 @@
 
 namespace tumble::scene {
 
-struct SphereSpec { double radius_m; };
-struct BoxSpec { Vector3d half_extents_m; };
+struct SphereSpec {
+  double radius_m;
+};
+struct BoxSpec {
+  Vector3d half_extents_m;
+};
 /// Half-space: the solid on the negative side of the plane through the body's position; the body's
 /// +z is the normal.
-struct PlaneSpec { double drawn_half_extent_m = 5.0; };
+struct PlaneSpec {
+  double drawn_half_extent_m = 5.0;
+};
 /// Axes along the body's; collides with planes only. A centre other than the centre of mass needs
 /// explicit moments of inertia.
 struct EllipsoidSpec {
   Vector3d semi_axes_m;
-  Vector3d center_m = Vector3d::Zero();   // body frame
+  Vector3d center_m = Vector3d::Zero();  // body frame
 };
 struct ModelSpec {
-  std::string file;            // relative to the scene file, then to models/
-  std::string object;          // empty: the file must hold exactly one
+  std::string file;    // relative to the scene file, then to models/
+  std::string object;  // empty: the file must hold exactly one
   double metres_per_unit = 1.0;
 };
 using ShapeSpec = std::variant<SphereSpec, BoxSpec, PlaneSpec, ModelSpec, EllipsoidSpec>;
@@ -49,58 +55,68 @@ struct PrescribedMotion {
 struct BodySpec {
   std::string name;
   ShapeSpec shape;
-  bool immovable = false;                          // infinite mass
-  std::optional<double> density_kg_m3;             // one of density and mass for a movable body
+  bool immovable = false;               // infinite mass
+  std::optional<double> density_kg_m3;  // one of density and mass for a movable body
   std::optional<double> mass_kg;
-  std::optional<Matrix3d> inertia_body_kg_m2;      // overrides that of the shape (a free top given by its moments)
-  std::optional<PrescribedMotion> motion;          // immovable bodies only
-  Vector3d position_m = Vector3d::Zero();          // of the centre of mass, world
+  // overrides that of the shape (a free top given by its moments)
+  std::optional<Matrix3d> inertia_body_kg_m2;
+  std::optional<PrescribedMotion> motion;  // immovable bodies only
+  Vector3d position_m = Vector3d::Zero();  // of the centre of mass, world
   Quaterniond world_from_body = Quaterniond::Identity();
-  Vector3d velocity_m_s = Vector3d::Zero();        // world
-  Vector3d omega_world_rad_s = Vector3d::Zero();   // world
-  double restitution = 1.0;                        // of a pair: the smaller of the two
-  double friction = 0.0;                           // Coulomb's coefficient; of a pair: the smaller of the two
-  bool collides = true;                            // false: it has no contacts, and no collision code visits it
-  bool passes_movable = false;                     // collides with immovable bodies only, where the other body has it too
-  std::optional<Vector3d> color;                   // linear RGB in [0, 1]
-  std::string pointer{};                           // JSON pointer of its entry, for messages; empty: made in memory
+  Vector3d velocity_m_s = Vector3d::Zero();       // world
+  Vector3d omega_world_rad_s = Vector3d::Zero();  // world
+  double restitution = 1.0;                       // of a pair: the smaller of the two
+  // Coulomb's coefficient; of a pair: the smaller of the two
+  double friction = 0.0;
+  // false: it has no contacts, and no collision code visits it
+  bool collides = true;
+  // collides with immovable bodies only, where the other body has it too
+  bool passes_movable = false;
+  std::optional<Vector3d> color;  // linear RGB in [0, 1]
+  // JSON pointer of its entry, for messages; empty: made in memory
+  std::string pointer{};
 };
 
 /// A point fixed in a body or, with an empty name, in the world. For a body it may be given as a
 /// vertex of its model.
 struct AnchorSpec {
-  std::string body;                 // "": the world
-  Vector3d point_m = Vector3d::Zero();   // body frame (origin at the centre of mass); world frame for the world
+  std::string body;  // "": the world
+  // body frame (origin at the centre of mass); world frame for the world
+  Vector3d point_m = Vector3d::Zero();
 };
 
-enum class ImpactLaw { kSequential, kSimultaneous };      // several impacts at one instant: in sequence, or together
-enum class PlasticImpacts { kAutomatic, kLocated, kInStep };   // perfectly inelastic impacts: at their instant, or within their step; automatic: within the step in busy islands only
+// several impacts at one instant: in sequence, or together
+enum class ImpactLaw { kSequential, kSimultaneous };
+// perfectly inelastic impacts: at their instant, or within their step; automatic: within the step
+// in busy islands only
+enum class PlasticImpacts { kAutomatic, kLocated, kInStep };
 
 /// Persistent contact: bodies that rest, slide, roll and are stacked.
 struct ContactSpec {
   ImpactLaw impact_law = ImpactLaw::kSequential;
   PlasticImpacts plastic_impacts = PlasticImpacts::kAutomatic;
-  bool sleep = false;               // bodies at rest are skipped until something touches them
+  bool sleep = false;  // bodies at rest are skipped until something touches them
 };
 
 enum class StabilisationKind { kNone, kBaumgarte, kProjection };
 /// The correction of drift of rods and joints.
 struct StabilisationSpec {
   StabilisationKind kind = StabilisationKind::kProjection;
-  double time_constant_s = 0.1;     // of Baumgarte's
+  double time_constant_s = 0.1;  // of Baumgarte's
 };
 
 struct CameraSpec {
   Vector3d eye_m{6.0, -8.0, 4.0};
   Vector3d target_m = Vector3d::Zero();
-  double field_of_view_deg = 40.0;  // vertical
+  double field_of_view_deg = 40.0;    // vertical
   std::optional<std::string> follow;  // a body's name: eye and target move with it
 };
 
 /// One number by which a run of the scene is judged. `kind` is one of the checks of
 /// engines/judging/judge.h.
 struct CheckSpec {
-  std::string kind;                 // e.g. "energy", "momentum", "angular_momentum", "gap", "final_position", "impact_times"
+  // e.g. "energy", "momentum", "angular_momentum", "gap", "final_position", "impact_times"
+  std::string kind;
   double tolerance = 0.0;
   std::string unit;
   std::string why;                  // the tolerance's reason
@@ -114,27 +130,35 @@ struct CheckSpec {
 };
 
 struct Scene {
-  std::string name;                 // file name without .json
+  std::string name;  // file name without .json
   std::string title;
-  std::string about;                // what to observe
+  std::string about;  // what to observe
   std::filesystem::path file;
-  std::map<std::string, int> lines; // by JSON pointer: the line of the file with the value or its key; empty: made in memory
-  std::string digest;               // of the file's bytes (core/digest.h), or a name and size, for records
-  std::vector<std::uint64_t> seeds; // of the random numbers with which the scene was made
+  // by JSON pointer: the line of the file with the value or its key; empty: made in memory
+  std::map<std::string, int> lines;
+  // of the file's bytes (core/digest.h), or a name and size, for records
+  std::string digest;
+  std::vector<std::uint64_t> seeds;  // of the random numbers with which the scene was made
   double duration_s = 0.0;
   double step_s = 1.0 / 60.0;
-  double rest_speed_m_s = 1e-3;     // impacts with a smaller separation speed end in rest (restitution threshold)
+  // impacts with a smaller separation speed end in rest (restitution threshold)
+  double rest_speed_m_s = 1e-3;
   std::vector<BodySpec> bodies;
-  TypedLists effects;               // entries of effects: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringSpec>()
-  std::optional<ContactSpec> contact;     // absent: bodies bounce until they rest, without resting, sliding or rolling contact
-  std::optional<StabilisationSpec> stabilisation;   // present exactly where an effect constrains bodies (words.h: rods, joints)
-  std::vector<std::pair<std::string, std::string>> apart;   // pairs that do not collide (links of a chain); joined bodies never do
+  // entries of effects: lists of the types in framework/effects/NAME/NAME.h, such as
+  // effects.of<SpringSpec>()
+  TypedLists effects;
+  // absent: bodies bounce until they rest, without resting, sliding or rolling contact
+  std::optional<ContactSpec> contact;
+  // present exactly where an effect constrains bodies (words.h: rods, joints)
+  std::optional<StabilisationSpec> stabilisation;
+  // pairs that do not collide (links of a chain); joined bodies never do
+  std::vector<std::pair<std::string, std::string>> apart;
   CameraSpec camera;
-  std::optional<double> grid_spacing_m;   // drawn on the ground plane z = grid_height_m
+  std::optional<double> grid_spacing_m;  // drawn on the ground plane z = grid_height_m
   double grid_height_m = 0.0;
   std::vector<CheckSpec> checks;
-  std::string engine;               // the engine for which the scene is made ("tw"); empty: any
-  std::vector<std::string> needs;   // ids of modules whose laws the scene is about, e.g. {"a1"}
+  std::string engine;              // the engine for which the scene is made ("tw"); empty: any
+  std::vector<std::string> needs;  // ids of modules whose laws the scene is about, e.g. {"a1"}
 };
 
 /// The line of the scene's file with an entry, or with its parent where it has none of its own; 0

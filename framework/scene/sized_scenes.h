@@ -15,9 +15,9 @@ namespace tumble::scene {
 struct SizedScene {
   std::string name;
   std::string title;
-  std::string counts;      // the meaning of n
+  std::string counts;  // the meaning of n
   int default_n;
-  std::string about;       // what to observe
+  std::string about;  // what to observe
 };
 
 /// All of them, in the order of listings.

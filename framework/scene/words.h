@@ -18,9 +18,9 @@ namespace tumble::scene {
 
 /// An entry that calls for an effect.
 struct Asker {
-  std::string pointer;        // JSON pointer of the entry; empty for a scene made in memory
-  std::string what;           // in words, such as "rod 1: ball_1 to the world, 0.5 m"
-  int line = 0;               // line of the entry in the scene's file; 0 for a scene made in memory
+  std::string pointer;  // JSON pointer of the entry; empty for a scene made in memory
+  std::string what;     // in words, such as "rod 1: ball_1 to the world, 0.5 m"
+  int line = 0;         // line of the entry in the scene's file; 0 for a scene made in memory
 };
 
 /// Whether bodies are attached at a position: such positions move with the local origin of a scene
@@ -33,34 +33,40 @@ using VisitPlace = std::function<void(Vector3d& place_world, PlaceKind kind)>;
 struct Traits {
   bool leaves_flight = false;  // with it alone bodies have closed forms: a parabola, free rotation
   bool ties = false;           // the bodies of an entry move together, as one system of equations
-  bool constrains = false;     // constrains bodies by equations, from which they drift: the scene defines the correction (StabilisationSpec)
-  bool looks = false;          // sampled control: decides at intervals and holds its output between them
+  // constrains bodies by equations, from which they drift: the scene defines the correction
+  // (StabilisationSpec)
+  bool constrains = false;
+  // sampled control: decides at intervals and holds its output between them
+  bool looks = false;
   bool stores_energy = false;  // stores energy and returns it, without a fall of any body
   bool may_be_stiff = false;   // a method for stiff equations may be faster
 };
 
 /// A kind of check on the links of an effect.
 struct LinkCheck {
-  std::string kind;            // "rod_length"
-  std::string unit;            // "m"
+  std::string kind;  // "rod_length"
+  std::string unit;  // "m"
 };
 
 /// A connection of two points with a name: a spring, a rod, a joint.
 struct Link {
   std::string name;
   AnchorSpec a, b;
-  double length_m;            // its constant length or rest length; NaN without one
-  std::string pointer;        // of its entry
+  double length_m;      // its constant length or rest length; NaN without one
+  std::string pointer;  // of its entry
 };
 
 class Words {
  public:
   virtual ~Words() = default;
 
-  virtual std::string name() const = 0;                  // "spring", "point force"
-  virtual std::string key() const = 0;                   // of a scene file: "springs", "point_forces"
-  virtual std::string stage() const = 0;                 // the part of a run with its code: "integration", "forces", "constraints", "control"
-  virtual std::string counter() const = 0;               // the counter of its calls in a run: "spring_calls"
+  virtual std::string name() const = 0;  // "spring", "point force"
+  // of a scene file: "springs", "point_forces"
+  virtual std::string key() const = 0;
+  // the part of a run with its code: "integration", "forces", "constraints", "control"
+  virtual std::string stage() const = 0;
+  // the counter of its calls in a run: "spring_calls"
+  virtual std::string counter() const = 0;
   virtual Traits traits() const = 0;
   /// A JSON object: {"properties": {KEY: schema of its value}, "definitions": {...}}, in the
   /// language of scene.schema.json and with its definitions.
@@ -86,7 +92,9 @@ class Words {
   /// Kinds of checks on them.
   virtual std::vector<LinkCheck> link_checks() const { return {}; }
   /// Bodies that never collide because of it, by name.
-  virtual std::vector<std::pair<std::string, std::string>> pairs_apart(const Scene&) const { return {}; }
+  virtual std::vector<std::pair<std::string, std::string>> pairs_apart(const Scene&) const {
+    return {};
+  }
   /// Every position in world coordinates of its entries.
   virtual void visit_places(TypedLists&, const VisitPlace&) const {}
 };

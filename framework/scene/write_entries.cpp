@@ -17,11 +17,14 @@ json json_of(const Value& value) {
 }  // namespace
 
 struct EntryWriter::EntryReader {
-  explicit EntryReader(Scene& scene) : scene(scene), document{{}, {}, scene.file}, anchors(document, scene) {}
+  explicit EntryReader(Scene& scene)
+      : scene(scene), document{{}, {}, scene.file}, anchors(document, scene) {}
 
   void read(const std::string& key, const json& value) {
     const Words* words = words_of(key);
-    if (words == nullptr) throw UserError(scene.name, "asks for \"" + key + "\", which this program is not built with", "add its effect to framework/effects/CMakeLists.txt and build again");
+    if (words == nullptr)
+      throw UserError(scene.name, "asks for \"" + key + "\", which this program is not built with",
+                      "add its effect to framework/effects/CMakeLists.txt and build again");
     EntrySource source{value, document, anchors};
     Entry entry(source, "", 1);
     words->read(entry, scene);
@@ -35,13 +38,17 @@ struct EntryWriter::EntryReader {
 EntryWriter::EntryWriter(Scene& scene) : reader_(std::make_unique<EntryReader>(scene)) {}
 EntryWriter::~EntryWriter() = default;
 
-void EntryWriter::operator()(const std::string& key, const std::vector<std::pair<std::string, Value>>& entry) {
+void EntryWriter::operator()(const std::string& key,
+                             const std::vector<std::pair<std::string, Value>>& entry) {
   json object = json::object();
-  for (const auto& [name, value] : entry) object[name] = std::visit([](const auto& plain) { return json_of(plain); }, value);
+  for (const auto& [name, value] : entry)
+    object[name] = std::visit([](const auto& plain) { return json_of(plain); }, value);
   reader_->read(key, object);
 }
 
-void EntryWriter::operator()(const std::string& key, const Vector3d& value) { reader_->read(key, json_of(value)); }
+void EntryWriter::operator()(const std::string& key, const Vector3d& value) {
+  reader_->read(key, json_of(value));
+}
 
 void remove_entries(Scene& scene, const std::string& key) {
   if (const Words* words = words_of(key)) words->clear(scene);

@@ -9,17 +9,25 @@ std::string joined_record(const std::vector<std::string>& parts) {
   return record;
 }
 
-std::string version_in_words(const std::string& version) { return version.empty() ? "" : "Tumble " + version; }
+std::string version_in_words(const std::string& version) {
+  return version.empty() ? "" : "Tumble " + version;
+}
 
-std::string scene_in_words(const std::string& name, const std::string& digest, const std::vector<std::uint64_t>& seeds) {
-  constexpr std::size_t kShownDigits = 16;   // 64 bits: enough that two scenes do not share them by chance
-  std::string words = name.empty() ? "" : "scene " + name + (digest.empty() ? "" : " " + digest.substr(0, kShownDigits));
-  for (std::size_t i = 0; i < seeds.size(); ++i) words += (i > 0 ? ", " : seeds.size() > 1 ? ", seeds " : ", seed ") + std::to_string(seeds[i]);
+std::string scene_in_words(const std::string& name, const std::string& digest,
+                           const std::vector<std::uint64_t>& seeds) {
+  // 64 bits: enough that two scenes do not share them by chance
+  constexpr std::size_t kShownDigits = 16;
+  std::string words =
+      name.empty() ? ""
+                   : "scene " + name + (digest.empty() ? "" : " " + digest.substr(0, kShownDigits));
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    words += (i > 0 ? ", " : seeds.size() > 1 ? ", seeds " : ", seed ") + std::to_string(seeds[i]);
   return words;
 }
 
 std::string record_of(const TrajectoryInfo& info) {
-  return joined_record({info.command, version_in_words(info.version), scene_in_words(info.scene_name, info.scene_digest, info.seeds)});
+  return joined_record({info.command, version_in_words(info.version),
+                        scene_in_words(info.scene_name, info.scene_digest, info.seeds)});
 }
 
 }  // namespace tumble

@@ -7,11 +7,14 @@
 namespace tumble {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 }  // namespace
 
-RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace) : sink_(sink), duration_(duration_s), pace_(pace), reporter_([this] { report_until_done(); }) {}
+RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace)
+    : sink_(sink), duration_(duration_s), pace_(pace), reporter_([this] { report_until_done(); }) {}
 
 RunProgress::~RunProgress() {
   {
@@ -34,7 +37,11 @@ void RunProgress::frame(const Frame& frame) {
 void RunProgress::report_until_done() {
   std::unique_lock lock(mutex_);
   for (double next = pace_.first_s;; next += pace_.every_s) {
-    if (ended_.wait_until(lock, begun_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next)), [this] { return is_over_; })) return;
+    if (ended_.wait_until(lock,
+                          begun_ + std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(next)),
+                          [this] { return is_over_; }))
+      return;
     report(next);
   }
 }
@@ -42,7 +49,9 @@ void RunProgress::report_until_done() {
 void RunProgress::report(double now_s) {
   std::string line = fmt::format("tumble: {:.4g} of {:.4g} s simulated", time_, duration_);
   if (time_ == reported_time_) {
-    line += fmt::format(", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run", now_s - came_s_);
+    line += fmt::format(
+        ", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run",
+        now_s - came_s_);
     if (time_ > 0) line += fmt::format("; --duration-s {:.4g} shows what came before", time_);
   } else if (time_ > 0) {
     line += fmt::format(", about {:.0f} s left", came_s_ / time_ * (duration_ - time_));

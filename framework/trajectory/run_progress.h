@@ -17,7 +17,7 @@ namespace tumble {
 class RunProgress final : public TrajectorySink {
  public:
   struct Pace {
-    double first_s = 5.0, every_s = 10.0;   // of wall-clock time
+    double first_s = 5.0, every_s = 10.0;  // of wall-clock time
   };
   /// @param duration_s  of the run, simulated
   RunProgress(TrajectorySink& sink, double duration_s, Pace pace);
@@ -26,10 +26,14 @@ class RunProgress final : public TrajectorySink {
   RunProgress(const RunProgress&) = delete;
   RunProgress& operator=(const RunProgress&) = delete;
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
+    sink_.begin(info, bodies);
+  }
   void frame(const Frame& frame) override;
   void event(const Event& event) override { sink_.event(event); }
-  void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
+  void end(const Counters& counters, const std::string& stopped_by) override {
+    sink_.end(counters, stopped_by);
+  }
   void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  private:
@@ -38,14 +42,14 @@ class RunProgress final : public TrajectorySink {
   void report(double now_s);
 
   TrajectorySink& sink_;
-  double duration_;                      // [s]
+  double duration_;  // [s]
   Pace pace_;
   Clock::time_point begun_ = Clock::now();
-  std::mutex mutex_;                     // guards the members below
+  std::mutex mutex_;  // guards the members below
   std::condition_variable ended_;
   bool is_over_ = false;
-  double time_ = 0.0, came_s_ = 0.0;     // of the last frame: simulated time, and arrival
-  double reported_time_ = -1.0;              // simulated time in the last line
+  double time_ = 0.0, came_s_ = 0.0;  // of the last frame: simulated time, and arrival
+  double reported_time_ = -1.0;       // simulated time in the last line
   std::thread reporter_;
 };
 

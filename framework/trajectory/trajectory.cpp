@@ -2,7 +2,8 @@
 
 namespace tumble {
 
-void TrajectoryRecorder::begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) {
+void TrajectoryRecorder::begin(const TrajectoryInfo& info,
+                               const std::vector<TrajectoryBody>& bodies) {
   trajectory_ = {};
   trajectory_.info = info;
   trajectory_.bodies = bodies;

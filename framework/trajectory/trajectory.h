@@ -15,71 +15,94 @@ namespace tumble {
 
 /// Pose and velocity of a body at one instant. World frame.
 struct BodyPose {
-  Vector3d com_world;              // [m]
-  Quaterniond world_from_body;     // unit
-  Vector3d velocity_world;         // [m/s]
-  Vector3d omega_world;            // [rad/s]
+  Vector3d com_world;           // [m]
+  Quaterniond world_from_body;  // unit
+  Vector3d velocity_world;      // [m/s]
+  Vector3d omega_world;         // [rad/s]
 };
 
 /// A persistent contact point between two bodies, with its force.
 struct ContactPoint {
   int body_a, body_b;
-  Vector3d point_world;            // [m]
-  Vector3d normal_b_to_a_world;    // unit
-  Vector3d force_on_a_world;       // [N], friction included
+  Vector3d point_world;          // [m]
+  Vector3d normal_b_to_a_world;  // unit
+  Vector3d force_on_a_world;     // [N], friction included
 };
 
 /// All bodies at a frame time.
 struct Frame {
-  double time;                     // [s]
-  std::vector<BodyPose> poses;     // by body index
-  double kinetic_energy;           // [J], movable bodies
-  double potential_energy;         // [J]
-  Vector3d momentum_world;         // [kg m/s], movable bodies
-  Vector3d angular_momentum_world; // [kg m^2/s], movable bodies, about the world's origin
-  double smallest_gap;             // [m], over all pairs that may collide; +infinity where there is none
-  std::vector<double> spring_forces{};      // by spring of the scene; > 0: tension [N]
-  std::vector<double> rod_tensions{};       // by rod of the scene; > 0: tension [N]
-  std::vector<double> joint_forces{};       // by joint of the scene: magnitude of its force [N]
-  std::vector<ContactPoint> contacts{};     // persistent contacts
+  double time;                      // [s]
+  std::vector<BodyPose> poses;      // by body index
+  double kinetic_energy;            // [J], movable bodies
+  double potential_energy;          // [J]
+  Vector3d momentum_world;          // [kg m/s], movable bodies
+  Vector3d angular_momentum_world;  // [kg m^2/s], movable bodies, about the world's origin
+  // [m], over all pairs that may collide; +infinity where there is none
+  double smallest_gap;
+  std::vector<double> spring_forces{};   // by spring of the scene; > 0: tension [N]
+  std::vector<double> rod_tensions{};    // by rod of the scene; > 0: tension [N]
+  std::vector<double> joint_forces{};    // by joint of the scene: magnitude of its force [N]
+  std::vector<ContactPoint> contacts{};  // persistent contacts
 };
 
-enum class EventKind : std::uint8_t { kCollision = 1, kRest, kForceOn, kForceOff, kContact, kBreak, kStick, kSlide, kSleep, kWake, kControl };
+enum class EventKind : std::uint8_t {
+  kCollision = 1,
+  kRest,
+  kForceOn,
+  kForceOff,
+  kContact,
+  kBreak,
+  kStick,
+  kSlide,
+  kSleep,
+  kWake,
+  kControl
+};
 
 /// A committed discontinuity.
 struct Event {
-  double time;                     // [s]
+  double time;  // [s]
   EventKind kind;
-  int body_a, body_b;              // body_b is -1 where only one body takes part
-  Vector3d point_world;            // [m]
-  Vector3d normal_b_to_a_world;    // unit
-  double impulse;                  // [N s], along the normal
-  double normal_velocity_before;   // [m/s], negative when approaching
-  double normal_velocity_after = kUnset;   // [m/s], of the same point after the impulse; measured by the framework
+  int body_a, body_b;             // body_b is -1 where only one body takes part
+  Vector3d point_world;           // [m]
+  Vector3d normal_b_to_a_world;   // unit
+  double impulse;                 // [N s], along the normal
+  double normal_velocity_before;  // [m/s], negative when approaching
+  // [m/s], of the same point after the impulse; measured by the framework
+  double normal_velocity_after = kUnset;
   // Measured at an impact; not kept in files. NaN where it was not measured, or where bodies with
   // different prescribed motions took part.
-  double energy_change = kUnset;           // of the kinetic energy of all bodies that the impulse changed, in the frame of the driven body [J]
-  double energy_excess = kUnset;           // its difference from the value by restitution and friction, relative to the kinetic energy before [-]
+  // of the kinetic energy of all bodies that the impulse changed, in the frame of the driven body
+  // [J]
+  double energy_change = kUnset;
+  // its difference from the value by restitution and friction, relative to the kinetic energy
+  // before [-]
+  double energy_excess = kUnset;
 };
 
 /// A reason not to trust a run, found by the framework during the run (engines/base/run_watch.h). A
 /// run with a fault is judged wrong.
 struct RunFault {
-  std::string kind;                // a name like that of a check: "link_open", "projection_open", "contact_unsolved", "energy_rises", "turn_unresolved"
-  std::string subject;             // names of the bodies or links in the worst case
+  // a name like that of a check: "link_open", "projection_open", "contact_unsolved",
+  // "energy_rises", "turn_unresolved"
+  std::string kind;
+  std::string subject;  // names of the bodies or links in the worst case
   double worst = 0.0, allowed = 0.0;
-  std::string unit;                // of `worst` and `allowed`
-  double first_s = kUnset, worst_s = kUnset;   // times of the first and of the worst occurrence [s]
-  std::uint64_t count = 0;         // number of occurrences
-  std::string meaning, remedy;     // in words
+  std::string unit;                           // of `worst` and `allowed`
+  double first_s = kUnset, worst_s = kUnset;  // times of the first and of the worst occurrence [s]
+  std::uint64_t count = 0;                    // number of occurrences
+  std::string meaning, remedy;                // in words
 };
 
 /// The cost of a run, as counts (deterministic) and times (not).
 struct Counters {
-  std::map<std::string, std::uint64_t> counts;   // "integrations", "undone_integrations", "gap_evaluations", "rollbacks", ...
-  std::map<std::string, double> stage_seconds;   // "integration", "collision", "forces", ...; kept out of anything compared byte by byte
-  std::vector<std::string> notices;              // for the user, e.g. that steps were shortened and why; not kept in files
-  std::vector<RunFault> faults{};                // each counts as a failed check; not kept in files
+  // "integrations", "undone_integrations", "gap_evaluations", "rollbacks", ...
+  std::map<std::string, std::uint64_t> counts;
+  // "integration", "collision", "forces", ...; kept out of anything compared byte by byte
+  std::map<std::string, double> stage_seconds;
+  // for the user, e.g. that steps were shortened and why; not kept in files
+  std::vector<std::string> notices;
+  std::vector<RunFault> faults{};  // each counts as a failed check; not kept in files
 };
 
 struct TrajectoryBody {
@@ -92,17 +115,19 @@ struct TrajectoryInfo {
   double step_s = 0.0;
   double frame_rate_hz = 0.0;
   std::vector<std::uint64_t> seeds;  // of random numbers
-  std::string constraint_source{};   // module that provides springs, rods and contact forces; "none" where the scene needs none
+  // module that provides springs, rods and contact forces; "none" where the scene needs none
+  std::string constraint_source{};
 };
 
 struct Trajectory {
   TrajectoryInfo info;
   std::vector<TrajectoryBody> bodies;
-  std::vector<Frame> frames;       // in order of time, the first at 0
-  std::vector<Event> events;       // in order of time
+  std::vector<Frame> frames;  // in order of time, the first at 0
+  std::vector<Event> events;  // in order of time
   Counters counters;
-  VirtualTimes virtual_times;      // of a timewarp that reports them; not kept in files
-  std::string stopped_by;          // empty: ran to the end; else what stopped it (body, time, effect); earlier frames are kept
+  VirtualTimes virtual_times;  // of a timewarp that reports them; not kept in files
+  // empty: ran to the end; else what stopped it (body, time, effect); earlier frames are kept
+  std::string stopped_by;
 };
 
 /// Receives the output of an engine.

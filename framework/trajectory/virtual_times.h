@@ -12,8 +12,8 @@ struct VirtualTimes {
   /// later than `from_s` (equal: it undoes its events at exactly that time).
   struct Move {
     int process;
-    double from_s, to_s;              // its local virtual time before and after
-    double global_virtual_time_s;     // after the move; never decreases
+    double from_s, to_s;           // its local virtual time before and after
+    double global_virtual_time_s;  // after the move; never decreases
   };
   std::vector<std::string> processes;
   std::vector<Move> moves;

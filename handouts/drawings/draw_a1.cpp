@@ -1,4 +1,5 @@
-// Drawings of assignment 1: from a click to a force, surfaces, the inertia tensor, contacts, impulses.
+// Drawings of assignment 1: from a click to a force, surfaces, the inertia tensor, contacts,
+// impulses.
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,8 @@ Drawing click_to_force() {
   // The body: the triangle that is hit, and the rest of its surface.
   d.area({a, b, {540, 62}, {600, 130}, {590, 215}, c}, color::b_wash, {color::b, 1.5});
   d.area({a, b, c}, "#bcd2e4", {color::b, 2.0});
-  for (const Point far : {Point{540, 62}, Point{600, 130}, Point{590, 215}}) d.line(far, far.y > 200 ? c : b, {color::b, 0.8});
+  for (const Point far : {Point{540, 62}, Point{600, 130}, Point{590, 215}})
+    d.line(far, far.y > 200 ? c : b, {color::b, 0.8});
   // The ray.
   d.line(eye, p, {color::ink, 1.2});
   d.arrow(eye, eye + 0.34 * (p - eye), {color::ink, 2.4});
@@ -70,8 +72,10 @@ Drawing contact_normals_2d() {
   const double length = std::hypot(along.x, along.y);
   d.arrow(corner, corner + (56 / length) * along, {color::ink, 2.2});
   // The mean of the outward normals of B's two edges there.
-  const Point left = turned({474 - 520.0, 170 - 128.0}, -90), right = turned({606 - 520.0, 148 - 128.0}, 90);
-  const Point sum = (1 / std::hypot(left.x, left.y)) * left + (1 / std::hypot(right.x, right.y)) * right;
+  const Point left = turned({474 - 520.0, 170 - 128.0}, -90),
+              right = turned({606 - 520.0, 148 - 128.0}, 90);
+  const Point sum =
+      (1 / std::hypot(left.x, left.y)) * left + (1 / std::hypot(right.x, right.y)) * right;
   d.arrow(corner, corner + (56 / std::hypot(sum.x, sum.y)) * sum, {color::d, 2.2, "5 3"});
   d.dot(corner);
   d.dot(xa, color::a);
@@ -92,11 +96,14 @@ Drawing inertia_tensor() {
   const Point x{165, 140};
   std::vector<Point> outline;
   for (int i = 0; i < 60; ++i) {
-    const double t = 2 * std::numbers::pi * i / 60, r = 1 + 0.12 * std::cos(3 * t + 0.6) + 0.06 * std::sin(2 * t);
+    const double t = 2 * std::numbers::pi * i / 60,
+                 r = 1 + 0.12 * std::cos(3 * t + 0.6) + 0.06 * std::sin(2 * t);
     outline.push_back({x.x + 112 * r * std::cos(t), x.y + 74 * r * std::sin(t)});
   }
   d.area(outline, color::b_wash, {color::b, 1.5});
-  for (const Point m : {Point{105, 112}, Point{140, 175}, Point{205, 100}, Point{235, 150}, Point{190, 182}, Point{130, 86}}) d.ball(m, 4, "#9db9d0", {color::b, 0.8});
+  for (const Point m : {Point{105, 112}, Point{140, 175}, Point{205, 100}, Point{235, 150},
+                        Point{190, 182}, Point{130, 86}})
+    d.ball(m, 4, "#9db9d0", {color::b, 0.8});
   const Point m{238, 118};
   d.ball(m, 6, color::a, {color::a, 1});
   d.arrow(x, m, {color::d, 2.2});
@@ -125,13 +132,20 @@ Drawing inertia_tensor() {
   return d;
 }
 
-/// Faces of a unit cube that stand before the eye, each as four corners; what is left out shows the inside.
-void cube(Drawing& d, const Oblique& view, const std::vector<int>& faces, const std::string& outside = color::b_wash, const std::string& inside = "#c9d9e6", const std::string& edges = color::b) {
+/// Faces of a unit cube that stand before the eye, each as four corners; what is left out shows the
+/// inside.
+void cube(Drawing& d, const Oblique& view, const std::vector<int>& faces,
+          const std::string& outside = color::b_wash, const std::string& inside = "#c9d9e6",
+          const std::string& edges = color::b) {
   const std::vector<std::vector<Point>> all = {
-      {view.at(0, 0, 0), view.at(1, 0, 0), view.at(1, 1, 0), view.at(0, 1, 0)}, {view.at(0, 1, 0), view.at(1, 1, 0), view.at(1, 1, 1), view.at(0, 1, 1)},
-      {view.at(0, 0, 0), view.at(0, 1, 0), view.at(0, 1, 1), view.at(0, 0, 1)}, {view.at(0, 0, 0), view.at(1, 0, 0), view.at(1, 0, 1), view.at(0, 0, 1)},
-      {view.at(1, 0, 0), view.at(1, 1, 0), view.at(1, 1, 1), view.at(1, 0, 1)}, {view.at(0, 0, 1), view.at(1, 0, 1), view.at(1, 1, 1), view.at(0, 1, 1)}};
-  for (const int face : faces) d.area(all[static_cast<std::size_t>(face)], face < 3 ? inside : outside, {edges, 1.3});
+      {view.at(0, 0, 0), view.at(1, 0, 0), view.at(1, 1, 0), view.at(0, 1, 0)},
+      {view.at(0, 1, 0), view.at(1, 1, 0), view.at(1, 1, 1), view.at(0, 1, 1)},
+      {view.at(0, 0, 0), view.at(0, 1, 0), view.at(0, 1, 1), view.at(0, 0, 1)},
+      {view.at(0, 0, 0), view.at(1, 0, 0), view.at(1, 0, 1), view.at(0, 0, 1)},
+      {view.at(1, 0, 0), view.at(1, 1, 0), view.at(1, 1, 1), view.at(1, 0, 1)},
+      {view.at(0, 0, 1), view.at(1, 0, 1), view.at(1, 1, 1), view.at(0, 1, 1)}};
+  for (const int face : faces)
+    d.area(all[static_cast<std::size_t>(face)], face < 3 ? inside : outside, {edges, 1.3});
 }
 
 Drawing broken_surfaces() {
@@ -143,8 +157,10 @@ Drawing broken_surfaces() {
   };
   // One polygon: four open edges.
   const Oblique one{{18, 96}, 66};
-  d.area({one.at(0, 0, 0), one.at(1, 0, 0), one.at(1, 1, 0), one.at(0, 1, 0)}, color::b_wash, {color::b, 1.3});
-  d.path({one.at(0, 0, 0), one.at(1, 0, 0), one.at(1, 1, 0), one.at(0, 1, 0), one.at(0, 0, 0)}, wrong);
+  d.area({one.at(0, 0, 0), one.at(1, 0, 0), one.at(1, 1, 0), one.at(0, 1, 0)}, color::b_wash,
+         {color::b, 1.3});
+  d.path({one.at(0, 0, 0), one.at(1, 0, 0), one.at(1, 1, 0), one.at(0, 1, 0), one.at(0, 0, 0)},
+         wrong);
   name(66, "single polygon", "single\\_polygon.3ds");
   // A terrain: open all round.
   const Oblique land{{140, 104}, 68};
@@ -152,13 +168,24 @@ Drawing broken_surfaces() {
   constexpr int kCells = 6;
   for (int j = kCells - 1; j >= 0; --j)
     for (int i = 0; i < kCells; ++i) {
-      const auto at = [&](int k, int l) { return land.at(k / 6.0, l / 6.0, height(k / 6.0, l / 6.0)); };
-      d.area({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, (i + j) % 2 == 0 ? color::b_wash : "#c9d9e6", {color::b, 0.7});
+      const auto at = [&](int k, int l) {
+        return land.at(k / 6.0, l / 6.0, height(k / 6.0, l / 6.0));
+      };
+      d.area({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)},
+             (i + j) % 2 == 0 ? color::b_wash : "#c9d9e6", {color::b, 0.7});
     }
   std::vector<Point> rim;
   for (int side = 0; side < 4; ++side)
     for (int i = 0; i < 12; ++i) {
-      const double s = i / 12.0, x = side == 0 ? s : side == 1 ? 1 : side == 2 ? 1 - s : 0, y = side == 0 ? 0 : side == 1 ? s : side == 2 ? 1 : 1 - s;
+      const double s = i / 12.0,
+                   x = side == 0   ? s
+                       : side == 1 ? 1
+                       : side == 2 ? 1 - s
+                                   : 0,
+                   y = side == 0   ? 0
+                       : side == 1 ? s
+                       : side == 2 ? 1
+                                   : 1 - s;
       rim.push_back(land.at(x, y, height(x, y)));
     }
   rim.push_back(rim.front());
@@ -167,7 +194,8 @@ Drawing broken_surfaces() {
   // A box without its lid.
   const Oblique open{{272, 112}, 58};
   cube(d, open, {0, 1, 2, 3, 4});
-  d.path({open.at(0, 0, 1), open.at(1, 0, 1), open.at(1, 1, 1), open.at(0, 1, 1), open.at(0, 0, 1)}, wrong);
+  d.path({open.at(0, 0, 1), open.at(1, 0, 1), open.at(1, 1, 1), open.at(0, 1, 1), open.at(0, 0, 1)},
+         wrong);
   name(315, "a face is missing", "missing\\_face.3ds");
   // A lampshade: open at both ends.
   const Point mid{445, 90};
@@ -190,7 +218,8 @@ Drawing broken_surfaces() {
   // Three faces at one edge.
   const Oblique fin{{522, 112}, 58};
   cube(d, fin, {3, 4, 5});
-  d.area({fin.at(1, 0, 1), fin.at(1, 1, 1), fin.at(1.1, 1, 1.62), fin.at(1.1, 0, 1.62)}, color::c_wash, {color::c, 1.3});
+  d.area({fin.at(1, 0, 1), fin.at(1, 1, 1), fin.at(1.1, 1, 1.62), fin.at(1.1, 0, 1.62)},
+         color::c_wash, {color::c, 1.3});
   d.line(fin.at(1, 0, 1), fin.at(1, 1, 1), wrong);
   name(566, "three faces at an edge", "edge\\_of\\_three\\_faces.3ds");
   return d;
@@ -199,8 +228,12 @@ Drawing broken_surfaces() {
 Drawing contact_types_3d() {
   Drawing d(640, 190);
   const Pen edge_a{color::a, 1.3}, edge_b{color::b, 1.3};
-  const auto floor = [&](double x) { d.area({{x - 50, 118}, {x + 10, 138}, {x + 52, 104}, {x - 8, 86}}, color::b_wash, edge_b); };
-  const auto normal = [&](Point from, double length = 46) { d.arrow(from, from - Point{0, length}, {color::ink, 2.0}); };
+  const auto floor = [&](double x) {
+    d.area({{x - 50, 118}, {x + 10, 138}, {x + 52, 104}, {x - 8, 86}}, color::b_wash, edge_b);
+  };
+  const auto normal = [&](Point from, double length = 46) {
+    d.arrow(from, from - Point{0, length}, {color::ink, 2.0});
+  };
   const auto name = [&](double x, const std::string& text, const std::string& points) {
     d.words({x, 164}, text, Align::kMiddle, color::ink, 12);
     d.words({x, 180}, points, Align::kMiddle, color::soft, 11);
@@ -233,8 +266,10 @@ Drawing contact_types_3d() {
   floor(374);
   const Oblique box{{346, 108}, 34};
   cube(d, box, {3, 4, 5}, color::a_wash, "#efc4ca", color::a);
-  d.area({box.at(0, 0, 0), box.at(1, 0, 0), box.at(1, 1, 0), box.at(0, 1, 0)}, "#d1495b55", {color::a, 1.5});
-  for (const Point p : {box.at(0, 0, 0), box.at(1, 0, 0), box.at(1, 1, 0), box.at(0, 1, 0)}) d.dot(p, color::a);
+  d.area({box.at(0, 0, 0), box.at(1, 0, 0), box.at(1, 1, 0), box.at(0, 1, 0)}, "#d1495b55",
+         {color::a, 1.5});
+  for (const Point p : {box.at(0, 0, 0), box.at(1, 0, 0), box.at(1, 1, 0), box.at(0, 1, 0)})
+    d.dot(p, color::a);
   normal(box.at(0.5, 0.5, 0.3), 80);
   name(374, "face–face", "3 or more points");
   // degenerate: vertex on edge
@@ -260,7 +295,8 @@ Drawing contact_types_3d() {
 
 Drawing force_and_impulse() {
   Drawing d(640, 250);
-  const Axes force{{50, 200}, {290, 40}, 0, 1, 0, 8.4}, speed{{370, 200}, {610, 40}, 0, 1, -1.3, 1.3};
+  const Axes force{{50, 200}, {290, 40}, 0, 1, 0, 8.4},
+      speed{{370, 200}, {610, 40}, 0, 1, -1.3, 1.3};
   force.draw(d, "t", "force on the ball", {}, {});
   speed.draw(d, "t", "velocity of the ball", {}, {});
   d.line({370, 120}, {615, 120}, {color::line, 1});
@@ -269,14 +305,19 @@ Drawing force_and_impulse() {
     std::string color, name;
   } pushes[] = {{0.5, color::b, "0.5"}, {0.25, color::d, "0.25"}, {0.125, color::c, "0.125"}};
   for (const auto& push : pushes) {
-    const double from = 0.5 - push.duration / 2, to = 0.5 + push.duration / 2, height = 1.0 / push.duration;
-    d.area({force.at(from, 0), force.at(from, height), force.at(to, height), force.at(to, 0)}, push.color + "30", {push.color, 1.6});
-    d.path({speed.at(0, -1), speed.at(from, -1), speed.at(to, 1), speed.at(1, 1)}, {push.color, 1.8});
+    const double from = 0.5 - push.duration / 2, to = 0.5 + push.duration / 2,
+                 height = 1.0 / push.duration;
+    d.area({force.at(from, 0), force.at(from, height), force.at(to, height), force.at(to, 0)},
+           push.color + "30", {push.color, 1.6});
+    d.path({speed.at(0, -1), speed.at(from, -1), speed.at(to, 1), speed.at(1, 1)},
+           {push.color, 1.8});
   }
-  d.words(force.at(0.5, 8.15) + Point{16, 4}, "a quarter of the time: 4 F", Align::kLeft, color::c, 11);
+  d.words(force.at(0.5, 8.15) + Point{16, 4}, "a quarter of the time: 4 F", Align::kLeft, color::c,
+          11);
   d.words(force.at(0.65, 4.3), "half of the time: 2 F", Align::kLeft, color::d, 11);
   d.words(force.at(0.78, 2.25), "F; area = J", Align::kLeft, color::b, 11);
-  d.path({speed.at(0, -1), speed.at(0.5, -1), speed.at(0.5, 1), speed.at(1, 1)}, {color::a, 2.6, "6 4"});
+  d.path({speed.at(0, -1), speed.at(0.5, -1), speed.at(0.5, 1), speed.at(1, 1)},
+         {color::a, 2.6, "6 4"});
   d.words(speed.at(0.53, -0.9), "impulse: at once", Align::kLeft, color::a, 12);
   d.words(speed.at(0, 0) - Point{6, -4}, "0", Align::kRight, color::soft, 11.5);
   d.caption({170, 236}, "the same area, ever shorter");
@@ -287,7 +328,8 @@ Drawing force_and_impulse() {
 }  // namespace
 
 std::vector<Figure> figures_of_a1() {
-  return {{"click_to_force", click_to_force}, {"broken_surfaces", broken_surfaces}, {"inertia_tensor", inertia_tensor}, {"contact_normals_2d", contact_normals_2d},
+  return {{"click_to_force", click_to_force},     {"broken_surfaces", broken_surfaces},
+          {"inertia_tensor", inertia_tensor},     {"contact_normals_2d", contact_normals_2d},
           {"contact_types_3d", contact_types_3d}, {"force_and_impulse", force_and_impulse}};
 }
 

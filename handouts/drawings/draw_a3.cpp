@@ -8,7 +8,8 @@ Drawing point_acceleration() {
   Drawing d(640, 250);
   const Point x{170, 150}, p{290, 88};
   d.ball(x, 135, color::none, {color::line, 1.2, "4 4"});
-  d.area({{70, 150}, {110, 90}, {200, 80}, {306, 74}, {300, 120}, {220, 210}, {120, 205}}, color::b_wash, {color::b, 1.5});
+  d.area({{70, 150}, {110, 90}, {200, 80}, {306, 74}, {300, 120}, {220, 210}, {120, 205}},
+         color::b_wash, {color::b, 1.5});
   d.arrow(x, p, {color::d, 2.2});
   d.arrow(x, x + Point{74, 0}, {color::ink, 2.2});
   d.arrow(p, p + Point{74, 0}, {color::ink, 1.4, "5 3"});

@@ -1,4 +1,5 @@
-// Drawings of assignment 4: discrete events, the faults of two engines, messages, active pairs, groups.
+// Drawings of assignment 4: discrete events, the faults of two engines, messages, active pairs,
+// groups.
 #include <algorithm>
 #include <string>
 
@@ -15,7 +16,8 @@ Drawing discrete_events() {
   d.arrow({50, 96}, {610, 96}, kAxis);
   d.words({612, 114}, "virtual time", Align::kRight, color::soft, 12);
   const double times[] = {130, 255, 330, 470};
-  const std::string fills[] = {color::b_wash, color::d_wash, color::c_wash, color::a_wash, "#e6e0f0"};
+  const std::string fills[] = {color::b_wash, color::d_wash, color::c_wash, color::a_wash,
+                               "#e6e0f0"};
   double from = 50;
   for (int i = 0; i <= 4; ++i) {
     const double to = i < 4 ? times[i] : 596;
@@ -63,7 +65,8 @@ Drawing two_engines_and_their_faults() {
   d.line({250, 48}, {250, 204}, kAxis);
   d.words({44, 222}, "t", Align::kMiddle, color::soft, 12);
   d.words({250, 222}, "t + h", Align::kMiddle, color::soft, 12);
-  const auto impact = [&](double x, double y1, double y2, const std::string& ink, const std::string& name, Point shift) {
+  const auto impact = [&](double x, double y1, double y2, const std::string& ink,
+                          const std::string& name, Point shift) {
     d.line({x, y1}, {x, y2}, {ink, 2.2});
     d.dot({x, y1}, ink);
     d.dot({x, y2}, ink);
@@ -79,7 +82,8 @@ Drawing two_engines_and_their_faults() {
   // Right: small steps of everybody towards a near miss.
   const double stops[] = {384, 440, 480, 508, 526, 538, 547, 554, 560, 566, 572};
   for (int i = 0; i < 4; ++i)
-    for (int k = 1; k < 11; ++k) d.arrow({stops[k - 1], 64.0 + 40 * i}, {stops[k], 64.0 + 40 * i}, {color::b, 1.3});
+    for (int k = 1; k < 11; ++k)
+      d.arrow({stops[k - 1], 64.0 + 40 * i}, {stops[k], 64.0 + 40 * i}, {color::b, 1.3});
   for (const double x : stops) d.line({x, 48}, {x, 204}, {color::line, 0.8});
   d.words({560, 98}, "gap of A and B → 0", Align::kRight, color::a, 11.5);
   d.words({500, 236}, "each bound stops all four;", Align::kMiddle, color::a, 12);
@@ -101,7 +105,8 @@ Drawing messages_and_shared_effects() {
     d.words({352, y + 4}, i == 0 ? "A" : i == 1 ? "B" : "C", Align::kMiddle, color::ink, 13, true);
     d.arrow({374, y}, {624, y}, kAxis);
   }
-  // Left: a straggler at P_2 sends it back; it cancels what it had sent by anti-messages with the same content.
+  // Left: a straggler at P_2 sends it back; it cancels what it had sent by anti-messages with the
+  // same content.
   d.arrow({76, 70}, {104, 147}, {color::a, 2.4});
   d.words({128, 104}, "straggler", Align::kMiddle, color::a, 11.5);
   d.arrow({150, 150}, {186, 227}, {color::b, 2});
@@ -119,7 +124,8 @@ Drawing messages_and_shared_effects() {
   d.ball({226, 70}, 7, color::none, {color::a, 1.5});
   d.words({190, 256}, "+m and −m annihilate in the input queue", Align::kMiddle, color::soft, 11.5);
   // Right: an impact is one record known to both of its bodies.
-  const auto effect = [&](double x, double y1, double y2, const std::string& ink, const std::string& name, bool gone) {
+  const auto effect = [&](double x, double y1, double y2, const std::string& ink,
+                          const std::string& name, bool gone) {
     d.line({x, y1}, {x, y2}, {ink, 2.4, gone ? "4 3" : ""});
     d.dot({x, y1}, ink);
     d.dot({x, y2}, ink);
@@ -145,9 +151,13 @@ Drawing active_pairs() {
     Point from, to;
     double radius;
     std::string fill, ink;
-  } bodies[] = {{"A", {70, 180}, {180, 110}, 18, color::a_wash, color::a}, {"B", {262, 90}, {190, 172}, 18, color::b_wash, color::b}, {"C", {330, 70}, {372, 130}, 18, color::d_wash, color::d}};
+  } bodies[] = {{"A", {70, 180}, {180, 110}, 18, color::a_wash, color::a},
+                {"B", {262, 90}, {190, 172}, 18, color::b_wash, color::b},
+                {"C", {330, 70}, {372, 130}, 18, color::d_wash, color::d}};
   for (const auto& body : bodies) {
-    const double x0 = std::min(body.from.x, body.to.x) - body.radius, x1 = std::max(body.from.x, body.to.x) + body.radius, y0 = std::min(body.from.y, body.to.y) - body.radius,
+    const double x0 = std::min(body.from.x, body.to.x) - body.radius,
+                 x1 = std::max(body.from.x, body.to.x) + body.radius,
+                 y0 = std::min(body.from.y, body.to.y) - body.radius,
                  y1 = std::max(body.from.y, body.to.y) + body.radius;
     d.area({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, body.fill + "66", {body.ink, 1.2, "5 3"});
     d.ball(body.from, body.radius, body.fill, {body.ink, 1.3});
@@ -160,13 +170,15 @@ Drawing active_pairs() {
   d.words({424, 236}, "x", Align::kLeft, color::soft, 12);
   double y = 242;
   for (const auto& body : bodies) {
-    const double x0 = std::min(body.from.x, body.to.x) - body.radius, x1 = std::max(body.from.x, body.to.x) + body.radius;
+    const double x0 = std::min(body.from.x, body.to.x) - body.radius,
+                 x1 = std::max(body.from.x, body.to.x) + body.radius;
     d.line({x0, y}, {x1, y}, {body.ink, 3});
     d.dot({x0, y}, body.ink);
     d.dot({x1, y}, body.ink);
     y += 9;
   }
-  d.words({40, 30}, "full: at global virtual time · empty: at the local virtual time", Align::kLeft, color::soft, 11.5);
+  d.words({40, 30}, "full: at global virtual time · empty: at the local virtual time", Align::kLeft,
+          color::soft, 11.5);
   d.words({450, 70}, "A and B: boxes overlap:", Align::kLeft, color::ink, 12);
   d.words({450, 87}, "an active pair, with a check", Align::kLeft, color::ink, 12);
   d.words({450, 116}, "C: no pair, no check", Align::kLeft, color::d, 12);
@@ -188,7 +200,11 @@ Drawing group_rollback() {
       d.line({left + 16, y}, {left + end, y}, {color::b, 8});
       if (end < 230) d.line({left + end + 4, y}, {left + 230, y}, {color::line, 8, "2 8"});
     }
-    d.area({{left + 20, 50}, {left + (all ? 130 : 116), 50}, {left + (all ? 130 : 116), 166}, {left + 20, 166}}, "#ffffff00", {color::d, 1.6, "6 4"});
+    d.area({{left + 20, 50},
+            {left + (all ? 130 : 116), 50},
+            {left + (all ? 130 : 116), 166},
+            {left + 20, 166}},
+           "#ffffff00", {color::d, 1.6, "6 4"});
     d.line({left + 130, 40}, {left + 130, 176}, {color::a, 1.8});
     d.words({left + 130, 34}, "t_c", Align::kMiddle, color::a, 13);
   };
@@ -206,8 +222,11 @@ Drawing group_rollback() {
 }  // namespace
 
 std::vector<Figure> figures_of_a4() {
-  return {{"discrete_events", discrete_events}, {"two_engines_and_their_faults", two_engines_and_their_faults}, {"messages_and_shared_effects", messages_and_shared_effects},
-          {"active_pairs", active_pairs}, {"group_rollback", group_rollback}};
+  return {{"discrete_events", discrete_events},
+          {"two_engines_and_their_faults", two_engines_and_their_faults},
+          {"messages_and_shared_effects", messages_and_shared_effects},
+          {"active_pairs", active_pairs},
+          {"group_rollback", group_rollback}};
 }
 
 }  // namespace tumble::handouts

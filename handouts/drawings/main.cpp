@@ -1,4 +1,5 @@
-// draw_handouts FOLDER: writes every drawing of the handouts as FOLDER/NAME.svg. The same tree gives the same bytes.
+// draw_handouts FOLDER: writes every drawing of the handouts as FOLDER/NAME.svg. The same tree
+// gives the same bytes.
 #include <cstdio>
 #include <fstream>
 #include <string>

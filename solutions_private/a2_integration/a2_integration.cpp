@@ -1,4 +1,5 @@
-// Reference solution of assignment 2. Equations (A2.n) stand in a2_integration.h and in the handout.
+// Reference solution of assignment 2. Equations (A2.n) stand in a2_integration.h and in the
+// handout.
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <algorithm>
@@ -6,7 +7,9 @@
 
 namespace tumble::a2 {
 
-VectorXd euler_step(const OdeFunction& f, double t, const VectorXd& y, double h) { return y + h * f(t, y); }
+VectorXd euler_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  return y + h * f(t, y);
+}
 
 VectorXd rk4_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
   const VectorXd k1 = f(t, y);
@@ -21,14 +24,17 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
   return R * inertia_body * R.transpose();
 }
 
-VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia,
+                               const Wrench& wrench) {
   // (A2.5), multiplied from the right, so that no world inverse inertia is ever formed.
   const Quaterniond& q = state.world_from_body;
   const Matrix3d R = q.toRotationMatrix();
-  const Vector3d omega_world = R * (inertia.inverse_inertia_body * (R.transpose() * state.angular_momentum_world));
+  const Vector3d omega_world =
+      R * (inertia.inverse_inertia_body * (R.transpose() * state.angular_momentum_world));
 
   // (A2.4). Eigen's constructor takes w first, its product is Hamilton's.
-  const Quaterniond two_q_rate = Quaterniond(0.0, omega_world.x(), omega_world.y(), omega_world.z()) * q;
+  const Quaterniond two_q_rate =
+      Quaterniond(0.0, omega_world.x(), omega_world.y(), omega_world.z()) * q;
   RigidBodyState rate;
   rate.com_world = inertia.inverse_mass * state.momentum_world;
   rate.world_from_body.coeffs() = 0.5 * two_q_rate.coeffs();
@@ -43,7 +49,8 @@ Matrix3d orthonormalize(const Matrix3d& drifted_world_from_body) {
   const Vector3d b = drifted_world_from_body.col(1), c = drifted_world_from_body.col(2);
   const Vector3d x = drifted_world_from_body.col(0).normalized();
   const Vector3d y = (b - x.dot(b) * x).normalized();
-  // The projection on y is taken off what is left of c: with b nearly along a this loses less than the textbook's order.
+  // The projection on y is taken off what is left of c: with b nearly along a this loses less than
+  // the textbook's order.
   const Vector3d c_without_x = c - x.dot(c) * x;
   Matrix3d R;
   R << x, y, (c_without_x - y.dot(c_without_x) * y).normalized();
@@ -52,12 +59,15 @@ Matrix3d orthonormalize(const Matrix3d& drifted_world_from_body) {
 
 Matrix3d rotation_from_euler_angles(double yaw, double pitch, double roll) {
   using Eigen::AngleAxisd;
-  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) * AngleAxisd(roll, Vector3d::UnitX())).toRotationMatrix();
+  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
+          AngleAxisd(roll, Vector3d::UnitX()))
+      .toRotationMatrix();
 }
 
 EulerAngles euler_angles_from_rotation(const Matrix3d& world_from_body) {
   const Matrix3d& R = world_from_body;
-  constexpr double kGimbalLock = 1e-8;  // of cos(pitch): below it, rounding has eaten half the digits of yaw and roll
+  // of cos(pitch): below it, rounding has eaten half the digits of yaw and roll
+  constexpr double kGimbalLock = 1e-8;
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
   EulerAngles angles;
   angles.pitch = std::atan2(-R(2, 0), cos_pitch);
@@ -73,11 +83,15 @@ EulerAngles euler_angles_from_rotation(const Matrix3d& world_from_body) {
 
 namespace {
 
-/// The interval in which the gap closes: open at one end, closed at the other, shrinking with each look at the gap.
+/// The interval in which the gap closes: open at one end, closed at the other, shrinking with each
+/// look at the gap.
 class Bracket {
  public:
   Bracket(const ScalarFunction& gap, double t_low, double t_high, double tolerance)
-      : gap_(gap), tolerance_(tolerance), open_{t_low, look(t_low)}, closed_{t_high, look(t_high)} {}
+      : gap_(gap),
+        tolerance_(tolerance),
+        open_{t_low, look(t_low)},
+        closed_{t_high, look(t_high)} {}
 
   struct End {
     double time, gap;
@@ -89,18 +103,23 @@ class Bracket {
   bool contains(double t) const { return open_.time < t && t < closed_.time; }  // false for NaN
   bool has_no_impact() const { return open_.gap < 0 || (open_.gap > 0 && closed_.gap > 0); }
   bool is_searched() const {
-    return saw_nan_ || open_.gap == 0 || closed_.gap == 0 || width() <= tolerance_ || !contains(middle());
+    return saw_nan_ || open_.gap == 0 || closed_.gap == 0 || width() <= tolerance_ ||
+           !contains(middle());
   }
 
   /// Looks at the gap at t inside, and keeps the part in which it closes.
   void cut(double t) {
     const End end{t, look(t)};
-    if (end.gap >= 0) open_ = end;
-    else closed_ = end;
+    if (end.gap >= 0)
+      open_ = end;
+    else
+      closed_ = end;
   }
 
   RootResult result() const {
-    if (saw_nan_) return {RootStatus::kNotConverged, open_.gap >= 0 ? open_.time : kUnset, open_.gap >= 0 ? open_.gap : kUnset, looks_};
+    if (saw_nan_)
+      return {RootStatus::kNotConverged, open_.gap >= 0 ? open_.time : kUnset,
+              open_.gap >= 0 ? open_.gap : kUnset, looks_};
     if (has_no_impact()) return {RootStatus::kNoSignChange, kUnset, kUnset, looks_};
     const End& end = closed_.gap == 0 && open_.gap != 0 ? closed_ : open_;
     return {RootStatus::kConverged, end.time, end.gap, looks_};
@@ -116,21 +135,23 @@ class Bracket {
 
   const ScalarFunction& gap_;
   double tolerance_;
-  int looks_ = 0;         // before the ends, whose initialisation counts looks
+  int looks_ = 0;  // before the ends, whose initialisation counts looks
   bool saw_nan_ = false;
   End open_, closed_;
 };
 
 }  // namespace
 
-RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high, double tolerance) {
+RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high,
+                                 double tolerance) {
   Bracket bracket(gap, t_low, t_high, tolerance);
   if (bracket.has_no_impact()) return bracket.result();
   while (!bracket.is_searched()) bracket.cut(bracket.middle());
   return bracket.result();
 }
 
-RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance) {
+RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                              double t_low, double t_high, double tolerance) {
   constexpr int kPatience = 3;  // looks in which the bracket has to halve, or else it is halved
   Bracket bracket(gap, t_low, t_high, tolerance);
   if (bracket.has_no_impact()) return bracket.result();
@@ -143,8 +164,9 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
     const auto& [t, g] = from_open ? bracket.open() : bracket.closed();
     const double newton = t - g / gap_rate(t);
 
-    // A hair further, so that the root lies between t and the next t and the bracket can close from both sides. The hair
-    // doubles while the root is still beyond it: rounding may have moved it by several spacings of doubles.
+    // A hair further, so that the root lies between t and the next t and the bracket can close from
+    // both sides. The hair doubles while the root is still beyond it: rounding may have moved it by
+    // several spacings of doubles.
     const double spacing = std::nextafter(std::abs(t), INFINITY) - std::abs(t);
     const double hair = std::max(tolerance / 2, std::ldexp(spacing, looks_on_one_side));
     const double next = from_open ? newton + hair : newton - hair;

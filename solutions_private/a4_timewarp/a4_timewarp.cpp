@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool contains(const std::vector<std::int32_t>& bodies, std::int32_t body) { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
+bool contains(const std::vector<std::int32_t>& bodies, std::int32_t body) {
+  return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+}
 
 /// Every receiver back to one stamp.
 std::vector<Rollback> all_back(const std::vector<std::int32_t>& bodies, const Stamp& stamp) {
@@ -31,27 +33,37 @@ ScheduledEvent with_times(ScheduledEvent event, double safe_time, double time) {
 }  // namespace
 
 bool comes_before(const Stamp& x, const Stamp& y) {
-  return std::tie(x.time, x.microstep, x.kind, x.body_a, x.body_b) < std::tie(y.time, y.microstep, y.kind, y.body_a, y.body_b);
+  return std::tie(x.time, x.microstep, x.kind, x.body_a, x.body_b) <
+         std::tie(y.time, y.microstep, y.kind, y.body_a, y.body_b);
 }
 
-double next_check_time(double now, double gap, double closing_speed, double closing_acceleration, double step) {
+double next_check_time(double now, double gap, double closing_speed, double closing_acceleration,
+                       double step) {
   if (!(gap > 0)) return now + step;
-  // This form of the quadratic's root neither cancels nor minds a = 0; 0 in the denominator is "never".
+  // This form of the quadratic's root neither cancels nor minds a = 0; 0 in the denominator is
+  // "never".
   const double& v = closing_speed;
   const double& a = closing_acceleration;
-  return now + std::clamp(2 * gap / (v + std::sqrt(v * v + 2 * a * gap)), step, kMostStepsAhead * step);
+  return now +
+         std::clamp(2 * gap / (v + std::sqrt(v * v + 2 * a * gap)), step, kMostStepsAhead * step);
 }
 
-CheckDecision on_collision_check(const ScheduledEvent& event, const CheckFinding& finding, double step) {
+CheckDecision on_collision_check(const ScheduledEvent& event, const CheckFinding& finding,
+                                 double step) {
   if (finding.contact) {
     const double tc = finding.contact->time;
     return {true, all_back(event.receivers, *finding.contact), with_times(event, tc, tc)};
   }
   const double t = event.stamp.time;
-  return {false, {}, with_times(event, t, next_check_time(t, finding.gap, finding.closing_speed, finding.closing_acceleration, step))};
+  return {false,
+          {},
+          with_times(event, t,
+                     next_check_time(t, finding.gap, finding.closing_speed,
+                                     finding.closing_acceleration, step))};
 }
 
-std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>& bodies, const std::vector<GroupContact>& contacts) {
+std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>& bodies,
+                                                      const std::vector<GroupContact>& contacts) {
   // Union of sets; the lowest place of a set stands for it.
   std::vector<std::size_t> root(bodies.size());
   std::iota(root.begin(), root.end(), std::size_t{0});
@@ -59,63 +71,74 @@ std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int
     while (root[i] != i) i = root[i] = root[root[i]];
     return i;
   };
-  const auto place = [&](std::int32_t body) { return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), body) - bodies.begin()); };
+  const auto place = [&](std::int32_t body) {
+    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), body) - bodies.begin());
+  };
   for (const GroupContact& contact : contacts) {
     const std::size_t a = place(contact.body_a), b = place(contact.body_b);
-    if (a == bodies.size() || b == bodies.size()) continue;   // a wall
+    if (a == bodies.size() || b == bodies.size()) continue;  // a wall
     const std::size_t x = find(a), y = find(b);
     root[std::max(x, y)] = std::min(x, y);
   }
-  std::map<std::size_t, std::vector<std::int32_t>> members;   // by the lowest
+  std::map<std::size_t, std::vector<std::int32_t>> members;  // by the lowest
   for (std::size_t i = 0; i < bodies.size(); ++i) members[find(i)].push_back(bodies[i]);
   std::vector<std::vector<std::int32_t>> groups;
   for (auto& [lowest, group] : members) groups.push_back(std::move(group));
   return groups;
 }
 
-GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<GroupContact>& contacts,
+                             double step) {
   double tc = kInfinity;
   for (const GroupContact& contact : contacts) tc = std::min(tc, contact.opens);
   const double t = event.stamp.time;
   if (tc > t) return {false, {}, {}, with_times(event, t, t + step)};
   std::vector<GroupContact> closed;
-  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(closed), [&](const GroupContact& contact) { return contact.opens > tc; });
+  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(closed),
+               [&](const GroupContact& contact) { return contact.opens > tc; });
   Stamp stamp = event.stamp;
   stamp.time = tc;
-  return {true, contact_groups(event.receivers, closed), all_back(event.receivers, stamp), with_times(event, tc, tc)};
+  return {true, contact_groups(event.receivers, closed), all_back(event.receivers, stamp),
+          with_times(event, tc, tc)};
 }
 
-std::vector<Rollback> on_callback(const ScheduledEvent& event, const std::vector<LocalTime>& local_times) {
+std::vector<Rollback> on_callback(const ScheduledEvent& event,
+                                  const std::vector<LocalTime>& local_times) {
   std::vector<Rollback> rollbacks;
   for (const std::int32_t body : event.receivers)
     for (const LocalTime& local : local_times)
-      if (local.body == body && local.time > event.stamp.time) rollbacks.push_back({body, event.stamp});
+      if (local.body == body && local.time > event.stamp.time)
+        rollbacks.push_back({body, event.stamp});
   return rollbacks;
 }
 
 std::vector<Rollback> anti_messages(const std::vector<Effect>& effects, const Rollback& rollback) {
   std::vector<Rollback> messages;
   for (const Effect& effect : effects) {
-    if (comes_before(effect.stamp, rollback.stamp) || !contains(effect.processes, rollback.body)) continue;
+    if (comes_before(effect.stamp, rollback.stamp) || !contains(effect.processes, rollback.body))
+      continue;
     for (const std::int32_t other : effect.processes)
       if (other != rollback.body) messages.push_back({other, effect.stamp});
   }
   return messages;
 }
 
-std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects, const std::vector<Rollback>& first) {
-  std::map<std::int32_t, std::vector<Effect>> effects_of;   // by process: who goes back asks for its own
+std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects,
+                                    const std::vector<Rollback>& first) {
+  // by process: who goes back asks for its own
+  std::map<std::int32_t, std::vector<Effect>> effects_of;
   for (const Effect& effect : effects)
     for (const std::int32_t body : effect.processes) effects_of[body].push_back(effect);
-  std::map<std::int32_t, Stamp> back_to;   // by body
+  std::map<std::int32_t, Stamp> back_to;  // by body
   std::vector<Rollback> waiting = first;
   while (!waiting.empty()) {
     const Rollback now = waiting.back();
     waiting.pop_back();
     const auto [known, is_new] = back_to.try_emplace(now.body, now.stamp);
-    if (!is_new && !comes_before(now.stamp, known->second)) continue;   // goes back as far already
+    if (!is_new && !comes_before(now.stamp, known->second)) continue;  // goes back as far already
     known->second = now.stamp;
-    for (const Rollback& message : anti_messages(effects_of[now.body], now)) waiting.push_back(message);
+    for (const Rollback& message : anti_messages(effects_of[now.body], now))
+      waiting.push_back(message);
   }
   std::vector<Rollback> plan;
   for (const auto& [body, stamp] : back_to) plan.push_back({body, stamp});
@@ -123,24 +146,29 @@ std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects, const st
 }
 
 ScheduledEvent after_rollback(const ScheduledEvent& event, const std::vector<Rollback>& rollbacks) {
-  const bool is_check = event.stamp.kind == WorkKind::kCollision || event.stamp.kind == WorkKind::kGroup;
+  const bool is_check =
+      event.stamp.kind == WorkKind::kCollision || event.stamp.kind == WorkKind::kGroup;
   double r = kInfinity;
   for (const Rollback& rollback : rollbacks)
     if (contains(event.receivers, rollback.body)) r = std::min(r, rollback.stamp.time);
   return is_check && r < event.safe_time ? with_times(event, r, r) : event;
 }
 
-double global_virtual_time(const std::vector<LocalTime>& local_times, const std::vector<ScheduledEvent>& events) {
+double global_virtual_time(const std::vector<LocalTime>& local_times,
+                           const std::vector<ScheduledEvent>& events) {
   double least = kInfinity;
   for (const LocalTime& local : local_times) least = std::min(least, local.time);
   for (const ScheduledEvent& event : events) least = std::min(least, event.safe_time);
   return least;
 }
 
-bool may_commit(const Stamp& stamp, double global_virtual_time) { return stamp.time < global_virtual_time; }
+bool may_commit(const Stamp& stamp, double global_virtual_time) {
+  return stamp.time < global_virtual_time;
+}
 
 std::uint32_t states_to_purge(const std::vector<double>& state_times, double global_virtual_time) {
-  const auto first_at_gvt = std::lower_bound(state_times.begin(), state_times.end(), global_virtual_time);
+  const auto first_at_gvt =
+      std::lower_bound(state_times.begin(), state_times.end(), global_virtual_time);
   const auto earlier = first_at_gvt - state_times.begin();
   return static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(0, earlier - 1));
 }

@@ -17,7 +17,8 @@
 
 namespace tumble::testing {
 
-inline constexpr double kRoundoff = 20 * kEps;   // times the largest number involved: at most 40 roundings of eps / 2 each
+// times the largest number involved: at most 40 roundings of eps / 2 each
+inline constexpr double kRoundoff = 20 * kEps;
 inline const Vector3d kUp = Vector3d::UnitZ();
 
 inline const a1::Module& student() { return modules::under_test<a1::Module>(); }
@@ -50,28 +51,31 @@ Vector3d angular_momentum(const Body& body, const Velocity& velocity);
 double kinetic_energy(const Body& body, const Velocity& velocity);
 inline Velocity velocity_of(const Body& body) { return {body.velocity_world, body.omega_world}; }
 /// Rate of the gap for these velocities [m/s].
-double gap_rate(const Contact& contact, const Body& a, const Velocity& velocity_a, const Body& b, const Velocity& velocity_b);
+double gap_rate(const Contact& contact, const Body& a, const Velocity& velocity_a, const Body& b,
+                const Velocity& velocity_b);
 
 /// A wrong answer, and the mistake that gives it.
 template <class Value>
 using Slips = std::vector<std::pair<Value, std::string>>;
 
 inline const std::string kNotANumber =
-    "no number came out: infinite mass (use inverse_mass and inverse_inertia_body, never mass or inertia_body) or a division by 0";
+    "no number came out: infinite mass (use inverse_mass and inverse_inertia_body, never mass or "
+    "inertia_body) or a division by 0";
 
 inline constexpr double kSameAnswer = 1e-9;  // relative: far above rounding, far below any mistake
 
 /// The name of the mistake whose answer was found; `otherwise` for none.
 inline std::string likely(double found, const Slips<double>& slips, const std::string& otherwise) {
   for (const auto& [gives, words] : slips) {
-    if (std::abs(found - gives) <= kSameAnswer * std::max(std::abs(found), std::abs(gives))) return words;
+    if (std::abs(found - gives) <= kSameAnswer * std::max(std::abs(found), std::abs(gives)))
+      return words;
   }
   return std::isfinite(found) ? otherwise : kNotANumber;
 }
 
 template <int n>
-std::string likely(const Eigen::Matrix<double, n, 1>& found, const Slips<Eigen::Matrix<double, n, 1>>& slips,
-                   const std::string& otherwise) {
+std::string likely(const Eigen::Matrix<double, n, 1>& found,
+                   const Slips<Eigen::Matrix<double, n, 1>>& slips, const std::string& otherwise) {
   for (const auto& [gives, words] : slips) {
     if ((found - gives).norm() <= kSameAnswer * std::max(found.norm(), gives.norm())) return words;
   }
@@ -137,12 +141,12 @@ enum class InertiaSlip { kNone, kBodyAxes, kTransposed, kDiagonal, kOneByOne, kN
 
 /// The formulas term by term. Each default is right; a slip is one of them changed.
 struct FormulaSlip {
-  bool spin_of_a = true, spin_of_b = true;          // w x r in the relative velocity
-  bool turning_of_a = true, turning_of_b = true;    // in the denominator
-  bool own_arms = true;                             // false: r_a serves B as well
-  bool arms_from_com = true;                        // false: from the world's origin
-  bool walls_move = true;                           // false: what is immovable is at rest
-  bool right_handed = true;                         // false: r x w for w x r
+  bool spin_of_a = true, spin_of_b = true;        // w x r in the relative velocity
+  bool turning_of_a = true, turning_of_b = true;  // in the denominator
+  bool own_arms = true;                           // false: r_a serves B as well
+  bool arms_from_com = true;                      // false: from the world's origin
+  bool walls_move = true;                         // false: what is immovable is at rest
+  bool right_handed = true;                       // false: r x w for w x r
   InertiaSlip inertia_of_a = InertiaSlip::kNone, inertia_of_b = InertiaSlip::kNone;
 };
 
@@ -155,7 +159,8 @@ Matrix3d inverse_inertia_by(const Body& body, InertiaSlip slip = InertiaSlip::kN
 Slips<double> slips_of_relative_velocity(const Encounter& e);
 Slips<double> slips_of_impulse(const Encounter& e, double restitution);
 /// The same for the angular velocity that an impulse gives, and for w' of (A1.4).
-Slips<Vector3d> slips_of_apply(const Body& body, const Vector3d& impulse_world, const Vector3d& point_world);
+Slips<Vector3d> slips_of_apply(const Body& body, const Vector3d& impulse_world,
+                               const Vector3d& point_world);
 Slips<Vector3d> slips_of_angular_acceleration(const Body& body, const Vector3d& torque_world);
 /// w' by (A1.4), in world axes throughout: another way than the header's.
 Vector3d angular_acceleration_by(const Body& body, const Vector3d& torque_world);

@@ -9,11 +9,12 @@ namespace {
 constexpr double kRayRoundoff = 8 * kEps;
 const std::string kHandout = equation("1");
 
-const Triangle kRightAngled{{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};  // in the plane z = 0, seen counter-clockwise from above
+// in the plane z = 0, seen counter-clockwise from above
+const Triangle kRightAngled{{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};
 Ray straight_down(double x, double y) { return {{x, y, 2}, {0, 0, -1}}; }
 
-void expect_hit(const std::optional<RayHit>& found, double t, const Vector3d& weights, Story story, const Slips<double>& t_slips = {},
-                const Slips<Vector3d>& weight_slips = {}) {
+void expect_hit(const std::optional<RayHit>& found, double t, const Vector3d& weights, Story story,
+                const Slips<double>& t_slips = {}, const Slips<Vector3d>& weight_slips = {}) {
   if (!found) {
     report_failure(tell(story, "a hit at t = " + show(t), "a miss", ""));
     return;
@@ -27,18 +28,24 @@ void expect_hit(const std::optional<RayHit>& found, double t, const Vector3d& we
 
 void expect_miss(const Ray& ray, const Triangle& triangle, const Story& story) {
   const std::optional<RayHit> found = student().intersect_ray_triangle(ray, triangle);
-  expect_true(!found, "a miss", found ? "a hit at t = " + show(found->t) + ", weights " + show(found->barycentric) : "", story);
+  expect_true(
+      !found, "a miss",
+      found ? "a hit at t = " + show(found->t) + ", weights " + show(found->barycentric) : "",
+      story);
 }
 
 TEST(RayTriangle, HitsInsideWithTheWeightsOfTheCorners) {
   const auto found = student().intersect_ray_triangle(straight_down(0.5, 0.75), kRightAngled);
-  expect_hit(found, 2.0, {0.5, 0.125, 0.375},
-             {.scene = "triangle a (0,0,0), b (4,0,0), c (0,2,0); ray from (0.5, 0.75, 2) along (0, 0, -1)",
-              .slip = "the system (A1.1) or the sign of t",
-              .handout = kHandout},
-             {{-2.0, "the sign of t"}},
-             {{{0.125, 0.375, 0.5}, "the order of the weights: u and v of Moeller-Trumbore belong to b and c, 1 - u - v to a"},
-              {{0.5, 0.375, 0.125}, "the weights of b and c are swapped"}});
+  expect_hit(
+      found, 2.0, {0.5, 0.125, 0.375},
+      {.scene =
+           "triangle a (0,0,0), b (4,0,0), c (0,2,0); ray from (0.5, 0.75, 2) along (0, 0, -1)",
+       .slip = "the system (A1.1) or the sign of t",
+       .handout = kHandout},
+      {{-2.0, "the sign of t"}},
+      {{{0.125, 0.375, 0.5},
+        "the order of the weights: u and v of Moeller-Trumbore belong to b and c, 1 - u - v to a"},
+       {{0.5, 0.375, 0.125}, "the weights of b and c are swapped"}});
 }
 
 TEST(RayTriangle, CountsInLengthsOfTheDirection) {
@@ -52,8 +59,12 @@ TEST(RayTriangle, CountsInLengthsOfTheDirection) {
 
 TEST(RayTriangle, MissesBesideTheTriangle) {
   if (!gives_hits()) return;
-  const Story story{.scene = "rays straight down beside the triangle a (0,0,0), b (4,0,0), c (0,2,0), through its plane",
-                    .slip = "all three weights must be >= 0: that of a (1 - u - v, beyond the long side) is often forgotten",
+  const Story story{.scene =
+                        "rays straight down beside the triangle a (0,0,0), b (4,0,0), c (0,2,0), "
+                        "through its plane",
+                    .slip =
+                        "all three weights must be >= 0: that of a (1 - u - v, beyond the long "
+                        "side) is often forgotten",
                     .handout = kHandout};
   expect_miss(straight_down(3.0, 1.5), kRightAngled, story);
   expect_miss(straight_down(-0.5, 0.5), kRightAngled, story);
@@ -63,7 +74,9 @@ TEST(RayTriangle, MissesBesideTheTriangle) {
 TEST(RayTriangle, SeesTheBackAsWellAsTheFront) {
   const auto found = student().intersect_ray_triangle({{0.5, 0.75, -2}, {0, 0, 1}}, kRightAngled);
   expect_hit(found, 2.0, {0.5, 0.125, 0.375},
-             {.scene = "the triangle from below", .slip = "only one sign of the determinant accepted: both faces count", .handout = kHandout});
+             {.scene = "the triangle from below",
+              .slip = "only one sign of the determinant accepted: both faces count",
+              .handout = kHandout});
 }
 
 TEST(RayTriangle, IgnoresWhatIsBehindTheOrigin) {
@@ -77,14 +90,20 @@ TEST(RayTriangle, IgnoresWhatIsBehindTheOrigin) {
 TEST(RayTriangle, StartsAtItsOrigin) {
   const auto found = student().intersect_ray_triangle({{0.5, 0.75, 0}, {0, 0, 1}}, kRightAngled);
   expect_hit(found, 0.0, {0.5, 0.125, 0.375},
-             {.scene = "a ray that starts on the triangle", .slip = "t = 0 refused: t >= 0 is a hit", .handout = kHandout});
+             {.scene = "a ray that starts on the triangle",
+              .slip = "t = 0 refused: t >= 0 is a hit",
+              .handout = kHandout});
 }
 
 TEST(RayTriangle, EdgesAndCornersBelongToTheTriangle) {
-  const Story story{.scene = "rays straight down through the middles of the edges ab, bc, ca and through the corners a, b, c",
+  const Story story{.scene =
+                        "rays straight down through the middles of the edges ab, bc, ca and "
+                        "through the corners a, b, c",
                     .slip = "edge hits missed: compare weights with >= 0, not > 0",
                     .handout = kHandout};
-  const auto through = [&](double x, double y) { return student().intersect_ray_triangle(straight_down(x, y), kRightAngled); };
+  const auto through = [&](double x, double y) {
+    return student().intersect_ray_triangle(straight_down(x, y), kRightAngled);
+  };
   expect_hit(through(2, 0), 2.0, {0.5, 0.5, 0}, story);
   expect_hit(through(2, 1), 2.0, {0, 0.5, 0.5}, story);
   expect_hit(through(0, 1), 2.0, {0.5, 0, 0.5}, story);
@@ -95,9 +114,10 @@ TEST(RayTriangle, EdgesAndCornersBelongToTheTriangle) {
 
 TEST(RayTriangle, MissesWhenParallel) {
   if (!gives_hits()) return;
-  const Story story{.scene = "rays along x: 1 m above the plane of the triangle, and inside the plane",
-                    .slip = "division by zero: a ray parallel to the plane has determinant 0 and is a miss",
-                    .handout = kHandout};
+  const Story story{
+      .scene = "rays along x: 1 m above the plane of the triangle, and inside the plane",
+      .slip = "division by zero: a ray parallel to the plane has determinant 0 and is a miss",
+      .handout = kHandout};
   expect_miss({{-1, 0.5, 1}, {1, 0, 0}}, kRightAngled, story);
   expect_miss({{-1, 0.5, 0}, {1, 0, 0}}, kRightAngled, story);
 }
@@ -108,17 +128,21 @@ TEST(RayTriangle, FindsATriangleOfAMicrometre) {
   const auto found = student().intersect_ray_triangle(straight_down(0.5 * s, 0.75 * s), tiny);
   expect_hit(found, 2.0, {0.5, 0.125, 0.375},
              {.scene = "the triangle shrunk to 4 micrometres",
-              .slip = "an absolute epsilon on the determinant: it grows with the square of the triangle's size, so 1e-9 is not small",
+              .slip = "an absolute epsilon on the determinant: it grows with the square of the "
+                      "triangle's size, so 1e-9 is not small",
               .handout = kHandout});
 }
 
 TEST(RayTriangle, FindsATriangleSeenNearlyEdgeOn) {
   const double slope = 0x1p-40;
-  const auto found = student().intersect_ray_triangle({{-1, 0.5, 1.5 * slope}, {1, 0, -slope}}, kRightAngled);
-  expect_hit(found, 1.5, {0.625, 0.125, 0.25},
-             {.scene = "a ray that comes in along x at a slope of 2^-40 (9e-13) and meets the triangle at (0.5, 0.5, 0)",
-              .slip = "an absolute epsilon on the determinant: only exactly parallel rays have none",
-              .handout = kHandout});
+  const auto found =
+      student().intersect_ray_triangle({{-1, 0.5, 1.5 * slope}, {1, 0, -slope}}, kRightAngled);
+  expect_hit(
+      found, 1.5, {0.625, 0.125, 0.25},
+      {.scene = "a ray that comes in along x at a slope of 2^-40 (9e-13) and meets the triangle at "
+                "(0.5, 0.5, 0)",
+       .slip = "an absolute epsilon on the determinant: only exactly parallel rays have none",
+       .handout = kHandout});
 }
 
 // Any two triangles that share an edge; any ray aimed at a point of that edge. In exact arithmetic
@@ -143,9 +167,12 @@ TEST(RayTriangle, LetsNothingThroughASeam) {
     };
     lost += meets({p, q, left}) || meets({q, p, right}) ? 0 : 1;
   }
-  expect_true(lost == 0, "no ray lost", std::to_string(lost) + " of " + std::to_string(rays) + " rays lost",
-              {.scene = "400 rays aimed at random points of the edge that two random triangles share (seed 1001)",
-               .slip = "the seam leaks: both triangles must compute the same number for their common edge, up to its sign "
+  expect_true(lost == 0, "no ray lost",
+              std::to_string(lost) + " of " + std::to_string(rays) + " rays lost",
+              {.scene = "400 rays aimed at random points of the edge that two random triangles "
+                        "share (seed 1001)",
+               .slip = "the seam leaks: both triangles must compute the same number for their "
+                       "common edge, up to its sign "
                        "(read about watertight tests in the hints)",
                .handout = "handouts/a1_impulse.md#hint-ray"});
 }

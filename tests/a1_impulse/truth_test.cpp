@@ -45,37 +45,54 @@ std::vector<Json> truths_of_family(const std::string& family) {
 // alone may be hit or missed, and the law is that one of them is hit (Woop's own order of
 // evaluation shears the corners first, and chooses one of the two).
 bool at_least_one_is_hit(const Json& ray, const Json& triangles) {
-  return std::any_of(ray["per_triangle"].begin(), ray["per_triangle"].end(), [&](const Json& expected) {
-    const Json& corners = triangles[expected["triangle"].get<std::size_t>()];
-    return student().intersect_ray_triangle({vector(ray["origin"]), vector(ray["direction"])}, {vector(corners[0]), vector(corners[1]), vector(corners[2])}).has_value();
-  });
+  return std::any_of(
+      ray["per_triangle"].begin(), ray["per_triangle"].end(), [&](const Json& expected) {
+        const Json& corners = triangles[expected["triangle"].get<std::size_t>()];
+        return student()
+            .intersect_ray_triangle({vector(ray["origin"]), vector(ray["direction"])},
+                                    {vector(corners[0]), vector(corners[1]), vector(corners[2])})
+            .has_value();
+      });
 }
 
 /// Two triangles or more, and the ray passes through a point that they share.
 bool meets_a_seam(const Json& ray) {
   const Json& all = ray["per_triangle"];
-  return all.size() > 1 && std::all_of(all.begin(), all.end(), [](const Json& one) { return one["class"].get<std::string>().starts_with("on_"); });
+  return all.size() > 1 && std::all_of(all.begin(), all.end(), [](const Json& one) {
+           return one["class"].get<std::string>().starts_with("on_");
+         });
 }
 
 TEST(RayTriangle, AgreesWithTheTruths) {
   for (const Json& truth : truths_of_family("ray_triangle")) {
     for (const Json& ray : truth["outputs"]["rays"]["value"]) {
       for (const Json& expected : ray["per_triangle"]) {
-        if (expected["hit"].is_null()) continue;  // inside the plane and across the triangle: no single answer
-        const Json& corners = truth["inputs"]["triangles"]["value"][expected["triangle"].get<std::size_t>()];
-        const auto found = student().intersect_ray_triangle({vector(ray["origin"]), vector(ray["direction"])},
-                                                            {vector(corners[0]), vector(corners[1]), vector(corners[2])});
-        const Story story{.scene = truth["id"].get<std::string>() + ", ray " + ray["name"].get<std::string>() + ": " +
-                                   expected["class"].get<std::string>() + " of triangle " + expected["triangle"].dump(),
-                          .slip = found.has_value() == expected["hit"].get<bool>() ? "digits lost on the way: divide last, and only once" : "an epsilon somewhere: compare with 0 exactly",
+        // inside the plane and across the triangle: no single answer
+        if (expected["hit"].is_null()) continue;
+        const Json& corners =
+            truth["inputs"]["triangles"]["value"][expected["triangle"].get<std::size_t>()];
+        const auto found = student().intersect_ray_triangle(
+            {vector(ray["origin"]), vector(ray["direction"])},
+            {vector(corners[0]), vector(corners[1]), vector(corners[2])});
+        const Story story{.scene = truth["id"].get<std::string>() + ", ray " +
+                                   ray["name"].get<std::string>() + ": " +
+                                   expected["class"].get<std::string>() + " of triangle " +
+                                   expected["triangle"].dump(),
+                          .slip = found.has_value() == expected["hit"].get<bool>()
+                                      ? "digits lost on the way: divide last, and only once"
+                                      : "an epsilon somewhere: compare with 0 exactly",
                           .handout = "handouts/a1_impulse.md#hint-ray"};
         const bool hit = expected["hit"].get<bool>();
         if (meets_a_seam(ray) && !found) {
-          expect_true(at_least_one_is_hit(ray, truth["inputs"]["triangles"]["value"]), "a hit of one of the triangles that share the seam", "a miss of all", story);
+          expect_true(at_least_one_is_hit(ray, truth["inputs"]["triangles"]["value"]),
+                      "a hit of one of the triangles that share the seam", "a miss of all", story);
           continue;
         }
-        expect_true(found.has_value() == hit, hit ? "a hit" : "a miss", found ? "a hit" : "a miss", story);
-        if (found && hit) expect_near(found->t, number(expected["t"]), kFloors * number(expected["t_tolerance_floor"]), "lengths of d", story);
+        expect_true(found.has_value() == hit, hit ? "a hit" : "a miss", found ? "a hit" : "a miss",
+                    story);
+        if (found && hit)
+          expect_near(found->t, number(expected["t"]),
+                      kFloors * number(expected["t_tolerance_floor"]), "lengths of d", story);
         if (::testing::Test::HasFailure()) return;  // one story is enough
       }
     }
@@ -92,19 +109,23 @@ struct Impact {
   double after_floor = 0.0;
 };
 
-Body body_at(const Inertia& inertia, const Vector3d& com_world, const Vector3d& velocity_world, const Vector3d& omega_world) {
+Body body_at(const Inertia& inertia, const Vector3d& com_world, const Vector3d& velocity_world,
+             const Vector3d& omega_world) {
   return {inertia, com_world, Quaterniond::Identity(), velocity_world, omega_world};
 }
 
 /// A ball whose size has no effect.
 Body ball_at(double mass, const Vector3d& com_world, const Vector3d& velocity_world) {
-  return body_at(finite_inertia(mass, Matrix3d::Identity() * mass), com_world, velocity_world, Vector3d::Zero());
+  return body_at(finite_inertia(mass, Matrix3d::Identity() * mass), com_world, velocity_world,
+                 Vector3d::Zero());
 }
 
 Impact sphere_sphere(const Json& truth) {
   const auto in = [&](const char* name) { return truth["inputs"][name]["value"]; };
   const auto out = [&](const char* name) { return vector(truth["outputs"][name]["value"]); };
-  const auto floor = [&](const char* name) { return number(truth["outputs"][name]["tolerance_floor"]); };
+  const auto floor = [&](const char* name) {
+    return number(truth["outputs"][name]["tolerance_floor"]);
+  };
   return {.id = truth["id"],
           .encounter = {{vector(in("contact_point")), vector(in("normal_B_to_A"))},
                         ball_at(number(in("mA")), vector(in("xA")), vector(in("vA"))),
@@ -112,7 +133,8 @@ Impact sphere_sphere(const Json& truth) {
           .restitution = number(in("e")),
           .impulse = number(truth["outputs"]["j"]["value"]),
           .impulse_floor = floor("j"),
-          .after = a1::CollisionOutcome{{out("vA_after"), out("wA_after")}, {out("vB_after"), out("wB_after")}},
+          .after = a1::CollisionOutcome{{out("vA_after"), out("wA_after")},
+                                        {out("vB_after"), out("wB_after")}},
           .after_floor = std::max(floor("vA_after"), floor("vB_after"))};
 }
 
@@ -121,15 +143,21 @@ Impact box_corner(const Json& truth) {
   const auto out = [&](const char* name) { return truth["outputs"][name]; };
   const Vector3d squares = vector(in("half_extents")).cwiseAbs2();
   const double m = number(in("m"));
-  const Vector3d moments(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y());
-  Body box = body_at(finite_inertia(m, Matrix3d((m / 3.0 * moments).asDiagonal())), vector(in("x")), vector(in("v")), vector(in("omega_world")));
-  box.world_from_body = Quaterniond(number(in("q")[0]), number(in("q")[1]), number(in("q")[2]), number(in("q")[3])).normalized();
+  const Vector3d moments(squares.y() + squares.z(), squares.x() + squares.z(),
+                         squares.x() + squares.y());
+  Body box = body_at(finite_inertia(m, Matrix3d((m / 3.0 * moments).asDiagonal())), vector(in("x")),
+                     vector(in("v")), vector(in("omega_world")));
+  box.world_from_body =
+      Quaterniond(number(in("q")[0]), number(in("q")[1]), number(in("q")[2]), number(in("q")[3]))
+          .normalized();
   return {.id = truth["id"],
           .encounter = {{vector(in("contact_point")), vector(in("normal"))}, box, wall({0, 0, 0})},
           .restitution = number(in("e")),
           .impulse = number(out("j")["value"]),
           .impulse_floor = number(out("j")["tolerance_floor"]),
-          .after = a1::CollisionOutcome{{vector(out("v_after")["value"]), vector(out("w_after")["value"])}, {Vector3d::Zero(), Vector3d::Zero()}},
+          .after = a1::CollisionOutcome{{vector(out("v_after")["value"]),
+                                         vector(out("w_after")["value"])},
+                                        {Vector3d::Zero(), Vector3d::Zero()}},
           .after_floor = number(out("w_after")["tolerance_floor"])};
 }
 
@@ -139,62 +167,78 @@ Impact rod_ball(const Json& truth) {
   const double M = number(in("M_rod")), L = number(in("L_rod"));
   const Vector3d at(number(in("d")), 0, 0), up = vector(in("normal_rod_to_ball"));
   // The moment about the rod's own axis has no effect: there is no rotation about it.
-  const Body rod = body_at(finite_inertia(M, Matrix3d::Identity() * (M * L * L / 12.0)), {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
-  const Vector3d v = up * number(out("ball_vz_after")["value"]), V = up * number(out("rod_vz_after")["value"]);
+  const Body rod = body_at(finite_inertia(M, Matrix3d::Identity() * (M * L * L / 12.0)), {0, 0, 0},
+                           {0, 0, 0}, {0, 0, 0});
+  const Vector3d v = up * number(out("ball_vz_after")["value"]),
+                 V = up * number(out("rod_vz_after")["value"]);
   const Vector3d W(0, number(out("rod_wy_after")["value"]), 0);
-  return {.id = truth["id"],
-          .encounter = {{at, up}, ball_at(number(in("m_ball")), at + up, vector(in("v_ball"))), rod},
-          .restitution = number(in("e")),
-          .impulse = number(out("j")["value"]),
-          .impulse_floor = number(out("j")["tolerance_floor"]),
-          .after = a1::CollisionOutcome{{v, {0, 0, 0}}, {V, W}},
-          .after_floor = number(out("ball_vz_after")["tolerance_floor"])};
+  return {
+      .id = truth["id"],
+      .encounter = {{at, up}, ball_at(number(in("m_ball")), at + up, vector(in("v_ball"))), rod},
+      .restitution = number(in("e")),
+      .impulse = number(out("j")["value"]),
+      .impulse_floor = number(out("j")["tolerance_floor"]),
+      .after = a1::CollisionOutcome{{v, {0, 0, 0}}, {V, W}},
+      .after_floor = number(out("ball_vz_after")["tolerance_floor"])};
 }
 
 Body random_truth_body(const Json& in, const std::string& name) {
-  const Vector3d x = vector(in["x" + name]), v = vector(in["v" + name]), w = vector(in["w" + name + "_world"]);
+  const Vector3d x = vector(in["x" + name]), v = vector(in["v" + name]),
+                 w = vector(in["w" + name + "_world"]);
   if (in["m" + name] == "infinite") {
     Body body = wall(x);
     body.velocity_world = v;
     body.omega_world = w;
     return body;
   }
-  return body_at(finite_inertia(number(in["m" + name]), matrix(in["I" + name + "_world"])), x, v, w);
+  return body_at(finite_inertia(number(in["m" + name]), matrix(in["I" + name + "_world"])), x, v,
+                 w);
 }
 
 std::vector<Impact> random_impacts(const Json& truth) {
   std::vector<Impact> impacts;
   for (const Json& row : truth["outputs"]["rows"]["value"]) {
     const Json &in = row["inputs"], &out = row["outputs"];
-    impacts.push_back({.id = truth["id"].get<std::string>() + " row " + std::to_string(impacts.size()),
-                       .encounter = {{vector(in["contact_point"]), vector(in["normal_B_to_A"])}, random_truth_body(in, "A"), random_truth_body(in, "B")},
-                       .restitution = number(in["e"]),
-                       .impulse = number(out["j"]),
-                       .impulse_floor = number(row["tolerance_floor"]["j"]),
-                       .after = a1::CollisionOutcome{{vector(out["vA_after"]), vector(out["wA_after"])}, {vector(out["vB_after"]), vector(out["wB_after"])}},
-                       .after_floor = number(row["tolerance_floor"]["velocities"])});
+    impacts.push_back(
+        {.id = truth["id"].get<std::string>() + " row " + std::to_string(impacts.size()),
+         .encounter = {{vector(in["contact_point"]), vector(in["normal_B_to_A"])},
+                       random_truth_body(in, "A"),
+                       random_truth_body(in, "B")},
+         .restitution = number(in["e"]),
+         .impulse = number(out["j"]),
+         .impulse_floor = number(row["tolerance_floor"]["j"]),
+         .after = a1::CollisionOutcome{{vector(out["vA_after"]), vector(out["wA_after"])},
+                                       {vector(out["vB_after"]), vector(out["wB_after"])}},
+         .after_floor = number(row["tolerance_floor"]["velocities"])});
   }
   return impacts;
 }
 
 std::vector<Impact> all_impacts() {
   std::vector<Impact> impacts;
-  for (const Json& truth : truths_of_family("impulse_sphere_sphere")) impacts.push_back(sphere_sphere(truth));
+  for (const Json& truth : truths_of_family("impulse_sphere_sphere"))
+    impacts.push_back(sphere_sphere(truth));
   for (const Json& truth : truths_of_family("impulse_rod_ball")) impacts.push_back(rod_ball(truth));
-  for (const Json& truth : truths_of_family("impulse_box_corner")) impacts.push_back(box_corner(truth));
+  for (const Json& truth : truths_of_family("impulse_box_corner"))
+    impacts.push_back(box_corner(truth));
   for (const Json& truth : truths_of_family("impulse_random")) {
     for (Impact& impact : random_impacts(truth)) impacts.push_back(std::move(impact));
   }
   return impacts;
 }
 
-const std::string kElsewhere = "none of the slips that the simpler tests name gives this number: a term that they do not reach (both arms, full tensors, walls that move), or digits lost on the way";
+const std::string kElsewhere =
+    "none of the slips that the simpler tests name gives this number: a term that they do not "
+    "reach (both arms, full tensors, walls that move), or digits lost on the way";
 
 /// A's velocity with a wrong impulse.
 Slips<Vector3d> slips_of_velocity(const Impact& impact) {
-  const Vector3d before = impact.encounter.a.velocity_world, change = impact.after.a.linear_world - before;
-  Slips<Vector3d> slips = {{before - change, "the sign: A gets +j n"}, {before, "no impulse reached A"}};
-  for (const auto& [wrong, words] : slips_of_impulse(impact.encounter, impact.restitution)) slips.push_back({before + wrong / impact.impulse * change, words + " (in j)"});
+  const Vector3d before = impact.encounter.a.velocity_world,
+                 change = impact.after.a.linear_world - before;
+  Slips<Vector3d> slips = {{before - change, "the sign: A gets +j n"},
+                           {before, "no impulse reached A"}};
+  for (const auto& [wrong, words] : slips_of_impulse(impact.encounter, impact.restitution))
+    slips.push_back({before + wrong / impact.impulse * change, words + " (in j)"});
   return slips;
 }
 
@@ -202,8 +246,12 @@ TEST(CollisionImpulse, AgreesWithTheTruths) {
   for (const Impact& impact : all_impacts()) {
     const auto& [contact, a, b] = impact.encounter;
     const double found = student().collision_impulse(contact, a, b, impact.restitution);
-    expect_near(found, impact.impulse, kFloors * impact.impulse_floor, "N s",
-                {.scene = "case " + impact.id + " of tests/truths, computed in exact arithmetic, e = " + show(impact.restitution), .slip = likely(found, slips_of_impulse(impact.encounter, impact.restitution), kElsewhere), .handout = equation("9")});
+    expect_near(
+        found, impact.impulse, kFloors * impact.impulse_floor, "N s",
+        {.scene = "case " + impact.id +
+                  " of tests/truths, computed in exact arithmetic, e = " + show(impact.restitution),
+         .slip = likely(found, slips_of_impulse(impact.encounter, impact.restitution), kElsewhere),
+         .handout = equation("9")});
     if (::testing::Test::HasFailure()) return;  // one story is enough
   }
 }
@@ -211,14 +259,22 @@ TEST(CollisionImpulse, AgreesWithTheTruths) {
 TEST(ResolveCollision, AgreesWithTheTruths) {
   for (const Impact& impact : all_impacts()) {
     const auto& [contact, a, b] = impact.encounter;
-    const a1::CollisionOutcome found = student().resolve_collision(contact, a, b, impact.restitution);
-    const Story story{.scene = "case " + impact.id + " of tests/truths, computed in exact arithmetic, e = " + show(impact.restitution),
-                      .slip = likely<3>(found.a.linear_world, slips_of_velocity(impact), kElsewhere), .handout = equation("11")};
+    const a1::CollisionOutcome found =
+        student().resolve_collision(contact, a, b, impact.restitution);
+    const Story story{
+        .scene = "case " + impact.id +
+                 " of tests/truths, computed in exact arithmetic, e = " + show(impact.restitution),
+        .slip = likely<3>(found.a.linear_world, slips_of_velocity(impact), kElsewhere),
+        .handout = equation("11")};
     const double tolerance = kFloors * impact.after_floor;
-    expect_near(found.a.linear_world, impact.after.a.linear_world, tolerance, "m/s (velocity of A)", story);
-    expect_near(found.a.angular_world, impact.after.a.angular_world, tolerance, "rad/s (angular velocity of A)", story);
-    expect_near(found.b.linear_world, impact.after.b.linear_world, tolerance, "m/s (velocity of B)", story);
-    expect_near(found.b.angular_world, impact.after.b.angular_world, tolerance, "rad/s (angular velocity of B)", story);
+    expect_near(found.a.linear_world, impact.after.a.linear_world, tolerance, "m/s (velocity of A)",
+                story);
+    expect_near(found.a.angular_world, impact.after.a.angular_world, tolerance,
+                "rad/s (angular velocity of A)", story);
+    expect_near(found.b.linear_world, impact.after.b.linear_world, tolerance, "m/s (velocity of B)",
+                story);
+    expect_near(found.b.angular_world, impact.after.b.angular_world, tolerance,
+                "rad/s (angular velocity of B)", story);
     if (::testing::Test::HasFailure()) return;  // one story is enough
   }
 }

@@ -17,7 +17,8 @@
 
 namespace tumble::a2_testing {
 
-inline constexpr double kRoundoff = 20 * testing::kEps;   // relative: at most 20 roundings in any correct order of evaluation
+// relative: at most 20 roundings in any correct order of evaluation
+inline constexpr double kRoundoff = 20 * testing::kEps;
 
 using namespace tumble::testing;
 
@@ -25,7 +26,9 @@ using namespace tumble::testing;
 inline const a2::Module& a2_module() { return modules::under_test<a2::Module>(); }
 
 /// Handout anchor of equation (A2.n).
-inline std::string equation(int n) { return "handouts/a2_integration.md#eq-a2-" + std::to_string(n); }
+inline std::string equation(int n) {
+  return "handouts/a2_integration.md#eq-a2-" + std::to_string(n);
+}
 
 // ---- Words for a slip --------------------------------------------------------------------------
 
@@ -34,7 +37,9 @@ template <class Value>
 using Slips = std::vector<std::pair<Value, std::string>>;
 
 inline double distance(double a, double b) { return std::abs(a - b); }
-inline double distance(const Quaterniond& a, const Quaterniond& b) { return (a.coeffs() - b.coeffs()).norm(); }
+inline double distance(const Quaterniond& a, const Quaterniond& b) {
+  return (a.coeffs() - b.coeffs()).norm();
+}
 template <class A, class B>
 double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() ? (a - b).norm() : INFINITY;
@@ -69,17 +74,21 @@ OdeFunction noting(Diary& diary, OdeFunction f);
 OdeFunction scripted(Diary& diary, std::vector<VectorXd> slopes);
 
 /// y(t_end) by `steps` equal steps of the method.
-VectorXd integrate(const Step& step, const OdeFunction& f, double t_start, const VectorXd& y, double t_end, int steps);
+VectorXd integrate(const Step& step, const OdeFunction& f, double t_start, const VectorXd& y,
+                   double t_end, int steps);
 /// log2 of the error's fall at each doubling of the number of steps, `first_steps` being the
 /// fewest.
-std::vector<double> observed_orders(const Step& step, const OdeFunction& f, double t_start, const VectorXd& y, double t_end,
-                                    const VectorXd& exact, int first_steps, int halvings);
+std::vector<double> observed_orders(const Step& step, const OdeFunction& f, double t_start,
+                                    const VectorXd& y, double t_end, const VectorXd& exact,
+                                    int first_steps, int halvings);
 /// Every order lies within `tolerance` of `order`, or the story is told with all of them.
-void expect_orders(const std::vector<double>& found, double order, double tolerance, const Story& story);
+void expect_orders(const std::vector<double>& found, double order, double tolerance,
+                   const Story& story);
 
 /// The lecture's logistic equation y' = 6 y - 0.007 y^2, y(0) = 10.
 VectorXd logistic(double t, const VectorXd& y);
-inline constexpr double kLogisticAtHalf = 164.276752310393929949275357847;  // y(0.5), exact to double precision
+// y(0.5), exact to double precision
+inline constexpr double kLogisticAtHalf = 164.276752310393929949275357847;
 /// Euler's equations of a free top in its own axes: I w' = -w x (I w), moments 1, 2, 3 kg m^2. y =
 /// w_body.
 VectorXd free_top(double t, const VectorXd& omega_body);
@@ -102,7 +111,8 @@ Inertia block();
 Inertia bracket();
 /// A turn whose axis and angle are skew: (1, 2, 4, 2) / 5.
 inline Quaterniond skew_turn() { return {0.2, 0.4, 0.8, 0.4}; }
-inline const std::string kDiagonalAlone = "the diagonal of the tensor alone: products of inertia count, so use the whole matrix";
+inline const std::string kDiagonalAlone =
+    "the diagonal of the tensor alone: products of inertia count, so use the whole matrix";
 /// At rest at (5, 3, 1), not turned.
 RigidBodyState resting();
 inline Wrench no_wrench() { return {Vector3d::Zero(), Vector3d::Zero()}; }
@@ -137,10 +147,12 @@ ScalarFunction noting(Looks& looks, ScalarFunction f);
 /// What every right answer satisfies: converged, open at `time`, within `tolerance` before the
 /// impact; residual and evaluations true. `round_off` is the time by which rounding inside the gap
 /// may move its root [s].
-void expect_impact(const RootResult& found, const Approach& approach, const Looks& looks, double tolerance, double round_off,
-                   const std::string& slip, int equation_number);
+void expect_impact(const RootResult& found, const Approach& approach, const Looks& looks,
+                   double tolerance, double round_off, const std::string& slip,
+                   int equation_number);
 /// Status kNoSignChange, no time, no search.
-void expect_no_impact(const RootResult& found, const Looks& looks, const std::string& scene, const std::string& slip);
+void expect_no_impact(const RootResult& found, const Looks& looks, const std::string& scene,
+                      const std::string& slip);
 
 /// A root finder on an approach, its looks counted: what both of them must do is asked of either.
 using Finder = std::function<RootResult(const Approach&, double tolerance, Looks&)>;

@@ -21,7 +21,8 @@ Contacts stack_of_boxes(int n);
 /// numbers now and then, and b = G u plus something that parts, so that a solution exists.
 Contacts random_contacts(Random& random, int m);
 
-/// (A3.9) to 1e-10 of the largest |b| (and, for f . a, of the largest force), or the story of what does not hold.
+/// (A3.9) to 1e-10 of the largest |b| (and, for f . a, of the largest force), or the story of what
+/// does not hold.
 void expect_complementary(const Contacts& contacts, const std::string& scene);
 
 /// "No force" is an answer only from a function that can give one: asked first. @return false when

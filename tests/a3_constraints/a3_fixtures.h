@@ -16,7 +16,8 @@
 
 namespace tumble::a3_testing {
 
-inline constexpr double kRoundoff = 20 * testing::kEps;   // relative to the largest term: fewer than 20 roundings
+// relative to the largest term: fewer than 20 roundings
+inline constexpr double kRoundoff = 20 * testing::kEps;
 
 using namespace tumble::testing;
 
@@ -26,7 +27,9 @@ inline constexpr double kGravity = 9.81;  // m/s^2
 inline const a3::Module& a3_module() { return modules::under_test<a3::Module>(); }
 
 /// Handout anchor of equation (A3.n).
-inline std::string equation(int n) { return "handouts/a3_constraints.md#eq-a3-" + std::to_string(n); }
+inline std::string equation(int n) {
+  return "handouts/a3_constraints.md#eq-a3-" + std::to_string(n);
+}
 
 // ---- Words for a slip --------------------------------------------------------------------------
 
@@ -84,10 +87,11 @@ struct Rig {
 
 /// A body as constraints see it, under gravity.
 ConstrainedBody movable(double mass, const Matrix3d& inverse_inertia_world);
-ConstrainedBody point_mass(double mass);   // a small ball: moments 1e-2 of its mass
+ConstrainedBody point_mass(double mass);  // a small ball: moments 1e-2 of its mass
 ConstrainedBody ceiling();
 /// A row that holds two points: n from B to A, arms from the centres of mass.
-Constraint rod_between(int a, const Vector3d& arm_a, int b, const Vector3d& arm_b, const Vector3d& n, double velocity_product = 0.0);
+Constraint rod_between(int a, const Vector3d& arm_a, int b, const Vector3d& arm_b,
+                       const Vector3d& n, double velocity_product = 0.0);
 /// Masses that hang one below the other from the ceiling, the first rod first; body 0 is the
 /// ceiling.
 Rig hanging_chain(const std::vector<double>& masses);
@@ -99,8 +103,8 @@ Rig random_rig(Random& random, int bodies, int extra_rows);
 VectorXd forces_on_bodies(const Rig& rig, const VectorXd& lambda);
 /// C'' of each row when the multipliers act, (m), computed body by body.
 VectorXd accelerations_of_rows(const Rig& rig, const VectorXd& lambda);
-/// Largest |term| in any row's sum, for the smallest multipliers that fulfil the rows: what round-off is measured by, whatever a submission answers.
-/// Cost: O(rows^3)
+/// Largest |term| in any row's sum, for the smallest multipliers that fulfil the rows: what
+/// round-off is measured by, whatever a submission answers. Cost: O(rows^3)
 double size_of_terms(const Rig& rig);
 /// J M^-1 J^T, dense.
 MatrixXd dense_matrix(const Rig& rig);

@@ -16,7 +16,8 @@ VectorXd rows_times(const Rig& rig, const VectorXd& x) {
   VectorXd result(rig.size());
   for (Eigen::Index i = 0; i < rig.size(); ++i) {
     const Constraint& c = rig.rows[static_cast<std::size_t>(i)];
-    result[i] = c.row.jacobian_a.dot(x.segment<6>(6 * c.body_a)) + c.row.jacobian_b.dot(x.segment<6>(6 * c.body_b));
+    result[i] = c.row.jacobian_a.dot(x.segment<6>(6 * c.body_a)) +
+                c.row.jacobian_b.dot(x.segment<6>(6 * c.body_b));
   }
   return result;
 }
@@ -36,11 +37,12 @@ TEST(ConstraintCorrection, SharesTheWayByInverseMass) {
   by_mass[0] = -0.1, by_mass[6] = 0.3;
   expect_near(found, expected, 20 * kEps, "m (and rad)",
               {.scene = "1 kg (A) and 3 kg (B) on a rod along x, C = 0.4 m too long",
-               .slip = likely<VectorXd>(found,
-                              Slips<VectorXd>{{-expected, "the sign: J x = -error"},
-                                              {halves, "the masses are forgotten: x = -M^-1 J^T lambda"},
-                                              {by_mass, "mass for inverse mass: the heavier body moves less"}},
-                              "x = -M^-1 J^T lambda, A lambda = error"),
+               .slip = likely<VectorXd>(
+                   found,
+                   Slips<VectorXd>{{-expected, "the sign: J x = -error"},
+                                   {halves, "the masses are forgotten: x = -M^-1 J^T lambda"},
+                                   {by_mass, "mass for inverse mass: the heavier body moves less"}},
+                   "x = -M^-1 J^T lambda, A lambda = error"),
                .handout = equation(8)});
 }
 
@@ -51,7 +53,11 @@ TEST(ConstraintCorrection, RemovesEveryError) {
     const VectorXd error = rig.wanted, x = corrected(rig, error);
     // Condition of A below 1e4 for these; one backward stable solution.
     expect_near(rows_times(rig, x), VectorXd(-error), 1e-10, "m (J x)",
-                {.scene = rig.scene + ", number " + std::to_string(i), .slip = distance(rows_times(rig, x), error) < 1e-8 ? "the sign: J x = -error" : "J x = -error in every row at once: A is not diagonal", .handout = equation(8)});
+                {.scene = rig.scene + ", number " + std::to_string(i),
+                 .slip = distance(rows_times(rig, x), error) < 1e-8
+                             ? "the sign: J x = -error"
+                             : "J x = -error in every row at once: A is not diagonal",
+                 .handout = equation(8)});
   }
 }
 
@@ -64,7 +70,10 @@ TEST(ConstraintCorrection, LeavesWallsAlone) {
   expected[8] = 0.1;
   expected[14] = -0.1;
   expect_near(found, expected, 50 * kEps, "m (and rad)",
-              {.scene = "two weights below the ceiling (body 0), the first rod 0.1 m too long, the second 0.2 m too short", .slip = "the ceiling moves, a sign, or a side of the second rod", .handout = equation(8)});
+              {.scene = "two weights below the ceiling (body 0), the first rod 0.1 m too long, the "
+                        "second 0.2 m too short",
+               .slip = "the ceiling moves, a sign, or a side of the second rod",
+               .handout = equation(8)});
 }
 
 TEST(ConstraintCorrection, IsTheSmallestOfAll) {
@@ -83,7 +92,10 @@ TEST(ConstraintCorrection, IsTheSmallestOfAll) {
     return w;
   };
   if (!(x.norm() > 0.01)) {
-    expect_true(false, "a change", "none", {.scene = rig.scene, .slip = "the function gives nothing (0 or NaN)", .handout = equation(8)});
+    expect_true(false, "a change", "none",
+                {.scene = rig.scene,
+                 .slip = "the function gives nothing (0 or NaN)",
+                 .handout = equation(8)});
     return;
   }
   // Motions that the rods allow: a random u minus its other part, by a projection in plain numbers.
@@ -99,9 +111,14 @@ TEST(ConstraintCorrection, IsTheSmallestOfAll) {
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = random.between(-1, 1);
     u.head(6).setZero();
     for (int sweep = 0; sweep < 4000; ++sweep)  // Kaczmarz: onto one row after the other
-      for (Eigen::Index i = 0; i < J.rows(); ++i) u -= J.row(i).dot(u) / J.row(i).squaredNorm() * J.row(i).transpose();
-    expect_near(u.dot(weighted(x)), 0.0, 1e-8 * weighted(x).norm() * u.norm(), "kg m^2",
-                {.scene = rig.scene + "; x against a motion that no rod minds", .slip = "the masses are forgotten: x = -M^-1 J^T lambda, so that nothing moves that need not", .handout = equation(8)});
+      for (Eigen::Index i = 0; i < J.rows(); ++i)
+        u -= J.row(i).dot(u) / J.row(i).squaredNorm() * J.row(i).transpose();
+    expect_near(
+        u.dot(weighted(x)), 0.0, 1e-8 * weighted(x).norm() * u.norm(), "kg m^2",
+        {.scene = rig.scene + "; x against a motion that no rod minds",
+         .slip =
+             "the masses are forgotten: x = -M^-1 J^T lambda, so that nothing moves that need not",
+         .handout = equation(8)});
   }
 }
 
@@ -116,7 +133,12 @@ TEST(ConstraintCorrection, BearsRodsThatAreThereTwice) {
   expected[14] = 0.3;
   expected[20] = 0.2;
   expect_near(found, expected, 1e-10, "m (and rad)",
-              {.scene = "three weights below each other, the second rod there twice, and a rod from wall to wall", .slip = "singular rows: a pivot of 0, or of round-off, is divided by", .handout = equation(8), .no_number = "singular rows: a pivot of 0 is divided by", .iterates = true});
+              {.scene = "three weights below each other, the second rod there twice, and a rod "
+                        "from wall to wall",
+               .slip = "singular rows: a pivot of 0, or of round-off, is divided by",
+               .handout = equation(8),
+               .no_number = "singular rows: a pivot of 0 is divided by",
+               .iterates = true});
 }
 
 }  // namespace

@@ -10,7 +10,8 @@
 
 namespace tumble::a4_testing {
 
-ScheduledEvent collision_check(std::int32_t a, std::int32_t b, double safe_time, double time, std::vector<std::int32_t> receivers) {
+ScheduledEvent collision_check(std::int32_t a, std::int32_t b, double safe_time, double time,
+                               std::vector<std::int32_t> receivers) {
   if (receivers.empty()) receivers = {a, b};
   return {impact(time, a, b), safe_time, receivers};
 }
@@ -20,19 +21,32 @@ ScheduledEvent group_check(std::vector<std::int32_t> members, double safe_time, 
   return {{time, 0, WorkKind::kGroup, lowest, -1}, safe_time, std::move(members)};
 }
 
-ScheduledEvent callback(std::int32_t body, double time) { return {{time, 0, WorkKind::kCallback, body, -1}, time, {body}}; }
+ScheduledEvent callback(std::int32_t body, double time) {
+  return {{time, 0, WorkKind::kCallback, body, -1}, time, {body}};
+}
 
-ScheduledEvent redraw(double time) { return {{time, kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}}; }
+ScheduledEvent redraw(double time) {
+  return {{time, kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}};
+}
 
 Effect effect(double time, std::int32_t a, std::int32_t b, std::vector<std::int32_t> processes) {
   if (processes.empty()) processes = {a, b};
   return {impact(time, a, b), processes};
 }
 
-bool same(const Stamp& x, const Stamp& y) { return x.time == y.time && x.microstep == y.microstep && x.kind == y.kind && x.body_a == y.body_a && x.body_b == y.body_b; }
-bool same(const Rollback& x, const Rollback& y) { return x.body == y.body && same(x.stamp, y.stamp); }
+bool same(const Stamp& x, const Stamp& y) {
+  return x.time == y.time && x.microstep == y.microstep && x.kind == y.kind &&
+         x.body_a == y.body_a && x.body_b == y.body_b;
+}
+bool same(const Rollback& x, const Rollback& y) {
+  return x.body == y.body && same(x.stamp, y.stamp);
+}
 
-std::string name_of(std::int32_t body) { return body == kWall ? "the wall" : body >= A && body <= E ? std::string(1, static_cast<char>('A' + body)) : "body " + std::to_string(body); }
+std::string name_of(std::int32_t body) {
+  return body == kWall            ? "the wall"
+         : body >= A && body <= E ? std::string(1, static_cast<char>('A' + body))
+                                  : "body " + std::to_string(body);
+}
 
 namespace {
 
@@ -46,7 +60,7 @@ const char* word_of(WorkKind kind) {
   return "something of no kind";
 }
 
-constexpr std::size_t kReadable = 8;   // of a list
+constexpr std::size_t kReadable = 8;  // of a list
 
 }  // namespace
 
@@ -56,39 +70,54 @@ std::string show(const Stamp& stamp) {
   if (stamp.body_b >= 0) text += " and " + name_of(stamp.body_b);
   text += " at " + show(stamp.time) + " s";
   if (stamp.microstep == kLastMicrostep) return text + " (last microstep)";
-  return stamp.microstep == 0 ? text : text + " (microstep " + std::to_string(stamp.microstep) + ")";
+  return stamp.microstep == 0 ? text
+                              : text + " (microstep " + std::to_string(stamp.microstep) + ")";
 }
 
-std::string show(const ScheduledEvent& event) { return show(event.stamp) + ", safe time " + show(event.safe_time) + " s"; }
+std::string show(const ScheduledEvent& event) {
+  return show(event.stamp) + ", safe time " + show(event.safe_time) + " s";
+}
 
 std::string show(const std::vector<Rollback>& rollbacks) {
   if (rollbacks.empty()) return "nobody goes back";
   std::string text;
-  for (std::size_t i = 0; i < std::min(kReadable, rollbacks.size()); ++i) text += (i > 0 ? "; " : "") + name_of(rollbacks[i].body) + " to the " + show(rollbacks[i].stamp);
-  return rollbacks.size() > kReadable ? text + "; and " + std::to_string(rollbacks.size() - kReadable) + " more" : text;
+  for (std::size_t i = 0; i < std::min(kReadable, rollbacks.size()); ++i)
+    text +=
+        (i > 0 ? "; " : "") + name_of(rollbacks[i].body) + " to the " + show(rollbacks[i].stamp);
+  return rollbacks.size() > kReadable
+             ? text + "; and " + std::to_string(rollbacks.size() - kReadable) + " more"
+             : text;
 }
 
 std::string show(const std::vector<std::vector<std::int32_t>>& groups) {
   std::string text;
   for (std::size_t i = 0; i < std::min(kReadable, groups.size()); ++i) {
     text += i > 0 ? " {" : "{";
-    for (std::size_t k = 0; k < groups[i].size(); ++k) text += (k > 0 ? ", " : "") + name_of(groups[i][k]);
+    for (std::size_t k = 0; k < groups[i].size(); ++k)
+      text += (k > 0 ? ", " : "") + name_of(groups[i][k]);
     text += "}";
   }
   return text.empty() ? "no group" : text;
 }
 
-void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Rollback>& expected, const Story& story) {
-  const bool is_same = found.size() == expected.size() && std::equal(found.begin(), found.end(), expected.begin(), [](const Rollback& x, const Rollback& y) { return same(x, y); });
+void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Rollback>& expected,
+                      const Story& story) {
+  const bool is_same = found.size() == expected.size() &&
+                       std::equal(found.begin(), found.end(), expected.begin(),
+                                  [](const Rollback& x, const Rollback& y) { return same(x, y); });
   expect_true(is_same, show(expected), show(found), story);
 }
 
-void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time, double time, const Story& story) {
+void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time,
+                  double time, const Story& story) {
   ScheduledEvent expected = before;
   expected.safe_time = safe_time;
   expected.stamp.time = time;
-  const bool is_same = same(found.stamp, expected.stamp) && found.safe_time == safe_time && found.receivers == before.receivers;
-  expect_true(is_same, show(expected), show(found) + (found.receivers == before.receivers ? "" : ", other receivers"), story);
+  const bool is_same = same(found.stamp, expected.stamp) && found.safe_time == safe_time &&
+                       found.receivers == before.receivers;
+  expect_true(is_same, show(expected),
+              show(found) + (found.receivers == before.receivers ? "" : ", other receivers"),
+              story);
 }
 
 // ---- Whole scenes ------------------------------------------------------------------------------
@@ -129,12 +158,18 @@ scene::Scene balls_in_a_box(int n, std::uint64_t seed, double duration_s) {
   const double spacing = 0.45, half = 0.5 * spacing * across;
   std::vector<scene::BodySpec> bodies;
   for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) bodies.push_back(wall("wall " + std::to_string(bodies.size() + 1), side * half * Vector3d::Unit(axis), -side * Vector3d::Unit(axis)));
+    for (const double side : {-1.0, 1.0})
+      bodies.push_back(wall("wall " + std::to_string(bodies.size() + 1),
+                            side * half * Vector3d::Unit(axis), -side * Vector3d::Unit(axis)));
   Random random(seed);
   for (int i = 0; i < n; ++i) {
     const Vector3d cell(i % across, (i / across) % across, i / (across * across));
-    const Vector3d shift(random.between(-0.05, 0.05), random.between(-0.05, 0.05), random.between(-0.05, 0.05)), velocity(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-    bodies.push_back(ball("ball " + std::to_string(i + 1), spacing * (cell + Vector3d::Constant(0.5)) - Vector3d::Constant(half) + shift, velocity));
+    const Vector3d shift(random.between(-0.05, 0.05), random.between(-0.05, 0.05),
+                         random.between(-0.05, 0.05)),
+        velocity(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    bodies.push_back(ball(
+        "ball " + std::to_string(i + 1),
+        spacing * (cell + Vector3d::Constant(0.5)) - Vector3d::Constant(half) + shift, velocity));
   }
   return scene_of(std::move(bodies), duration_s, 0.1);
 }
@@ -161,17 +196,29 @@ namespace {
 // these scenes. Restitution is 0 or 1.
 Laws laws_of_equal_balls() {
   Laws laws = library_laws();
-  laws.relative_normal_velocity = [](const Contact& contact, const Body& a, const Body& b) { return contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world); };
-  laws.collision_impulse = [approach = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b, double restitution) {
+  laws.relative_normal_velocity = [](const Contact& contact, const Body& a, const Body& b) {
+    return contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world);
+  };
+  laws.collision_impulse = [approach = laws.relative_normal_velocity](const Contact& contact,
+                                                                      const Body& a, const Body& b,
+                                                                      double restitution) {
     const bool is_wall = a.inertia.inverse_mass == 0 || b.inertia.inverse_mass == 0;
-    return std::max(0.0, (is_wall ? -1.0 : -0.5) * (restitution > 0 ? 2.0 : 1.0) * approach(contact, a, b));
+    return std::max(
+        0.0, (is_wall ? -1.0 : -0.5) * (restitution > 0 ? 2.0 : 1.0) * approach(contact, a, b));
   };
   laws.ends_in_contact = [](double, double restitution, double) { return restitution == 0.0; };
-  laws.contact_forces = [](const MatrixXd&, const VectorXd&) -> VectorXd { throw PreconditionError("these scenes have friction wherever bodies stay in contact"); };
-  laws.apply_impulse = [](const Body& body, const Vector3d& impulse_world, const Vector3d&) { return Velocity{body.velocity_world + body.inertia.inverse_mass * impulse_world, body.omega_world}; };
+  laws.contact_forces = [](const MatrixXd&, const VectorXd&) -> VectorXd {
+    throw PreconditionError("these scenes have friction wherever bodies stay in contact");
+  };
+  laws.apply_impulse = [](const Body& body, const Vector3d& impulse_world, const Vector3d&) {
+    return Velocity{body.velocity_world + body.inertia.inverse_mass * impulse_world,
+                    body.omega_world};
+  };
   const a4::Module& m = a4_module();
-  laws.scheduling = {m.comes_before,  m.next_check_time, m.on_collision_check, m.contact_groups,      m.on_group_check, m.on_callback,
-                     m.anti_messages, m.plan_rollback,   m.after_rollback,     m.global_virtual_time, m.may_commit,     m.states_to_purge};
+  laws.scheduling = {m.comes_before,        m.next_check_time, m.on_collision_check,
+                     m.contact_groups,      m.on_group_check,  m.on_callback,
+                     m.anti_messages,       m.plan_rollback,   m.after_rollback,
+                     m.global_virtual_time, m.may_commit,      m.states_to_purge};
   laws.scheduling_source = "the scheduler under test";
   return laws;
 }
@@ -187,11 +234,20 @@ Trajectory run_by_the_scheduler(const scene::Scene& scene) {
   return recorder.trajectory();
 }
 
-Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events, const std::string& what) {
+Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events,
+                                       const std::string& what) {
   const Trajectory run = run_by_the_scheduler(scene);
-  const Story story{.scene = what, .slip = "the story above names the decision; tumble run late_hit --html draws one", .handout = "handouts/a4_timewarp.md#whole-runs"};
-  expect_true(run.stopped_by.empty(), "every committed event is the ordered reference's, bit for bit", run.stopped_by, story);
-  if (run.stopped_by.empty()) expect_true(run.events.size() >= least_events, "at least " + std::to_string(least_events) + " committed events", std::to_string(run.events.size()), story);
+  const Story story{
+      .scene = what,
+      .slip = "the story above names the decision; tumble run late_hit --html draws one",
+      .handout = "handouts/a4_timewarp.md#whole-runs"};
+  expect_true(run.stopped_by.empty(),
+              "every committed event is the ordered reference's, bit for bit", run.stopped_by,
+              story);
+  if (run.stopped_by.empty())
+    expect_true(run.events.size() >= least_events,
+                "at least " + std::to_string(least_events) + " committed events",
+                std::to_string(run.events.size()), story);
   return run;
 }
 

@@ -36,14 +36,18 @@ inline std::string equation(int n) { return "handouts/a4_timewarp.md#eq-a4-" + s
 
 // ---- Events in few words -----------------------------------------------------------------------
 
-inline Stamp impact(double time, std::int32_t a, std::int32_t b, std::uint32_t microstep = 0) { return {time, microstep, WorkKind::kCollision, a, b}; }
+inline Stamp impact(double time, std::int32_t a, std::int32_t b, std::uint32_t microstep = 0) {
+  return {time, microstep, WorkKind::kCollision, a, b};
+}
 /// @param receivers  empty: both bodies
-ScheduledEvent collision_check(std::int32_t a, std::int32_t b, double safe_time, double time, std::vector<std::int32_t> receivers = {});
+ScheduledEvent collision_check(std::int32_t a, std::int32_t b, double safe_time, double time,
+                               std::vector<std::int32_t> receivers = {});
 ScheduledEvent group_check(std::vector<std::int32_t> members, double safe_time, double time);
 ScheduledEvent callback(std::int32_t body, double time);
 ScheduledEvent redraw(double time);
 /// An impact that was worked at. @param processes  empty: both bodies
-Effect effect(double time, std::int32_t a, std::int32_t b, std::vector<std::int32_t> processes = {});
+Effect effect(double time, std::int32_t a, std::int32_t b,
+              std::vector<std::int32_t> processes = {});
 /// A body back to before the impact of two others, or of itself and another.
 inline Rollback back(std::int32_t body, const Stamp& stamp) { return {body, stamp}; }
 
@@ -59,9 +63,11 @@ std::string show(const std::vector<std::vector<std::int32_t>>& groups);
 using testing::show;
 
 /// The same rollbacks in the same order.
-void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Rollback>& expected, const Story& story);
+void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Rollback>& expected,
+                      const Story& story);
 /// The two times that a decision may change; the rest must be as it was.
-void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time, double time, const Story& story);
+void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time,
+                  double time, const Story& story);
 
 // ---- Whole scenes ------------------------------------------------------------------------------
 
@@ -80,6 +86,7 @@ scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s);
 Trajectory run_by_the_scheduler(const scene::Scene& scene);
 /// The same, which must end well: every committed event the ordered reference's, and at least so
 /// many of them.
-Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events, const std::string& what);
+Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events,
+                                       const std::string& what);
 
 }  // namespace tumble::a4_testing

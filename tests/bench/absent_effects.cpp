@@ -23,7 +23,8 @@ scene::Scene flying(double duration) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < 6; ++i) {
     bodies.push_back(ball("ball " + std::to_string(i), 0.1, 1.0, {1.0 * i, 0, 0}, {0, 0, 0.1 * i}));
-    bodies.push_back(box("box " + std::to_string(i), {0.1, 0.2, 0.3}, 1.0, {1.0 * i, 2, 0}, {0, 0.1 * i, 0}));
+    bodies.push_back(
+        box("box " + std::to_string(i), {0.1, 0.2, 0.3}, 1.0, {1.0 * i, 2, 0}, {0, 0.1 * i, 0}));
     bodies.back().omega_world_rad_s = {0.1, 0.2, 0.3};
   }
   return scene_of(bodies, duration);
@@ -40,11 +41,18 @@ scene::Scene passing(double duration) {
 scene::Scene tied(double duration, const std::string& link) {
   scene::Scene scene = flying(duration);
   for (int i = 0; i < 6; ++i) {
-    const std::string a = "ball " + std::to_string(i), b = "box " + std::to_string(i), name = "link " + std::to_string(i);
-    if (link == "spring") scene.effects.of<effects::SpringSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
+    const std::string a = "ball " + std::to_string(i), b = "box " + std::to_string(i),
+                      name = "link " + std::to_string(i);
+    if (link == "spring")
+      scene.effects.of<effects::SpringSpec>().push_back(
+          {name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
     if (link == "drag") scene.effects.of<effects::DragSpec>().push_back({a, 0.1, 0.1});
-    if (link == "rod") scene.effects.of<effects::RodSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
-    if (link == "joint") scene.effects.of<effects::JointSpec>().push_back({name, effects::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
+    if (link == "rod")
+      scene.effects.of<effects::RodSpec>().push_back(
+          {name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
+    if (link == "joint")
+      scene.effects.of<effects::JointSpec>().push_back(
+          {name, effects::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
   }
   if (link == "rod" || link == "joint") scene.stabilisation.emplace();
   return scene;
@@ -52,10 +60,15 @@ scene::Scene tied(double duration, const std::string& link) {
 
 /// Three boxes on one another; without contacts they bounce on the floor instead.
 scene::Scene stack(double duration, double friction, bool lasting) {
-  scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, duration, Vector3d(0, 0, -9.81));
+  scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, duration,
+                                Vector3d(0, 0, -9.81));
   for (int i = 0; i < 3; ++i) {
-    if (lasting) scene.bodies.push_back(box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero()));
-    else scene.bodies.push_back(ball("ball " + std::to_string(i), 0.2, 1.0, {1.0 * i, 0, 1.0 + i}, Vector3d::Zero()));
+    if (lasting)
+      scene.bodies.push_back(
+          box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero()));
+    else
+      scene.bodies.push_back(
+          ball("ball " + std::to_string(i), 0.2, 1.0, {1.0 * i, 0, 1.0 + i}, Vector3d::Zero()));
   }
   for (scene::BodySpec& body : scene.bodies) {
     body.friction = friction;
@@ -75,7 +88,7 @@ scene::Scene scene_without(const std::string& effect) {
   if (effect == "contact" || effect == "callback") return stack(5.0, 0.0, false);
   if (effect == "friction") return stack(1.0, 0.0, true);
   if (effect == "sleep") return stack(1.0, 0.5, true);
-  return tied(4.0, "spring");   // for an effect that acts on islands
+  return tied(4.0, "spring");  // for an effect that acts on islands
 }
 
 /// Callbacks come from a program, for event-driven engines; other effects from the scene, in steps.
@@ -87,7 +100,8 @@ engines::RunOptions options_about(const std::string& effect) {
 
 std::uint64_t calls_of_callback() {
   engines::RunOptions options = options_about("callback");
-  options.callbacks.push_back({0.1, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() += 0.1; }});
+  options.callbacks.push_back(
+      {0.1, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() += 0.1; }});
   return run_with(bare(), reference_laws(), options).counters.counts.at("callback_calls");
 }
 
@@ -100,10 +114,11 @@ std::uint64_t calls_of(std::string effect) {
   try {
     result = run(scene, reference_laws());
   } catch (const UserError&) {
-    return 0;   // an unknown effect
+    return 0;  // an unknown effect
   }
   std::uint64_t calls = 0;
-  for (const std::string& counter : kCountersOf.at(effect)) calls += result.counters.counts.at(counter);
+  for (const std::string& counter : kCountersOf.at(effect))
+    calls += result.counters.counts.at(counter);
   return calls;
 }
 
@@ -114,7 +129,11 @@ int main(int count, char** words) {
   using namespace tumble::testing;
   if (count != 3) return 2;
   const std::string what = words[1], effect = words[2];
-  if (what == "calls") std::printf("%llu\n", static_cast<unsigned long long>(calls_of(effect)));
-  else std::printf("%zu frames\n", run_with(scene_without(effect), reference_laws(), options_about(effect)).frames.size());
+  if (what == "calls")
+    std::printf("%llu\n", static_cast<unsigned long long>(calls_of(effect)));
+  else
+    std::printf(
+        "%zu frames\n",
+        run_with(scene_without(effect), reference_laws(), options_about(effect)).frames.size());
   return 0;
 }

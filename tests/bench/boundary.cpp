@@ -11,10 +11,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 struct Figure {
-  double median_us, best_us;   // of batches: the best one was not disturbed by other programs
+  double median_us, best_us;  // of batches: the best one was not disturbed by other programs
 };
 
 template <class Work>
@@ -42,11 +44,17 @@ int main() {
     options.sandboxed = sandboxed;
     grading::WorkerConnection connection(options);
     const auto module = modules::make_proxy<waist::Module>(connection);
-    const Figure start = measure(11, 1, [&] { connection.reset(); module.twice(1.0); });
+    const Figure start = measure(11, 1, [&] {
+      connection.reset();
+      module.twice(1.0);
+    });
     const Figure call = measure(101, 200, [&] { module.twice(1.0); });
-    const Figure callback = measure(101, 1, [&] { module.call_back([](double x) { return x; }, 200); });
-    std::printf("%-10s  a call %6.2f us (best %.2f)   a callback %6.2f us (best %.2f)   a fresh worker %7.2f ms (best %.2f)\n",
-                sandboxed ? "sandboxed" : "plain", call.median_us, call.best_us, callback.median_us / 200, callback.best_us / 200,
-                1e-3 * start.median_us, 1e-3 * start.best_us);
+    const Figure callback =
+        measure(101, 1, [&] { module.call_back([](double x) { return x; }, 200); });
+    std::printf(
+        "%-10s  a call %6.2f us (best %.2f)   a callback %6.2f us (best %.2f)   a fresh worker "
+        "%7.2f ms (best %.2f)\n",
+        sandboxed ? "sandboxed" : "plain", call.median_us, call.best_us, callback.median_us / 200,
+        callback.best_us / 200, 1e-3 * start.median_us, 1e-3 * start.best_us);
   }
 }

@@ -17,10 +17,13 @@
 namespace tumble::testing {
 namespace {
 
-constexpr int kRuns = 3;         // the fastest counts
-constexpr double kShort = 2.0;   // s: longer runs are not repeated
+constexpr int kRuns = 3;        // the fastest counts
+constexpr double kShort = 2.0;  // s: longer runs are not repeated
 
-scene::Scene scene_of_a3(const std::string& name) { return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a3_constraints/scenes" / (name + ".json")); }
+scene::Scene scene_of_a3(const std::string& name) {
+  return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+                           "assignments/a3_constraints/scenes" / (name + ".json"));
+}
 
 struct Price {
   double cpu_s = 0.0, simulated_s = 0.0, steps = 0.0;
@@ -31,7 +34,8 @@ double cpu_of(const scene::Scene& scene, double duration, Tally& tally) {
   options.duration_s = duration;
   const double begin = cpu_seconds();
   engines::run_scene(scene, reference_laws(), options, tally);
-  if (!tally.stopped_by.empty()) throw std::runtime_error(scene.name + " stopped: " + tally.stopped_by);
+  if (!tally.stopped_by.empty())
+    throw std::runtime_error(scene.name + " stopped: " + tally.stopped_by);
   return cpu_seconds() - begin;
 }
 
@@ -49,7 +53,8 @@ Price price_of(const scene::Scene& scene) {
 }
 
 bool tell(const char* what, double found, double goal, const char* unit, const std::string& note) {
-  std::printf("%-52s %9.3g %-12s goal: at most %-6g %-6s  %s\n", what, found, unit, goal, found <= goal ? "holds" : "MISSED", note.c_str());
+  std::printf("%-52s %9.3g %-12s goal: at most %-6g %-6s  %s\n", what, found, unit, goal,
+              found <= goal ? "holds" : "MISSED", note.c_str());
   return found <= goal;
 }
 
@@ -60,12 +65,15 @@ bool measure_all() {
     return price.cpu_s / price.steps;
   };
   const double hundred = each_step("chain_100"), thousand = each_step("chain_1000");
-  all_hold &= tell("a step of a chain of 1,000 over one of 100", thousand / hundred, 12.0, "", std::to_string(1e6 * hundred) + " and " + std::to_string(1e6 * thousand) + " us");
+  all_hold &=
+      tell("a step of a chain of 1,000 over one of 100", thousand / hundred, 12.0, "",
+           std::to_string(1e6 * hundred) + " and " + std::to_string(1e6 * thousand) + " us");
   scene::Scene stack = scene_of_a3("stack_of_50");
   stack.step_s = 1.0 / 60;
-  stack.contact->sleep = false;   // sleeping contacts are not solved
+  stack.contact->sleep = false;  // sleeping contacts are not solved
   const Price awake = price_of(stack);
-  all_hold &= tell("a stack of 50 at rest, awake, steps of 1/60 s", awake.cpu_s / awake.simulated_s, 1.0, "of real time", "");
+  all_hold &= tell("a stack of 50 at rest, awake, steps of 1/60 s", awake.cpu_s / awake.simulated_s,
+                   1.0, "of real time", "");
   const Price bowl = price_of(scene_of_a3("bowl"));
   all_hold &= tell("a bowl of 200 models, 5 s", bowl.cpu_s * 5.0 / bowl.simulated_s, 20.0, "s", "");
   return all_hold;

@@ -37,15 +37,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLongest = 1.5;     // s of CPU: scenes with longer runs are left out
-constexpr double kMoreTime = 10.0;   // times the usual: then the run is stopped and counts as slow
-constexpr double kLeastTime = 3.0;   // s
-constexpr double kSeen = 1e-9;       // m: a change of positions that is reported
+constexpr double kLongest = 1.5;    // s of CPU: scenes with longer runs are left out
+constexpr double kMoreTime = 10.0;  // times the usual: then the run is stopped and counts as slow
+constexpr double kLeastTime = 3.0;  // s
+constexpr double kSeen = 1e-9;      // m: a change of positions that is reported
 
 /// One scene, run with changed constants.
 struct Looked {
   bool is_right = false;
-  double farthest = 0.0;   // from the usual run, of any position at any frame [m]; infinite where the frames differ
+  // from the usual run, of any position at any frame [m]; infinite where the frames differ
+  double farthest = 0.0;
   double cpu_s = 0.0;
 };
 
@@ -64,14 +65,17 @@ Trajectory run_of(const scene::Scene& scene) {
 
 bool is_right(const scene::Scene& scene, const Trajectory& run) {
   const auto checks = engines::judge_run(scene, run);
-  return run.stopped_by.empty() && std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.passed; });
+  return run.stopped_by.empty() &&
+         std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.passed; });
 }
 
 double farthest_of(const Trajectory& a, const Trajectory& b) {
   if (a.frames.size() != b.frames.size()) return INFINITY;
   double farthest = 0.0;
   for (std::size_t k = 0; k < a.frames.size(); ++k)
-    for (std::size_t i = 0; i < a.frames[k].poses.size(); ++i) farthest = std::max(farthest, (a.frames[k].poses[i].com_world - b.frames[k].poses[i].com_world).norm());
+    for (std::size_t i = 0; i < a.frames[k].poses.size(); ++i)
+      farthest = std::max(farthest,
+                          (a.frames[k].poses[i].com_world - b.frames[k].poses[i].com_world).norm());
   return farthest;
 }
 
@@ -97,7 +101,8 @@ std::optional<Looked> look(const Usual& usual) {
   }
   ::close(ends[1]);
   Looked looked;
-  const bool is_whole = ::read(ends[0], &looked, sizeof looked) == static_cast<ssize_t>(sizeof looked);
+  const bool is_whole =
+      ::read(ends[0], &looked, sizeof looked) == static_cast<ssize_t>(sizeof looked);
   ::close(ends[0]);
   ::waitpid(child, nullptr, 0);
   return is_whole ? std::optional(looked) : std::nullopt;
@@ -118,8 +123,11 @@ void scale(engines::ContactConstants& constants, std::size_t which, double facto
   boost::pfr::for_each_field(constants, [&](auto& value, std::size_t index) {
     using Value = std::remove_reference_t<decltype(value)>;
     if (index != which) return;
-    if constexpr (std::is_floating_point_v<Value>) value *= factor;
-    else value = std::max<Value>(1, static_cast<Value>(std::lround(factor * static_cast<double>(value))));
+    if constexpr (std::is_floating_point_v<Value>)
+      value *= factor;
+    else
+      value =
+          std::max<Value>(1, static_cast<Value>(std::lround(factor * static_cast<double>(value))));
   });
 }
 
@@ -136,8 +144,9 @@ std::vector<Usual> usual_runs() {
       const double before = cpu_seconds();
       Trajectory run = run_of(scene);
       const double cpu_s = cpu_seconds() - before;
-      if (cpu_s <= kLongest && is_right(scene, run)) usual.push_back({scene, std::move(run), cpu_s});
-    } catch (const std::exception&) {   // a broken scene that is refused is left out
+      if (cpu_s <= kLongest && is_right(scene, run))
+        usual.push_back({scene, std::move(run), cpu_s});
+    } catch (const std::exception&) {  // a broken scene that is refused is left out
     }
   return usual;
 }
@@ -175,11 +184,17 @@ std::string noticed(const std::vector<Usual>& all) {
 int measure(const std::vector<std::string>& asked) {
   const std::vector<std::string> names = names_of_constants();
   if (names.size() != boost::pfr::tuple_size_v<engines::ContactConstants>) {
-    std::fprintf(stderr, "contact_constants.h: %zu names are read, and the struct has %zu members: keep one member a line\n", names.size(), boost::pfr::tuple_size_v<engines::ContactConstants>);
+    std::fprintf(stderr,
+                 "contact_constants.h: %zu names are read, and the struct has %zu members: keep "
+                 "one member a line\n",
+                 names.size(), boost::pfr::tuple_size_v<engines::ContactConstants>);
     return 2;
   }
   const std::vector<Usual> all = usual_runs();
-  fmt::print("{} scenes, each right and with contacts, by rd\n\n| constant | times 10 | over 10 |\n|---|---|---|\n", all.size());
+  fmt::print(
+      "{} scenes, each right and with contacts, by rd\n\n| constant | times 10 | over 10 "
+      "|\n|---|---|---|\n",
+      all.size());
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (!asked.empty() && std::find(asked.begin(), asked.end(), names[k]) == asked.end()) continue;
     std::string cells[2];
@@ -189,7 +204,8 @@ int measure(const std::vector<std::string>& asked) {
       cells[which] = noticed(all);
     }
     engines::kContact = {};
-    fmt::print("| `{}` | {} | {} |\n", names[k], cells[0].empty() ? "nobody" : cells[0], cells[1].empty() ? "nobody" : cells[1]);
+    fmt::print("| `{}` | {} | {} |\n", names[k], cells[0].empty() ? "nobody" : cells[0],
+               cells[1].empty() ? "nobody" : cells[1]);
     std::fflush(stdout);
   }
   return 0;

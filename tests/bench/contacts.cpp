@@ -13,7 +13,8 @@ namespace tumble::testing {
 namespace {
 
 ContactProblem with_guess(ContactProblem problem, const ContactSolution& solution, double share) {
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) problem.contacts[i].warm_start_world = share * solution.impulses_world[i];
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i)
+    problem.contacts[i].warm_start_world = share * solution.impulses_world[i];
   return problem;
 }
 
@@ -26,31 +27,40 @@ ContactProblem pile() {
   for (int layer = 0; layer < 2; ++layer)
     for (int i = 0; i < 100; ++i) {
       const int row = i / 10, column = i % 10, body = static_cast<int>(problem.bodies.size());
-      problem.bodies.push_back(ball_body(random.between(0.5, 2), 0.5, Vector3d(column + 0.5 * layer, row + 0.5 * layer, 0.5 + 0.7 * layer)));
+      problem.bodies.push_back(
+          ball_body(random.between(0.5, 2), 0.5,
+                    Vector3d(column + 0.5 * layer, row + 0.5 * layer, 0.5 + 0.7 * layer)));
       if (layer == 0)
         for (int k = 0; k < 4; ++k)
-          problem.contacts.push_back(contact_at(body, 0, Vector3d(column + 0.1 * (k % 2), row + 0.1 * (k / 2), 0), Vector3d::UnitZ(), 0.5));
+          problem.contacts.push_back(
+              contact_at(body, 0, Vector3d(column + 0.1 * (k % 2), row + 0.1 * (k / 2), 0),
+                         Vector3d::UnitZ(), 0.5));
       if (layer == 1)
         for (const int lower : {0, 1, 10, 11}) {
           const int other = 1 + std::min(99, i + lower);
           const Vector3d apart = problem.bodies[body].com_world - problem.bodies[other].com_world;
-          problem.contacts.push_back(contact_at(body, other, problem.bodies[other].com_world + 0.5 * apart, apart.normalized(), 0.5));
+          problem.contacts.push_back(contact_at(
+              body, other, problem.bodies[other].com_world + 0.5 * apart, apart.normalized(), 0.5));
         }
     }
   let_fall(problem);
   return problem;
 }
 
-void time_it(const std::string& name, const ContactProblem& problem, const ContactOptions& options = {}) {
+void time_it(const std::string& name, const ContactProblem& problem,
+             const ContactOptions& options = {}) {
   ContactSolution solution;
   double least = 1e9;
   for (int i = 0; i < 20; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     solution = solve_contacts(problem, options);
-    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    least = std::min(
+        least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::printf("%-34s %4zu contacts %10.1f us   residual %.1e  sweeps %4d  factorisations %d%s\n", name.c_str(), problem.contacts.size(), 1e6 * least,
-              solution.residual, solution.sweeps, solution.factorisations, solution.converged ? "" : "  NOT CONVERGED");
+  std::printf("%-34s %4zu contacts %10.1f us   residual %.1e  sweeps %4d  factorisations %d%s\n",
+              name.c_str(), problem.contacts.size(), 1e6 * least, solution.residual,
+              solution.sweeps, solution.factorisations,
+              solution.converged ? "" : "  NOT CONVERGED");
 }
 
 void run() {

@@ -17,12 +17,13 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kShort = 1.0;        // [s]: longer runs are not repeated
-constexpr int kShortRuns = 5;         // at least, and
-constexpr double kLongEnough = 0.3;   // until this much time is spent [s]: for runs of milliseconds an undisturbed one comes late
+constexpr double kShort = 1.0;  // [s]: longer runs are not repeated
+constexpr int kShortRuns = 5;   // at least, and
+// until this much time is spent [s]: for runs of milliseconds an undisturbed one comes late
+constexpr double kLongEnough = 0.3;
 constexpr int kMostRuns = 200;
-constexpr double kNothing = 1e-9;     // [s], simulated
-constexpr double kOneFrame = 1e-3;    // [1/s]
+constexpr double kNothing = 1e-9;   // [s], simulated
+constexpr double kOneFrame = 1e-3;  // [1/s]
 
 double seconds_by(clockid_t clock) {
   timespec now{};
@@ -33,7 +34,9 @@ double seconds_by(clockid_t clock) {
 // Springs, rods and contacts need a3.
 const Laws& laws_for(const scene::Scene& scene) {
   static const Laws plain = test_laws();
-  if (!scene.contact && scene.effects.of<effects::JointSpec>().empty() && scene.effects.of<effects::RodSpec>().empty()) return plain;
+  if (!scene.contact && scene.effects.of<effects::JointSpec>().empty() &&
+      scene.effects.of<effects::RodSpec>().empty())
+    return plain;
   static const Laws reference = reference_laws();
   return reference;
 }
@@ -46,34 +49,40 @@ struct Once {
 Once run_once(const scene::Scene& scene, const std::string& engine, double duration, Clock by) {
   engines::RunOptions options;
   options.engine = engine == "rd_auto" ? "rd" : engine.starts_with("tw") ? "tw" : engine;
-  options.threads = engine.size() > 2 && engine.starts_with("tw") ? std::atoi(engine.c_str() + 2) : 1;
+  options.threads =
+      engine.size() > 2 && engine.starts_with("tw") ? std::atoi(engine.c_str() + 2) : 1;
   options.propagator = engine == "rd_auto" ? "auto" : "";
   options.timewarp = engines::fast_timewarp();
   options.duration_s = duration;
   options.frame_rate_hz = kOneFrame;
-  const clockid_t of_cpu = options.threads > 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID;   // the former has a coarse resolution after samples were taken
+  // the former has a coarse resolution after samples were taken
+  const clockid_t of_cpu = options.threads > 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID;
   const clockid_t clock = by == Clock::kWall ? CLOCK_MONOTONIC : of_cpu;
   Once once;
   const double begin = seconds_by(clock), cpu_begin = seconds_by(of_cpu);
   engines::run_scene(scene, laws_for(scene), options, once.tally);
   once.seconds = seconds_by(clock) - begin;
   once.cpu = seconds_by(of_cpu) - cpu_begin;
-  if (!once.tally.stopped_by.empty()) std::printf("    stopped: %s\n", once.tally.stopped_by.c_str());
+  if (!once.tally.stopped_by.empty())
+    std::printf("    stopped: %s\n", once.tally.stopped_by.c_str());
   return once;
 }
 
 // Other programs on the machine must not count.
-Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock, StackSamples& samples) {
+Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock,
+             StackSamples& samples) {
   // While samples are taken, the system's clock of CPU time has a resolution of milliseconds: short
   // runs are timed without samples.
   samples.begin();
   Once best = run_once(scene, engine, duration, clock);
-  for (int k = 1; k < kShortRuns && best.seconds < kShort; ++k) run_once(scene, engine, duration, clock);
+  for (int k = 1; k < kShortRuns && best.seconds < kShort; ++k)
+    run_once(scene, engine, duration, clock);
   samples.end();
   if (best.seconds >= kShort) return best;
   best = run_once(scene, engine, duration, clock);
   double spent = best.seconds;
-  for (int k = 1; (k < kShortRuns || (spent < kLongEnough && k < kMostRuns)) && best.seconds < kShort; ++k) {
+  for (int k = 1;
+       (k < kShortRuns || (spent < kLongEnough && k < kMostRuns)) && best.seconds < kShort; ++k) {
     Once next = run_once(scene, engine, duration, clock);
     spent += next.seconds;
     next.seconds = std::min(next.seconds, best.seconds);
@@ -102,19 +111,26 @@ double Measured::count(const char* what) const {
   return found == tally.counts.end() ? 0.0 : static_cast<double>(found->second);
 }
 
-double Measured::undone() const { return count("undone_integrations") / std::max(1.0, count("integrations")); }
+double Measured::undone() const {
+  return count("undone_integrations") / std::max(1.0, count("integrations"));
+}
 
-double Measured::w_h() const { return engines::discontinuities_a_body_and_step(static_cast<std::uint64_t>(count("discontinuities")), bodies, simulated, step); }
+double Measured::w_h() const {
+  return engines::discontinuities_a_body_and_step(
+      static_cast<std::uint64_t>(count("discontinuities")), bodies, simulated, step);
+}
 
 scene::Scene at_a_later_time(const scene::Scene& scene, double at) {
   engines::RunOptions options;
   options.engine = "tw";
   options.timewarp = engines::fast_timewarp();
   options.duration_s = at;
-  options.frame_rate_hz = 1.0 / at;   // the first and the last
+  options.frame_rate_hz = 1.0 / at;  // the first and the last
   TrajectoryRecorder recorder;
   engines::run_scene(scene, laws_for(scene), options, recorder);
-  require(recorder.trajectory().stopped_by.empty() && recorder.trajectory().frames.back().time == at, "timewarp goes as far as it is asked to");
+  require(
+      recorder.trajectory().stopped_by.empty() && recorder.trajectory().frames.back().time == at,
+      "timewarp goes as far as it is asked to");
   scene::Scene later = scene;
   for (std::size_t k = 0; k < later.bodies.size(); ++k) {
     if (later.bodies[k].immovable) continue;
@@ -127,15 +143,20 @@ scene::Scene at_a_later_time(const scene::Scene& scene, double at) {
   return later;
 }
 
-Measured measure(const std::string& name, int n, const std::string& engine, double duration, Clock clock) { return measure(scene::make_sized_scene(name, n), engine, duration, clock); }
+Measured measure(const std::string& name, int n, const std::string& engine, double duration,
+                 Clock clock) {
+  return measure(scene::make_sized_scene(name, n), engine, duration, clock);
+}
 
-Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock) {
+Measured measure(const scene::Scene& scene, const std::string& engine, double duration,
+                 Clock clock) {
   Measured measured;
   for (const scene::BodySpec& body : scene.bodies) measured.bodies += body.immovable ? 0 : 1;
   measured.simulated = duration;
   measured.step = scene.step_s;
   StackSamples unused, samples;
-  const Once building = best_of(scene, engine, kNothing, clock, unused);   // reading models, building shapes
+  // reading models, building shapes
+  const Once building = best_of(scene, engine, kNothing, clock, unused);
   Once once = best_of(scene, engine, duration, clock, samples);
   measured.shares = engines::time_shares(samples);
   measured.seconds = std::max(1e-6, once.seconds - building.seconds);

@@ -17,30 +17,37 @@ class Tally final : public TrajectorySink {
  public:
   void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
   void frame(const Frame& frame) override;
-  void event(const Event& event) override { collisions += event.kind == EventKind::kCollision ? 1 : 0; }
+  void event(const Event& event) override {
+    collisions += event.kind == EventKind::kCollision ? 1 : 0;
+  }
   void end(const Counters& counters, const std::string& stopped) override;
 
   std::map<std::string, std::uint64_t> counts;
-  std::map<std::string, double> stages;          // [s]
+  std::map<std::string, double> stages;  // [s]
   std::string stopped_by;
   std::uint64_t collisions = 0;
-  double energy_at_0 = 0.0, energy_error = 0.0;   // [J]; of the first
+  double energy_at_0 = 0.0, energy_error = 0.0;  // [J]; of the first
 };
 
 struct Measured {
-  double seconds = 0.0, cpu = 0.0;               // of the run without its set-up; CPU of all threads [s]
-  engines::TimeShares shares;                    // the parts of its time, of all runs that were made
-  Tally tally, building;                         // of the run; of a run that ends before its first step
-  int bodies = 0;                                // movable
-  double simulated = 0.0, step = 0.0;            // [s]
+  // of the run without its set-up; CPU of all threads [s]
+  double seconds = 0.0, cpu = 0.0;
+  // the parts of its time, of all runs that were made
+  engines::TimeShares shares;
+  // of the run; of a run that ends before its first step
+  Tally tally, building;
+  int bodies = 0;                      // movable
+  double simulated = 0.0, step = 0.0;  // [s]
 
   double count(const char* what) const;
-  double undone() const;                         // fraction of all integrations
-  double w_h() const;                            // discontinuities per body and largest step, each counted for its two bodies
+  double undone() const;  // fraction of all integrations
+  // discontinuities per body and largest step, each counted for its two bodies
+  double w_h() const;
   double a_body_second(double amount) const { return amount / bodies / simulated; }
 };
 
-enum class Clock { kCpu, kWall };                // CPU time is independent of other programs on the machine; threads are compared by wall time
+// CPU time is independent of other programs on the machine; threads are compared by wall time
+enum class Clock { kCpu, kWall };
 
 /// A scene in its state at a later time, by timewarp: a pile needs time to form, which is not part
 /// of the comparison. Bodies, links and all else are kept.
@@ -51,8 +58,10 @@ scene::Scene at_a_later_time(const scene::Scene& scene, double at);
 /// @param engine    rd, rd_auto (in closed form, as the others are), ca, tw, or tw2, tw4, ...
 ///   (threads)
 /// @param duration  [s]
-Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock = Clock::kCpu);
+Measured measure(const scene::Scene& scene, const std::string& engine, double duration,
+                 Clock clock = Clock::kCpu);
 /// The same for a scene with a size.
-Measured measure(const std::string& scene, int n, const std::string& engine, double duration, Clock clock = Clock::kCpu);
+Measured measure(const std::string& scene, int n, const std::string& engine, double duration,
+                 Clock clock = Clock::kCpu);
 
 }  // namespace tumble::testing

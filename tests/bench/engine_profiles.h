@@ -11,7 +11,9 @@
 namespace tumble::testing {
 
 /// One bar per run, in fractions; its name gives its time.
-report::StackedBars bars_of(const std::string& title, const std::vector<std::pair<std::string, const Measured*>>& runs, const std::string& caption = "");
+report::StackedBars bars_of(const std::string& title,
+                            const std::vector<std::pair<std::string, const Measured*>>& runs,
+                            const std::string& caption = "");
 
 /// Of timewarp's run: its parts, and `best` over its time if everything except physics were free:
 /// an upper bound for any scheduler with the same searched pairs and solved contacts.

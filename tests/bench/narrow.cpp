@@ -26,7 +26,7 @@ using collision::Motion;
 using collision::MotionState;
 using collision::Pose;
 
-constexpr std::size_t kPlaces = 24;   // each figure is a mean over this many relative positions
+constexpr std::size_t kPlaces = 24;  // each figure is a mean over this many relative positions
 constexpr double kStep = 1.0 / 240, kEndless = std::numeric_limits<double>::infinity();
 
 double cpu_seconds() {
@@ -64,7 +64,8 @@ class Bench {
   explicit Bench(std::string only) : only_(std::move(only)) {}
 
   template <class Arrange>
-  void pair(const std::string& name, const Shape& shape_a, const Shape& shape_b, Arrange&& arrange) {
+  void pair(const std::string& name, const Shape& shape_a, const Shape& shape_b,
+            Arrange&& arrange) {
     if (name.find(only_) == std::string::npos) return;
     const CollisionShape a(shape_a), b(shape_b);
     Places places{a, b, {}, std::min(a.bounding_radius(), b.bounding_radius())};
@@ -78,13 +79,16 @@ class Bench {
     if (name.find(only_) == std::string::npos) return;
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> place(0.0, std::cbrt(n)), half(0.4, 0.6);
-    std::vector<collision::SweptBox> boxes{{Vector3d::Constant(-kEndless), Vector3d::Constant(kEndless), false}};
+    std::vector<collision::SweptBox> boxes{
+        {Vector3d::Constant(-kEndless), Vector3d::Constant(kEndless), false}};
     for (int i = 1; i < n; ++i) {
-      const Vector3d middle(place(random), place(random), place(random)), reach = Vector3d::Constant(half(random));
+      const Vector3d middle(place(random), place(random), place(random)),
+          reach = Vector3d::Constant(half(random));
       boxes.push_back({middle - reach, middle + reach, true});
     }
     std::size_t pairs = 0;
-    const double cost = microseconds(1, [&] { pairs = collision::overlapping_pairs(boxes).size(); });
+    const double cost =
+        microseconds(1, [&] { pairs = collision::overlapping_pairs(boxes).size(); });
     std::printf("%-34s %9.2f us  (%zu pairs)\n", name.c_str(), cost, pairs);
   }
 
@@ -99,43 +103,65 @@ class Bench {
   void time(const std::string& name, const Places& places) {
     const auto& [a, b, poses, size] = places;
     std::size_t found = 0;
-    const double gap = ask(places, [&](const Pose& p, const Pose& q) { collision::compute_gap(a, p, b, q); });
+    const double gap =
+        ask(places, [&](const Pose& p, const Pose& q) { collision::compute_gap(a, p, b, q); });
     const double reach = 1e-2 * size;
-    const double near = ask(places, [&](const Pose& p, const Pose& q) { collision::manifold_points(a, p, b, q, reach); });
+    const double near = ask(places, [&](const Pose& p, const Pose& q) {
+      collision::manifold_points(a, p, b, q, reach);
+    });
     for (const auto& [p, q] : poses) found += collision::manifold_points(a, p, b, q, reach).size();
     // Queried again with the cached data of the pair, as in persistent contacts.
     std::vector<collision::PairCache> caches(kPlaces);
     const double kept = microseconds(kPlaces, [&] {
-      for (std::size_t k = 0; k < kPlaces; ++k) collision::manifold_points(a, poses[k].first, b, poses[k].second, reach, &caches[k]);
+      for (std::size_t k = 0; k < kPlaces; ++k)
+        collision::manifold_points(a, poses[k].first, b, poses[k].second, reach, &caches[k]);
     });
     const double kept_gap = microseconds(kPlaces, [&] {
-      for (std::size_t k = 0; k < kPlaces; ++k) collision::compute_gap(a, poses[k].first, b, poses[k].second, &caches[k]);
+      for (std::size_t k = 0; k < kPlaces; ++k)
+        collision::compute_gap(a, poses[k].first, b, poses[k].second, &caches[k]);
     });
-    const double tight = ask(places, [&](const Pose& p, const Pose& q) { collision::manifold_points(a, p, b, q, 1e-7 * size); });
+    const double tight = ask(places, [&](const Pose& p, const Pose& q) {
+      collision::manifold_points(a, p, b, q, 1e-7 * size);
+    });
     // One falls towards the other and rotates, by 1e-2 of its size in the step; the other is fixed.
     int hits = 0;
     const auto impact = [&](const Pose& p, const Pose& q) {
-      const Vector3d velocity = 1e-2 * size / kStep * (q.com_world - p.com_world).normalized(), omega(0.4, -0.3, 0.2);
-      Motion falling{[&](double t) {
-                       const double angle = omega.norm() * t;
-                       MotionState state{{p.com_world + t * velocity, Quaterniond(Eigen::AngleAxisd(angle, omega.normalized())) * p.world_from_body}, velocity, omega};
-                       return state;
-                     }, {}};
+      const Vector3d velocity = 1e-2 * size / kStep * (q.com_world - p.com_world).normalized(),
+                     omega(0.4, -0.3, 0.2);
+      Motion falling{
+          [&](double t) {
+            const double angle = omega.norm() * t;
+            MotionState state{
+                {p.com_world + t * velocity,
+                 Quaterniond(Eigen::AngleAxisd(angle, omega.normalized())) * p.world_from_body},
+                velocity,
+                omega};
+            return state;
+          },
+          {}};
       falling.bounds.angular_speed = omega.norm();
-      const Motion still{[&](double) { return MotionState{q, Vector3d::Zero(), Vector3d::Zero()}; }, {}};
+      const Motion still{[&](double) {
+                           return MotionState{q, Vector3d::Zero(), Vector3d::Zero()};
+                         },
+                         {}};
       return collision::first_impact(a, falling, b, still, 0.0, kStep).has_value();
     };
     const double first = ask(places, impact);
     for (const auto& [p, q] : poses) hits += impact(p, q);
-    std::printf("%-34s gap %8.2f kept %7.2f   near %8.2f kept %7.2f (%4.1f points)   near 1e-7 %8.2f   impact %8.2f (%2d hit)  us\n", name.c_str(), gap, kept_gap, near, kept,
-                static_cast<double>(found) / kPlaces, tight, first, hits);
+    std::printf(
+        "%-34s gap %8.2f kept %7.2f   near %8.2f kept %7.2f (%4.1f points)   near 1e-7 %8.2f   "
+        "impact %8.2f (%2d hit)  us\n",
+        name.c_str(), gap, kept_gap, near, kept, static_cast<double>(found) / kPlaces, tight, first,
+        hits);
     std::fflush(stdout);
   }
 
   std::string only_;
 };
 
-double in(std::mt19937_64& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double in(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 Vector3d any_direction(std::mt19937_64& random) {
   for (;;) {
     const Vector3d v(in(random, -1, 1), in(random, -1, 1), in(random, -1, 1));
@@ -143,7 +169,8 @@ Vector3d any_direction(std::mt19937_64& random) {
   }
 }
 Quaterniond any_turn(std::mt19937_64& random) {
-  return Quaterniond(in(random, -1, 1), in(random, -1, 1), in(random, -1, 1), in(random, -1, 1)).normalized();
+  return Quaterniond(in(random, -1, 1), in(random, -1, 1), in(random, -1, 1), in(random, -1, 1))
+      .normalized();
 }
 
 /// Two solids in any orientation, `gap` apart (relative to the smaller one's size) along a line
@@ -168,7 +195,9 @@ auto apart_by(double gap) {
 /// A solid `gap` above another, unrotated one, at (x, y) in a square of half side `spread`.
 auto let_down(double gap, double spread, bool upright) {
   return [=](const CollisionShape& a, const CollisionShape& b, std::mt19937_64& random) {
-    Pose p{{in(random, -spread, spread), in(random, -spread, spread), 0}, upright ? Quaterniond(Eigen::AngleAxisd(in(random, 0, 6), Vector3d::UnitZ())) : any_turn(random)};
+    Pose p{{in(random, -spread, spread), in(random, -spread, spread), 0},
+           upright ? Quaterniond(Eigen::AngleAxisd(in(random, 0, 6), Vector3d::UnitZ()))
+                   : any_turn(random)};
     const Pose q;
     const double goal = gap * a.bounding_radius();
     double low = -1.0, high = 30.0;
@@ -182,7 +211,9 @@ auto let_down(double gap, double spread, bool upright) {
   };
 }
 
-Shape model(const std::string& name) { return load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid; }
+Shape model(const std::string& name) {
+  return load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid;
+}
 
 /// A slab whose top is a bowl of `cells` x `cells` squares, of two triangles each.
 Shape bowl(int cells) {
@@ -215,7 +246,8 @@ Shape bowl(int cells) {
 }
 
 void run(Bench bench) {
-  const Shape ball = Sphere{0.5}, box = Box{{0.5, 0.4, 0.3}}, hull = random_hull(20, 1), plane = HalfSpace{};
+  const Shape ball = Sphere{0.5}, box = Box{{0.5, 0.4, 0.3}}, hull = random_hull(20, 1),
+              plane = HalfSpace{};
   constexpr double kTouch = 1e-10, kFar = 1.0;
   bench.pair("ball, ball touch", ball, ball, apart_by(kTouch));
   bench.pair("ball, box touch", ball, box, apart_by(kTouch));
@@ -234,10 +266,12 @@ void run(Bench bench) {
   bench.pair("torus, torus touch", model("torus"), model("torus"), apart_by(kTouch));
   bench.pair("torus, torus a radius apart", model("torus"), model("torus"), apart_by(kFar));
   bench.pair("torus, l_shape touch", model("torus"), model("l_shape"), apart_by(kTouch));
-  bench.pair("l_shape rests on l_shape", model("l_shape"), model("l_shape"), let_down(kTouch, 0.1, true));
+  bench.pair("l_shape rests on l_shape", model("l_shape"), model("l_shape"),
+             let_down(kTouch, 0.1, true));
   bench.pair("ball in a bowl of 20,000", ball, bowl(100), let_down(kTouch, 5, false));
   bench.pair("hull20 in a bowl of 20,000", hull, bowl(100), let_down(kTouch, 5, false));
-  bench.pair("t_handle in a bowl of 20,000", model("t_handle"), bowl(100), let_down(kTouch, 5, false));
+  bench.pair("t_handle in a bowl of 20,000", model("t_handle"), bowl(100),
+             let_down(kTouch, 5, false));
   for (const int n : {200, 1000, 3000}) bench.sweep(n);
 }
 

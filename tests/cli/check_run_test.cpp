@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 ProgramOutcome check(const std::vector<std::string>& more) {
   ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-  std::vector<std::string> words = {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check", "a1"};
+  std::vector<std::string> words = {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check",
+                                    "a1"};
   words.insert(words.end(), more.begin(), more.end());
   return run_program(words, Output::kCaptured, 100.0);
 }
@@ -26,30 +27,41 @@ ProgramOutcome check(const std::vector<std::string>& more) {
 struct File {
   explicit File(const std::string& text) { write_whole(path, text); }
   ~File() { fs::remove_all(path.parent_path()); }
-  fs::path path = fs::temp_directory_path() / ("tumble check " + std::to_string(::getpid())) / "mine.cpp";
+  fs::path path =
+      fs::temp_directory_path() / ("tumble check " + std::to_string(::getpid())) / "mine.cpp";
 };
 
 TEST(Check, AnErrorOfTheCompilerIsAVerdictWithItsPlace) {
   const File file("#include \"assignments/a1_impulse/a1_impulse.h\"\nint x = ;\n");
   const ProgramOutcome outcome = check({file.path.string()});
   EXPECT_EQ(outcome.code, 1) << outcome.printed;
-  EXPECT_NE(outcome.printed.find("does not compile: mine.cpp"), std::string::npos) << outcome.printed;
+  EXPECT_NE(outcome.printed.find("does not compile: mine.cpp"), std::string::npos)
+      << outcome.printed;
   EXPECT_NE(outcome.printed.find("mine.cpp:2:9: error:"), std::string::npos) << outcome.printed;
 }
 
 void expect_said(const ProgramOutcome& outcome, int code, const std::vector<std::string>& parts) {
   EXPECT_EQ(outcome.code, code) << outcome.printed;
-  for (const std::string& part : parts) EXPECT_NE(outcome.printed.find(part), std::string::npos) << part << "\nin: " << outcome.printed;
+  for (const std::string& part : parts)
+    EXPECT_NE(outcome.printed.find(part), std::string::npos) << part << "\nin: " << outcome.printed;
 }
 
 TEST(Check, AFunctionThatIsMissingIsNamedWithWhatIsExpected) {
   const File file("#include \"assignments/a1_impulse/a1_impulse.h\"\n");
-  expect_said(check({file.path.string()}), 1, {"intersect_ray_triangle is missing", "expected: std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& triangle)", "declared in a1_impulse.h:"});
+  expect_said(check({file.path.string()}), 1,
+              {"intersect_ray_triangle is missing",
+               "expected: std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const "
+               "Triangle& triangle)",
+               "declared in a1_impulse.h:"});
 }
 
 TEST(Check, AnErrorInsideEigenBeginsWithTheStudentsLine) {
-  const File file("#include \"assignments/a1_impulse/a1_impulse.h\"\nnamespace tumble::a1 {\nVector3d sum(const Vector3d& a, const Eigen::Vector2d& b) {\n  return a + b;\n}\n}\n");
-  expect_said(check({file.path.string()}), 1, {"    mine.cpp:4:14: error: required from here\n", "    4 |   return a + b;", "YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES"});
+  const File file(
+      "#include \"assignments/a1_impulse/a1_impulse.h\"\nnamespace tumble::a1 {\nVector3d "
+      "sum(const Vector3d& a, const Eigen::Vector2d& b) {\n  return a + b;\n}\n}\n");
+  expect_said(check({file.path.string()}), 1,
+              {"    mine.cpp:4:14: error: required from here\n", "    4 |   return a + b;",
+               "YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES"});
 }
 
 // The student's file of this tree; the tests below add their lines to it.
@@ -65,17 +77,24 @@ bool untouched() {
   static const bool is = check({File(stub()).path.string()}).code == 4;
   return is;
 }
-#define SKIP_UNLESS_UNTOUCHED() if (!untouched()) GTEST_SKIP() << "somebody has worked in this tree's a1"
+#define SKIP_UNLESS_UNTOUCHED() \
+  if (!untouched()) GTEST_SKIP() << "somebody has worked in this tree's a1"
 
 TEST(Check, WarningsOfTheFileAreShownAboveTheTests) {
   SKIP_UNLESS_UNTOUCHED();
-  const File file(stub() + "\ndouble half(double a) {\n  double never_set;\n  if (a > never_set) return a;\n}\n");
-  expect_said(check({file.path.string(), "PointForce.*"}), 4, {"the compiler warns: mine.cpp", "control reaches end of non-void function", "is used uninitialized"});
+  const File file(
+      stub() +
+      "\ndouble half(double a) {\n  double never_set;\n  if (a > never_set) return a;\n}\n");
+  expect_said(check({file.path.string(), "PointForce.*"}), 4,
+              {"the compiler warns: mine.cpp", "control reaches end of non-void function",
+               "is used uninitialized"});
 }
 
 TEST(Check, AnInitialValueThatDoesNotEndIsOutOfTime) {
   SKIP_UNLESS_UNTOUCHED();
-  const File file(stub() + "\nstatic int endless() {\n  for (volatile int i = 0;; i = i + 1) {}\n}\nint at_load = endless();\n");
+  const File file(stub() +
+                  "\nstatic int endless() {\n  for (volatile int i = 0;; i = i + 1) {}\n}\nint "
+                  "at_load = endless();\n");
   expect_said(check({file.path.string(), "PointForce.*"}), 1, {"no answer within 2 s"});
 }
 
@@ -84,25 +103,34 @@ TEST(Check, AnotherFileRunsInTheSandbox) {
   SKIP_UNLESS_UNTOUCHED();
   std::string text = stub();
   const std::string first = "throw NotImplemented(\"intersect_ray_triangle\"";
-  text.insert(text.find(first), "if (std::FILE* seen = std::fopen(\"" TUMBLE_SOURCE_DIR "/README.md\", \"r\")) { std::fclose(seen); std::abort(); }\n  ");
+  text.insert(text.find(first), "if (std::FILE* seen = std::fopen(\"" TUMBLE_SOURCE_DIR
+                                "/README.md\", \"r\")) { std::fclose(seen); std::abort(); }\n  ");
   const File file("#include <cstdio>\n#include <cstdlib>\n" + text);
   const ProgramOutcome outcome = check({file.path.string()});
   expect_said(outcome, 4, {"not attempted"});
-  EXPECT_EQ(outcome.printed.find("SIGABRT"), std::string::npos) << "the file could read the tree: " << outcome.printed;
+  EXPECT_EQ(outcome.printed.find("SIGABRT"), std::string::npos)
+      << "the file could read the tree: " << outcome.printed;
 }
 
 TEST(Check, AnEndlessLoopIsKnownWithinSeconds) {
   SKIP_UNLESS_UNTOUCHED();
   std::string text = stub();
-  text.insert(text.find("throw NotImplemented("), "for (;;) {}\n  ");   // without side effects: the compiler may not drop it
+  // without side effects: the compiler may not drop it
+  text.insert(text.find("throw NotImplemented("), "for (;;) {}\n  ");
   const File file(text);
-  check({file.path.string(), "PointForce.*"});   // builds what is missing
+  check({file.path.string(), "PointForce.*"});  // builds what is missing
   const auto start = std::chrono::steady_clock::now();
   const ProgramOutcome outcome = check({file.path.string()});
-  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_NE(outcome.printed.find("no answer within 2 s, in intersect_ray_triangle"), std::string::npos) << outcome.printed;
-  EXPECT_NE(outcome.printed.find("no answer within 0.2 s, in intersect_ray_triangle"), std::string::npos) << outcome.printed;
-  EXPECT_LT(took_s, 20.0);   // s: 6 on an idle machine, compiling included; twelve tests of 5 s were 60
+  const double took_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_NE(outcome.printed.find("no answer within 2 s, in intersect_ray_triangle"),
+            std::string::npos)
+      << outcome.printed;
+  EXPECT_NE(outcome.printed.find("no answer within 0.2 s, in intersect_ray_triangle"),
+            std::string::npos)
+      << outcome.printed;
+  // s: 6 on an idle machine, compiling included; twelve tests of 5 s were 60
+  EXPECT_LT(took_s, 20.0);
 }
 
 TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
@@ -110,12 +138,16 @@ TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
   const File file(stub());
   const ProgramOutcome outcome = check({file.path.string(), "ColisionImpuls.*"});
   EXPECT_EQ(outcome.code, 2) << outcome.printed;
-  EXPECT_NE(outcome.printed.find("ColisionImpuls.*: no test has this name. Nearest: CollisionImpulse."), std::string::npos) << outcome.printed;
+  EXPECT_NE(
+      outcome.printed.find("ColisionImpuls.*: no test has this name. Nearest: CollisionImpulse."),
+      std::string::npos)
+      << outcome.printed;
 }
 
 TEST(Check, AMissingFileAndAnUnknownAssignmentAreReportedWithTheRemedy) {
   EXPECT_EQ(check({"/nowhere/mine.cpp"}).code, 2);
-  const ProgramOutcome outcome = run_program({std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check", "a99"}, Output::kCaptured);
+  const ProgramOutcome outcome = run_program(
+      {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check", "a99"}, Output::kCaptured);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.printed.find("Known: a1"), std::string::npos) << outcome.printed;
 }

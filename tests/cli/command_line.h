@@ -29,13 +29,19 @@ struct Said {
 /// Runs commands in an empty folder, which is deleted after the test.
 class CommandLine : public ::testing::Test {
  protected:
-  CommandLine() : folder_(fs::temp_directory_path() / ("tumble words " + std::to_string(::getpid()))) { fs::create_directories(folder_); }
+  CommandLine()
+      : folder_(fs::temp_directory_path() / ("tumble words " + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
   ~CommandLine() override { fs::remove_all(folder_); }
 
   Said type(const std::string& words) const {
     const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
-    const int status = std::system(("cd '" + folder_.string() + "' && TUMBLE_ROOT='" TUMBLE_SOURCE_DIR "' '" TUMBLE_BINARY_DIR "/bin/tumble' " + words + " >'" +
-                                    out.string() + "' 2>'" + err.string() + "'").c_str());
+    const int status = std::system(("cd '" + folder_.string() +
+                                    "' && TUMBLE_ROOT='" TUMBLE_SOURCE_DIR "' '" TUMBLE_BINARY_DIR
+                                    "/bin/tumble' " +
+                                    words + " >'" + out.string() + "' 2>'" + err.string() + "'")
+                                       .c_str());
     Said said{WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(out), contents_of(err)};
     fs::remove(out);
     fs::remove(err);
@@ -46,6 +52,8 @@ class CommandLine : public ::testing::Test {
   fs::path folder_;
 };
 
-inline bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace tumble::testing

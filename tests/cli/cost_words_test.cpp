@@ -10,85 +10,124 @@ namespace tumble::testing {
 namespace {
 
 TEST_F(CommandLine, CostReadsTheOrderOfEachMethodAndDrawsIt) {
-  const Said said = type("cost t_handle --modules library --methods euler,rk4,dopri5 --engines none --steps 1/60,1/120,1/240,1/480 --tolerances 1e-6,1e-9 --duration-s 1");
+  const Said said = type(
+      "cost t_handle --modules library --methods euler,rk4,dopri5 --engines none --steps "
+      "1/60,1/120,1/240,1/480 --tolerances 1e-6,1e-9 --duration-s 1");
   EXPECT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(holds(said.out, "Euler converges with order") && holds(said.out, "as it should (1)") && holds(said.out, "RK4 converges with order") && holds(said.out, "as it should (4)")) << said.out;
+  EXPECT_TRUE(holds(said.out, "Euler converges with order") &&
+              holds(said.out, "as it should (1)") && holds(said.out, "RK4 converges with order") &&
+              holds(said.out, "as it should (4)"))
+      << said.out;
   const std::string page = contents_of(folder_ / "out" / "cost" / "t_handle" / "index.html");
-  EXPECT_TRUE(holds(page, "Error against CPU time") && holds(page, "error of the reference solution")) << page.size() << " bytes";
+  EXPECT_TRUE(holds(page, "Error against CPU time") &&
+              holds(page, "error of the reference solution"))
+      << page.size() << " bytes";
 }
 
 TEST_F(CommandLine, AnAccuracyChoosesMethodAndStepAndReportsTheCost) {
   const Said said = type("run t_handle --modules a2=library --accuracy 1e-6 --duration-s 2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
-  for (const char* words : {"asked    an error of at most 1e-06 m", "truth    closed form", "chosen   ", "paid     ", "the same without a search: "}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
+  for (const char* words : {"asked    an error of at most 1e-06 m", "truth    closed form",
+                            "chosen   ", "paid     ", "the same without a search: "})
+    EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
 }
 
 TEST_F(CommandLine, ABudgetChoosesTheLeastErrorForIt) {
   const Said said = type("run t_handle --modules a2=library --budget-s 2 --duration-s 1");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
-  EXPECT_TRUE(holds(said.out, "asked    the least error for 2 s of CPU time") && holds(said.out, "the error floor of the reference solution")) << said.out;
+  EXPECT_TRUE(holds(said.out, "asked    the least error for 2 s of CPU time") &&
+              holds(said.out, "the error floor of the reference solution"))
+      << said.out;
 }
 
 TEST_F(CommandLine, AnAccuracyRefusesWhatContradictsItAndWhatCannotBe) {
-  const Said both = type("run t_handle --modules a2=library --accuracy 1e-6 --step-s 0.01"), too_fine = type("run t_handle --modules a2=library --accuracy 1e-20 --duration-s 1");
+  const Said both = type("run t_handle --modules a2=library --accuracy 1e-6 --step-s 0.01"),
+             too_fine = type("run t_handle --modules a2=library --accuracy 1e-20 --duration-s 1");
   EXPECT_EQ(both.code, 2);
   EXPECT_TRUE(holds(both.err, "it chooses engine, method and step")) << both.err;
   EXPECT_EQ(too_fine.code, 2);
-  EXPECT_TRUE(holds(too_fine.err, "the reference solution is known to") && holds(too_fine.err, "Request ")) << too_fine.err;
+  EXPECT_TRUE(holds(too_fine.err, "the reference solution is known to") &&
+              holds(too_fine.err, "Request "))
+      << too_fine.err;
 }
 
 TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
-  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --tolerance 1e-9 --duration-s 1").out, "motion by Dormand-Prince 5(4) of the library"));
-  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --duration-s 1").err, "none is given"));
+  EXPECT_TRUE(holds(
+      type("run t_handle --modules a2=library --method dopri5 --tolerance 1e-9 --duration-s 1").out,
+      "motion by Dormand-Prince 5(4) of the library"));
+  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --duration-s 1").err,
+                    "none is given"));
 }
 
 TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
   const Said said = type("cost toi --tolerances 1e-3,1e-9");
   EXPECT_EQ(said.code, 0) << said.err;
-  for (const char* words : {"bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches", "closed form (ball, plane) has an error of"}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
+  for (const char* words : {"bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches",
+                            "closed form (ball, plane) has an error of"})
+    EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
   EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));
 }
 
 #ifdef TUMBLE_HAS_REFERENCE
-TEST_F(CommandLine, CostWorksOnScenesOfEveryKind) {   // closed form, springs, contacts, a reference solution for a limited time; half a second of refinements each
-  for (const char* scene : {"bullet_thin_wall", "hung_by_spring", "beam_on_two_supports", "collide_off_centre_e0"}) {
-    const Said said = type(std::string("cost ") + scene + " --modules reference --methods rk4 --engines none --budget-s 0.5");
+// closed form, springs, contacts, a reference solution for a limited time; half a second of
+// refinements each
+TEST_F(CommandLine, CostWorksOnScenesOfEveryKind) {
+  for (const char* scene :
+       {"bullet_thin_wall", "hung_by_spring", "beam_on_two_supports", "collide_off_centre_e0"}) {
+    const Said said = type(std::string("cost ") + scene +
+                           " --modules reference --methods rk4 --engines none --budget-s 0.5");
     EXPECT_EQ(said.code, 0) << scene << '\n' << said.err;
     EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / scene / "index.html")) << scene;
   }
 }
 
 TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
-  const Said said = type("cost double_pendulum --modules reference --methods none --solvers gradients --duration-s 0.5 --tolerances 1e-1,1e-6 --budget-s 2");
+  const Said said = type(
+      "cost double_pendulum --modules reference --methods none --solvers gradients --duration-s "
+      "0.5 --tolerances 1e-1,1e-6 --budget-s 2");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(holds(said.out, "links by conjugate gradients gets to")) << said.out;
-  EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"), "nothing to draw"));   // of steps, where no method has one
-  EXPECT_TRUE(holds(type("cost t_handle --modules reference --solvers gradients").err, "has no rods and no joints"));
+  // of steps, where no method has one
+  EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"),
+                     "nothing to draw"));
+  EXPECT_TRUE(holds(type("cost t_handle --modules reference --solvers gradients").err,
+                    "has no rods and no joints"));
 }
 
 TEST_F(CommandLine, CostOfSolversNamesWhatTheyCount) {
-  const Said said = type("cost blocks_on_an_incline --modules reference --methods none --engines none --solvers sweeps,newton --duration-s 0.1 --tolerances 1e-2,1e-6 --budget-s 1");
+  const Said said = type(
+      "cost blocks_on_an_incline --modules reference --methods none --engines none --solvers "
+      "sweeps,newton --duration-s 0.1 --tolerances 1e-2,1e-6 --budget-s 1");
   EXPECT_EQ(said.code, 0) << said.err;
-  const std::string page = contents_of(folder_ / "out" / "cost" / "blocks_on_an_incline" / "index.html");
-  EXPECT_TRUE(holds(page, "contact sweeps [-]") && !holds(page, "derivatives asked for [-]")) << said.out;
+  const std::string page =
+      contents_of(folder_ / "out" / "cost" / "blocks_on_an_incline" / "index.html");
+  EXPECT_TRUE(holds(page, "contact sweeps [-]") && !holds(page, "derivatives asked for [-]"))
+      << said.out;
 }
 
 TEST_F(CommandLine, CostShowsTheMethodsOfAModuleChosenByName) {
-  const Said own = type("cost t_handle --modules a2=reference --methods rk4 --engines none --steps 1/60,1/120 --duration-s 0.5 --budget-s 1");
+  const Said own = type(
+      "cost t_handle --modules a2=reference --methods rk4 --engines none --steps 1/60,1/120 "
+      "--duration-s 0.5 --budget-s 1");
   EXPECT_EQ(own.code, 0) << own.err;
   EXPECT_TRUE(holds(own.out, "reference euler") && holds(own.out, "reference rk4")) << own.out;
-  const Said library = type("cost t_handle --modules library --methods rk4 --engines none --steps 1/60,1/120 --duration-s 0.5 --budget-s 1");
+  const Said library = type(
+      "cost t_handle --modules library --methods rk4 --engines none --steps 1/60,1/120 "
+      "--duration-s 0.5 --budget-s 1");
   EXPECT_FALSE(holds(library.out, "reference ") || holds(library.out, "your ")) << library.out;
 }
 
 TEST_F(CommandLine, CostReportsWhatItLeavesOut) {
-  const Said said = type("cost bowl --modules reference --methods rk4,euler,midpoint --duration-s 0.1 --budget-s 0.01");
+  const Said said = type(
+      "cost bowl --modules reference --methods rk4,euler,midpoint --duration-s 0.1 --budget-s "
+      "0.01");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(holds(said.out, "Not run: ca: bodies at rest fall asleep")) << said.out;
 }
 
 TEST_F(CommandLine, AChoiceIsReportedBeforeItsRun) {
-  const Said said = type("run double_pendulum --modules reference --accuracy 1e-9 --duration-s 0.2");
+  const Said said =
+      type("run double_pendulum --modules reference --accuracy 1e-9 --duration-s 0.2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   const std::size_t chosen = said.err.find("tumble: chosen "), ran = said.err.find("ran in ");
   ASSERT_NE(chosen, std::string::npos) << said.err;
@@ -100,10 +139,13 @@ TEST_F(CommandLine, AChoiceIsReportedBeforeItsRun) {
 // within the request. A search that measured its error at another step, or with other frames, would
 // be wrong by orders of magnitude.
 TEST_F(CommandLine, AnAccuracyIsReachedInScenesOfEveryKind) {
-  for (const char* scene : {"t_handle", "pong_1", "hung_by_spring", "double_pendulum", "sliding_to_rolling"})
+  for (const char* scene :
+       {"t_handle", "pong_1", "hung_by_spring", "double_pendulum", "sliding_to_rolling"})
     for (const double asked_m : {1e-3, 1e-6}) {
-      const Said said = type(fmt::format("run {} --modules reference --accuracy {:g} --duration-s 0.5 --json", scene, asked_m));
-      ASSERT_TRUE(said.code == 0 || said.code == 1) << scene << '\n' << said.err;   // 1: the scene's own checks are stricter
+      const Said said = type(fmt::format(
+          "run {} --modules reference --accuracy {:g} --duration-s 0.5 --json", scene, asked_m));
+      // 1: the scene's own checks are stricter
+      ASSERT_TRUE(said.code == 0 || said.code == 1) << scene << '\n' << said.err;
       const nlohmann::json search = nlohmann::json::parse(said.out).at("search");
       EXPECT_LE(search.at("error_m").get<double>(), asked_m) << scene;
       EXPECT_LT(search.at("truth_error_m").get<double>(), asked_m) << scene;
@@ -117,23 +159,31 @@ TEST_F(CommandLine, AnAccuracyIsHeldAgainstTheFilesThatKnowTheScene) {
 }
 
 TEST_F(CommandLine, CostOfAnAssignmentReadsItsMethods) {
-  const Said said = type("cost a2 --modules reference --duration-s 0.5 --steps 1/60,1/120,1/240,1/480 --tolerances 1e-6 --budget-s 1");
+  const Said said = type(
+      "cost a2 --modules reference --duration-s 0.5 --steps 1/60,1/120,1/240,1/480 --tolerances "
+      "1e-6 --budget-s 1");
   EXPECT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(std::regex_search(said.out, std::regex("your rk4_step converges with order [0-9.]+, as it should \\(4\\)"))) << said.out;
+  EXPECT_TRUE(std::regex_search(
+      said.out, std::regex("your rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
+      << said.out;
   EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "your rk4"));
 }
 
 TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoReferenceSolution) {
   const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
   EXPECT_EQ(said.code, 2) << said.out;
-  EXPECT_TRUE(holds(said.err, "this scene has no reference solution for 4 s") && holds(said.err, "--duration-s")) << said.err;
+  EXPECT_TRUE(holds(said.err, "this scene has no reference solution for 4 s") &&
+              holds(said.err, "--duration-s"))
+      << said.err;
 }
 #endif
 
 TEST_F(CommandLine, CostRefusesAMethodThatThereIsNot) {
   const Said said = type("cost t_handle --modules library --methods rk5");
   EXPECT_EQ(said.code, 2);
-  EXPECT_TRUE(holds(said.err, "there is no method of integration of that name") && holds(said.err, "bulirsch-stoer")) << said.err;
+  EXPECT_TRUE(holds(said.err, "there is no method of integration of that name") &&
+              holds(said.err, "bulirsch-stoer"))
+      << said.err;
   EXPECT_TRUE(left_nothing());
 }
 

@@ -22,9 +22,7 @@ const fs::path kSolutions = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a4_
 
 class GradingOfTimewarp : public ::testing::Test {
  protected:
-  GradingOfTimewarp() {
-    ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-  }
+  GradingOfTimewarp() { ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1); }
   ProgramOutcome type(std::vector<std::string> words) const {
     words.insert(words.begin(), std::string(TUMBLE_BINARY_DIR) + "/bin/tumble");
     return run_program(words, Output::kCaptured, 200.0);
@@ -36,8 +34,10 @@ class GradingOfTimewarp : public ::testing::Test {
 // Partly right: some points and not all; each lost point comes from a test whose story is kept.
 TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachItLoses) {
   fs::create_directories(root / "in/flawed");
-  fs::copy_file(kSolutions / "flawed_submission/a4_timewarp.cpp", root / "in/flawed/a4_timewarp.cpp");
-  const ProgramOutcome outcome = type({"grade", "a4", (root / "in").string(), "--out", (root / "out").string(), "--no-media", "--jobs", "1"});
+  fs::copy_file(kSolutions / "flawed_submission/a4_timewarp.cpp",
+                root / "in/flawed/a4_timewarp.cpp");
+  const ProgramOutcome outcome = type({"grade", "a4", (root / "in").string(), "--out",
+                                       (root / "out").string(), "--no-media", "--jobs", "1"});
   ASSERT_EQ(outcome.code, 0) << outcome.printed;
   std::ifstream file(root / "out/flawed/results.json");
   const nlohmann::json page = nlohmann::json::parse(file);
@@ -59,14 +59,17 @@ TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachIt
 // One slip is caught, by a story that names it; every right solution is accepted.
 TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAcceptsAllOthers) {
   fs::create_directories(root / "wrong");
-  std::vector<fs::path> slips;   // the first by name suffices
-  for (const auto& entry : fs::directory_iterator(kSolutions / "mutants")) slips.push_back(entry.path());
+  std::vector<fs::path> slips;  // the first by name suffices
+  for (const auto& entry : fs::directory_iterator(kSolutions / "mutants"))
+    slips.push_back(entry.path());
   ASSERT_FALSE(slips.empty());
   const fs::path slip = *std::min_element(slips.begin(), slips.end());
   fs::copy_file(slip, root / "wrong" / slip.filename());
-  const ProgramOutcome outcome = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--json"});
+  const ProgramOutcome outcome =
+      type({"audit", "a4", "--mutants", (root / "wrong").string(), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.printed;
-  const nlohmann::json page = nlohmann::json::parse(outcome.printed.substr(outcome.printed.find("[\n")));
+  const nlohmann::json page =
+      nlohmann::json::parse(outcome.printed.substr(outcome.printed.find("[\n")));
   int wrong = 0, right = 0;
   for (const nlohmann::json& result : page) {
     (result.at("right").get<bool>() ? right : wrong) += 1;
@@ -81,7 +84,7 @@ TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAcceptsAllOthers) {
     EXPECT_LT(result.at("score"), result.at("possible")) << result;
   }
   EXPECT_EQ(wrong, 1);
-  EXPECT_GE(right, 2);   // the reference, and another right solution
+  EXPECT_GE(right, 2);  // the reference, and another right solution
 }
 
 // The first slip by name, with the first line of a block that starts with `mark` replaced: its
@@ -105,15 +108,22 @@ std::pair<std::string, int> spoilt_slip(char mark, const std::string& line) {
 TEST_F(GradingOfTimewarp, AnAuditReportsTheWrongLineOfASlip) {
   const auto [broken, at] = spoilt_slip('+', "  undeclared;");
   write_whole(root / "wrong/s.slip", broken);
-  const ProgramOutcome refused = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
+  const ProgramOutcome refused =
+      type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
   EXPECT_EQ(refused.code, 1);
-  EXPECT_NE(refused.printed.find("does not compile: s.slip:" + std::to_string(at) + ":3: error: "), std::string::npos) << refused.printed;
+  EXPECT_NE(refused.printed.find("does not compile: s.slip:" + std::to_string(at) + ":3: error: "),
+            std::string::npos)
+      << refused.printed;
 
   const auto [stale, gone] = spoilt_slip('-', "  what the base does not hold;");
   write_whole(root / "wrong/s.slip", stale);
-  const ProgramOutcome left_behind = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
+  const ProgramOutcome left_behind =
+      type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
   EXPECT_EQ(left_behind.code, 2);
-  EXPECT_NE(left_behind.printed.find("s.slip:" + std::to_string(gone) + ": this line stands nowhere in "), std::string::npos) << left_behind.printed;
+  EXPECT_NE(
+      left_behind.printed.find("s.slip:" + std::to_string(gone) + ": this line stands nowhere in "),
+      std::string::npos)
+      << left_behind.printed;
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ TEST_F(GradeAttack, ResultsPlantedAmongSubmissionsDestroyNothingAndEarnNothing) 
   put("bob/a1_impulse.cpp", text_of(kStub));
   // The best forgery: another student's perfect record, with everything that makes it look
   // complete.
-  put("alice/record.json", R"({"assignment": "a1", "folder": "alice", "name": "alice", "state": "judged", "score": 100, "possible": 100, "mac": ""})");
+  put("alice/record.json",
+      R"({"assignment": "a1", "folder": "alice", "name": "alice", "state": "judged", "score": 100, "possible": 100, "mac": ""})");
   put("alice/results.json", R"({"score": 100})");
   put(".tumble-grade.json", R"({"assignment": "a1", "folders": ["alice", "bob"]})");
   const auto before = files("in");
@@ -65,7 +66,10 @@ TEST_F(GradeAttack, ARecordThatThisMachineDidNotSignIsGradedAgainAndSaidSo) {
   record["score"] = 100.0;
   write_whole(root / "out/alice/record.json", record.dump());
   const ProgramOutcome again = grade("out");
-  EXPECT_TRUE(says(again, "alice: the earlier result is not reused, because its record is not signed by this machine's key; graded again")) << again.printed;
+  EXPECT_TRUE(says(again,
+                   "alice: the earlier result is not reused, because its record is not signed by "
+                   "this machine's key; graded again"))
+      << again.printed;
   EXPECT_EQ(files("out"), before);
   // The key is lost: no earlier result is trusted, which is reported; the results are the same.
   fs::remove(root / "grader.key");
@@ -87,8 +91,21 @@ TEST_F(GradeAttack, TheKeyDoesNotLieAmongResults) {
 }
 
 TEST_F(GradeAttack, AnyNameOfASubmissionIsGraded) {
-  const std::vector<std::string> names = {"o'brien \"x\"", "new\nline", "tab\tbell\x07", "\xff\xfe", "\u202eevil", "$(touch pwned)", "-rf", ".hidden", "index.html", ".making-x", "_plain-0123456789abcdef", "\u5f20\u4f1f", std::string(250, 'n')};
-  for (const std::string& name : names) put(name + "/a1_impulse.cpp", "int x = ;\n");   // not compiled: seconds for all of them
+  const std::vector<std::string> names = {"o'brien \"x\"",
+                                          "new\nline",
+                                          "tab\tbell\x07",
+                                          "\xff\xfe",
+                                          "\u202eevil",
+                                          "$(touch pwned)",
+                                          "-rf",
+                                          ".hidden",
+                                          "index.html",
+                                          ".making-x",
+                                          "_plain-0123456789abcdef",
+                                          "\u5f20\u4f1f",
+                                          std::string(250, 'n')};
+  // not compiled: seconds for all of them
+  for (const std::string& name : names) put(name + "/a1_impulse.cpp", "int x = ;\n");
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
   const auto ledger = nlohmann::json::parse(text_of(root / "out/ledger.json"));
@@ -110,7 +127,9 @@ TEST_F(GradeAttack, LinksAmongSubmissionsLeadNowhere) {
   fs::create_symlink(kReference, root / "in/eve/a1_impulse.cpp");
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 1) << "two are to be mended by hand: " << outcome.printed;
-  EXPECT_NE(text_of(root / "out/gradebook.csv").find("alice,,alice,,0\nbob,,bob,,\neve,,eve,,\n"), std::string::npos) << text_of(root / "out/gradebook.csv");
+  EXPECT_NE(text_of(root / "out/gradebook.csv").find("alice,,alice,,0\nbob,,bob,,\neve,,eve,,\n"),
+            std::string::npos)
+      << text_of(root / "out/gradebook.csv");
 }
 
 TEST_F(GradeAttack, EqualFilesAreRemarkedForTheGraderAlone) {
@@ -127,7 +146,8 @@ class OtherRubric : public GradeAttack {
  protected:
   OtherRubric() {
     fs::create_directories(course);
-    fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "assignments", course / "assignments", fs::copy_options::recursive);
+    fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "assignments", course / "assignments",
+             fs::copy_options::recursive);
     fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "framework", course / "framework");
     const fs::path hidden = "solutions_private/a1_impulse/rubric_hidden.json";
     fs::create_directories((course / hidden).parent_path());
@@ -148,7 +168,8 @@ TEST_F(OtherRubric, AnEntryWithoutATestAndATestWithoutAnEntryAreNamedBeforeAnyth
   write(json);
   ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 2) << outcome.printed;
-  EXPECT_TRUE(says(outcome, "names test '" + name + "s', which judge_a1 does not have")) << outcome.printed;
+  EXPECT_TRUE(says(outcome, "names test '" + name + "s', which judge_a1 does not have"))
+      << outcome.printed;
   EXPECT_TRUE(says(outcome, "Did you mean '" + name + "'?")) << outcome.printed;
 
   const double points = json["tests"][0]["points"];
@@ -172,14 +193,17 @@ TEST_F(OtherRubric, PointsAloneAreAddedUpAgainAndEveryChangedTestIsNamed) {
   write(json);
   const auto start = std::chrono::steady_clock::now();
   const ProgramOutcome again = grade("out");
-  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double took_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_EQ(again.code, 0) << again.printed;
-  EXPECT_TRUE(says(again, json["tests"][0]["test"].get<std::string>() + ": right")) << again.printed;
+  EXPECT_TRUE(says(again, json["tests"][0]["test"].get<std::string>() + ": right"))
+      << again.printed;
   EXPECT_TRUE(says(again, "(the rubric changed)")) << again.printed;
   EXPECT_EQ(results("alice")["score"], 100.0);
   EXPECT_EQ(results("alice")["tests"][0]["max_score"], json["tests"][0]["points"]);
   const auto times = nlohmann::json::parse(text_of(root / "out/times.json"));
-  EXPECT_LT(times["seconds"].value("alice", 0.0), std::max(2.0, 0.5 * took_s)) << "it was run again";
+  EXPECT_LT(times["seconds"].value("alice", 0.0), std::max(2.0, 0.5 * took_s))
+      << "it was run again";
 }
 
 TEST_F(GradeAttack, TwoGradingsDoNotMeetInOneFolderAndAKilledOneLeavesItFree) {
@@ -220,7 +244,8 @@ TEST_F(GradeAttack, ChildrenOfAKilledGradingThatDieSlowlyAreWaitedFor) {
 }
 
 TEST_F(GradeAttack, AFileThatChangesMeanwhileIsGradedAsItWas) {
-  put("alice/a1_impulse.cpp", stub_that("for (volatile int never = 0; !never;) {}"));   // takes a while
+  // takes a while
+  put("alice/a1_impulse.cpp", stub_that("for (volatile int never = 0; !never;) {}"));
   put("bob/a1_impulse.cpp", "int x = ;\n");
   const pid_t grading = start_grading("out");
   wait_for(root / "out/.making-alice/alice");
@@ -259,22 +284,35 @@ TEST_F(GradeAttack, ABuildThatTakesTheProgramsAwayDisturbsNoGrading) {
   // during the grading.
   const fs::path build = root / "build";
   fs::create_directories(build / "bin");
-  for (const char* program : {"judge_a1", "worker_a1", "sandbox_init", "tumble"}) fs::copy_file(fs::path(TUMBLE_BINARY_DIR) / "bin" / program, build / "bin" / program);
-  fs::create_directory_symlink(fs::path(TUMBLE_BINARY_DIR) / "submission_sdk", build / "submission_sdk");
+  for (const char* program : {"judge_a1", "worker_a1", "sandbox_init", "tumble"})
+    fs::copy_file(fs::path(TUMBLE_BINARY_DIR) / "bin" / program, build / "bin" / program);
+  fs::create_directory_symlink(fs::path(TUMBLE_BINARY_DIR) / "submission_sdk",
+                               build / "submission_sdk");
   put("alice/a1_impulse.cpp", text_of(kStub));
   put("bob/a1_impulse.cpp", text_of(kStub) + "// bob\n");
-  const std::vector<std::string> words = {(build / "bin/tumble").string(), "grade", "a1", (root / "in").string(), "--out", (root / "out").string(), "--no-media", "--jobs", "1"};
+  const std::vector<std::string> words = {(build / "bin/tumble").string(),
+                                          "grade",
+                                          "a1",
+                                          (root / "in").string(),
+                                          "--out",
+                                          (root / "out").string(),
+                                          "--no-media",
+                                          "--jobs",
+                                          "1"};
   const pid_t child = ::fork();
   if (child == 0) ::_exit(run_program(words, Output::kDropped, 580.0).code);
   wait_for(root / "out/.making-alice");
-  for (const char* program : {"judge_a1", "worker_a1", "sandbox_init"}) write_whole(build / "bin" / program, "half a program");
+  for (const char* program : {"judge_a1", "worker_a1", "sandbox_init"})
+    write_whole(build / "bin" / program, "half a program");
   int status = 0;
   ::waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 0);
-  for (const char* name : {"alice", "bob"}) EXPECT_EQ(results(name)["extra_data"]["final"], true) << name;
+  for (const char* name : {"alice", "bob"})
+    EXPECT_EQ(results(name)["extra_data"]["final"], true) << name;
   const ProgramOutcome half = run_program(words, Output::kCaptured, 580.0);
   EXPECT_EQ(half.code, 2) << half.printed;
-  EXPECT_TRUE(says(half, "sandbox_init: 1: half")) << half.printed;   // the first of them that it tries
+  // the first of them that it tries
+  EXPECT_TRUE(says(half, "sandbox_init: 1: half")) << half.printed;
 }
 
 }  // namespace

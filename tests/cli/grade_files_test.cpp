@@ -32,7 +32,9 @@ class Folder : public ::testing::Test {
     kind.folder = "a9_thing";
     kind.title = "Thing";
   }
-  void put(const std::string& file, const std::string& text = "int x;\n") const { write_whole(root / file, text); }
+  void put(const std::string& file, const std::string& text = "int x;\n") const {
+    write_whole(root / file, text);
+  }
   Submission only() const {
     const auto all = find_submissions(root, kind).all;
     EXPECT_EQ(all.size(), 1u);
@@ -64,9 +66,11 @@ TEST_F(FindSubmissions, NothingIsPassedOverInSilence) {
   put("__MACOSX/._adam");
   const FoundSubmissions found = find_submissions(root, kind);
   ASSERT_EQ(found.all.size(), 2u);
-  EXPECT_EQ(found.all[0].name, ".zoe");   // a dot before a name hides no submission
+  EXPECT_EQ(found.all[0].name, ".zoe");  // a dot before a name hides no submission
   EXPECT_EQ(found.all[0].source, root / ".zoe/a9_thing.cpp");
-  EXPECT_EQ(found.passed_over, (std::vector<std::string>{".git (a folder of a tool)", "roster.csv (neither a folder nor a source)"}));
+  EXPECT_EQ(found.passed_over,
+            (std::vector<std::string>{".git (a folder of a tool)",
+                                      "roster.csv (neither a folder nor a source)"}));
 }
 
 TEST_F(FindSubmissions, FilesOfCanvasAreSubmissionsWithTheStudentsNumber) {
@@ -175,7 +179,7 @@ TEST_F(FindSubmissions, AFolderThatCannotBeReadIsNamedWithWhatToDo) {
   put("adam/upload/a9_thing.cpp");
   fs::permissions(root / "adam/upload", fs::perms::none);
   fs::permissions(root, fs::perms::owner_all | fs::perms::group_all | fs::perms::others_all);
-  const bool is_root = ::geteuid() == 0;   // root may read everything: drop its rights for a moment
+  const bool is_root = ::geteuid() == 0;  // root may read everything: drop its rights for a moment
   if (is_root) {
     ASSERT_EQ(::seteuid(65534), 0);
   }
@@ -185,17 +189,23 @@ TEST_F(FindSubmissions, AFolderThatCannotBeReadIsNamedWithWhatToDo) {
   }
   fs::permissions(root / "adam/upload", fs::perms::owner_all);
   EXPECT_TRUE(found.source.empty());
-  EXPECT_NE(found.problem.find("adam/upload cannot be read (Permission denied)"), std::string::npos) << found.problem;
-  EXPECT_NE(found.problem.find("chmod -R u+rX '" + (root / "adam").string() + "'"), std::string::npos) << found.problem;
+  EXPECT_NE(found.problem.find("adam/upload cannot be read (Permission denied)"), std::string::npos)
+      << found.problem;
+  EXPECT_NE(found.problem.find("chmod -R u+rX '" + (root / "adam").string() + "'"),
+            std::string::npos)
+      << found.problem;
 }
 
-TEST_F(FindSubmissions, NoFolderIsAUserError) { EXPECT_THROW(find_submissions(root / "gone", kind), UserError); }
+TEST_F(FindSubmissions, NoFolderIsAUserError) {
+  EXPECT_THROW(find_submissions(root / "gone", kind), UserError);
+}
 
 TEST(FolderOf, PlainNamesStayAndOthersCannotLeaveTheFolder) {
   EXPECT_EQ(folder_of("alice_b-2.x"), "alice_b-2.x");
   // A name like one made by the grader is replaced, so that no submission takes another's folder.
   EXPECT_NE(folder_of(folder_of("a b")), folder_of("a b"));
-  for (const std::string name : {"..", ".", "-rf", "a b", "<i>", "index.html", "a\nb", "\xff", "gr\u00fcn", ""}) {
+  for (const std::string name :
+       {"..", ".", "-rf", "a b", "<i>", "index.html", "a\nb", "\xff", "gr\u00fcn", ""}) {
     const std::string folder = folder_of(name);
     EXPECT_NE(folder, name);
     EXPECT_TRUE(folder.starts_with("_")) << folder;
@@ -205,7 +215,12 @@ TEST(FolderOf, PlainNamesStayAndOthersCannotLeaveTheFolder) {
   EXPECT_NE(folder_of("a b"), folder_of("a\tb"));
 }
 
-Rubric two_items() { return {"a9", "Thing", {{"S.Open", 60.0, "basic", "Open one", false}, {"S.Shut", 40.0, "advanced", "Shut one", true}}}; }
+Rubric two_items() {
+  return {"a9",
+          "Thing",
+          {{"S.Open", 60.0, "basic", "Open one", false},
+           {"S.Shut", 40.0, "advanced", "Shut one", true}}};
+}
 
 TestResult result(const std::string& test, Verdict verdict, const std::string& story = "") {
   TestResult r;
@@ -233,18 +248,24 @@ TEST(Scoring, ATestThatTheJudgeDidNotAnswerForIsAFaultAndEarnsNothing) {
 }
 
 TEST(Scoring, OnlyRightEarns) {
-  for (const Verdict v : {Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault})
+  for (const Verdict v : {Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed,
+                          Verdict::kOutOfResources, Verdict::kGraderFault})
     EXPECT_EQ(graded("a", {{result("S.Open", v), result("S.Shut", v)}, ""}).score, 0.0) << words(v);
 }
 
 TEST(Scoring, ATestThatNoRubricNamesEarnsNothing) {
-  const Grade grade = graded("a", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kRight), result("S.Extra", Verdict::kRight)}, ""});
+  const Grade grade =
+      graded("a", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kRight),
+                    result("S.Extra", Verdict::kRight)},
+                   ""});
   EXPECT_EQ(grade.score, 100.0);
   EXPECT_EQ(grade.tests.size(), 3u);
 }
 
 TEST(Gradescope, TestsCarryScoreAndWhoSeesThem) {
-  const Grade grade = graded("a", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kWrong, "off by \xff <b>")}, ""});
+  const Grade grade = graded("a", {{result("S.Open", Verdict::kRight),
+                                    result("S.Shut", Verdict::kWrong, "off by \xff <b>")},
+                                   ""});
   const auto json = nlohmann::json::parse(gradescope_json(grade));
   EXPECT_EQ(json.at("score"), 60.0);
   ASSERT_EQ(json.at("tests").size(), 2u);
@@ -258,20 +279,26 @@ TEST(Gradescope, TestsCarryScoreAndWhoSeesThem) {
 }
 
 TEST(Gradebook, IsCanvasFormatAndAFaultIsNoScore) {
-  const Judgement all = {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kRight)}, ""};
-  const std::string csv = gradebook_csv("Thing", {graded("alice", all), graded("bob", {{}, "the judge died"})});
-  EXPECT_EQ(csv, "Student,ID,SIS Login ID,Section,Thing\n    Points Possible,,,,100\nalice,,alice,,100\nbob,,bob,,\n");
+  const Judgement all = {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kRight)},
+                         ""};
+  const std::string csv =
+      gradebook_csv("Thing", {graded("alice", all), graded("bob", {{}, "the judge died"})});
+  EXPECT_EQ(csv,
+            "Student,ID,SIS Login ID,Section,Thing\n    Points "
+            "Possible,,,,100\nalice,,alice,,100\nbob,,bob,,\n");
 }
 
 TEST(Gradebook, ANameIsNeverAFormulaNorASecondCell) {
-  const std::string csv = gradebook_csv("Thing", {graded("=HYPERLINK(\"x\")", {}), graded("a,b\nc", {}), graded("@x", {})});
+  const std::string csv = gradebook_csv(
+      "Thing", {graded("=HYPERLINK(\"x\")", {}), graded("a,b\nc", {}), graded("@x", {})});
   EXPECT_NE(csv.find("\n\"'=HYPERLINK(\"\"x\"\")\",,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\n\"a,b\\x0Ac\",,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\n'@x,,"), std::string::npos) << csv;
 }
 
 TEST(Gradebook, NeitherSpaceNorTabNorAWideSignHidesAFormula) {
-  for (const std::string name : {" =cmd", "\t=1+1", "\r=1", "\uff1d1+1", "\uff0b1", "\uff0d1", "\uff20x", "\u3000=1", "\u200b=1", "+1", "-1", "\n@x"}) {
+  for (const std::string name : {" =cmd", "\t=1+1", "\r=1", "\uff1d1+1", "\uff0b1", "\uff0d1",
+                                 "\uff20x", "\u3000=1", "\u200b=1", "+1", "-1", "\n@x"}) {
     const std::string csv = gradebook_csv("Thing", {graded(name, {})});
     std::string cell = csv.substr(csv.find("100\n") + 4);
     if (cell.starts_with('"')) cell.erase(0, 1);
@@ -282,7 +309,8 @@ TEST(Gradebook, NeitherSpaceNorTabNorAWideSignHidesAFormula) {
 }
 
 TEST(Gradebook, NamesThatAreNotUtf8StayApart) {
-  const std::string csv = gradebook_csv("Thing", {graded("ann\xff", {}), graded("ann\xfe", {}), graded("ann\\xFF", {})});
+  const std::string csv = gradebook_csv(
+      "Thing", {graded("ann\xff", {}), graded("ann\xfe", {}), graded("ann\\xFF", {})});
   EXPECT_NE(csv.find("\nann\\xFF,,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\nann\\xFE,,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\nann\\\\xFF,,"), std::string::npos) << csv;
@@ -293,8 +321,11 @@ TEST(PlainText, WhatHidesOrReordersIsWrittenOut) {
   EXPECT_EQ(plain_name("a\x1b[31mb\x07\x7f"), "a\\x1B[31mb\\x07\\x7F");
   EXPECT_EQ(plain_name("\u2066x\u2069\u200f\ufeff"), "\\u{2066}x\\u{2069}\\u{200F}\\u{FEFF}");
   EXPECT_EQ(plain_name(std::string("a\0b", 3)), "a\\x00b");
-  EXPECT_EQ(plain_text("line\n\ttab \x1b[31mred\x1b[0m \u202e C:\\x"), "line\n\ttab red \\u{202E} C:\\x");
-  for (const std::string name : {"Zo\u00eb \u0141ukasz", "\u5f20\u4f1f", "O'Brien-Smith", "\u0645\u062d\u0645\u062f"}) EXPECT_EQ(plain_name(name), name);
+  EXPECT_EQ(plain_text("line\n\ttab \x1b[31mred\x1b[0m \u202e C:\\x"),
+            "line\n\ttab red \\u{202E} C:\\x");
+  for (const std::string name :
+       {"Zo\u00eb \u0141ukasz", "\u5f20\u4f1f", "O'Brien-Smith", "\u0645\u062d\u0645\u062f"})
+    EXPECT_EQ(plain_name(name), name);
 }
 
 TEST(Gradebook, AFileThatWasNotFoundIsBlankAndNoZeroIsWritten) {
@@ -304,19 +335,25 @@ TEST(Gradebook, AFileThatWasNotFoundIsBlankAndNoZeroIsWritten) {
   grade.student_id = "77";
   EXPECT_TRUE(grade.is_final());
   EXPECT_FALSE(grade.has_score());
-  EXPECT_NE(gradebook_csv("Thing", {grade}).find("\nann,77,ann,,\n"), std::string::npos) << gradebook_csv("Thing", {grade});
+  EXPECT_NE(gradebook_csv("Thing", {grade}).find("\nann,77,ann,,\n"), std::string::npos)
+      << gradebook_csv("Thing", {grade});
   EXPECT_FALSE(nlohmann::json::parse(gradescope_json(grade)).contains("score"));
 }
 
 TEST(Grades, AMachineTooBusyIsNotFinalAndNoLostPoint) {
-  const Grade grade = graded("ann", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kMachineBusy, "too busy")}, ""});
+  const Grade grade = graded("ann", {{result("S.Open", Verdict::kRight),
+                                      result("S.Shut", Verdict::kMachineBusy, "too busy")},
+                                     ""});
   EXPECT_FALSE(grade.is_final());
-  EXPECT_NE(summary_of(grade).find("not final: machine too busy"), std::string::npos) << summary_of(grade);
+  EXPECT_NE(summary_of(grade).find("not final: machine too busy"), std::string::npos)
+      << summary_of(grade);
   EXPECT_EQ(exit_code({result("S.Shut", Verdict::kMachineBusy)}), ExitCode::kOurBug);
 }
 
 TEST(ShellWord, WhateverANameHoldsStaysOneWord) {
-  for (const std::string name : {"plain", "two words", "it's", "$(touch x)", "`id`", "-rf", "a;b", "\"", "back\\slash", "line\nbreak", "\xff", "a\u202eb", "'; rm -rf /; '"}) {
+  for (const std::string name :
+       {"plain", "two words", "it's", "$(touch x)", "`id`", "-rf", "a;b", "\"", "back\\slash",
+        "line\nbreak", "\xff", "a\u202eb", "'; rm -rf /; '"}) {
     const std::string command = "printf %s " + shell_word(name);
     const ProgramOutcome outcome = run_program({"/bin/bash", "-c", command}, Output::kCaptured);
     EXPECT_EQ(outcome.printed, name) << command;
@@ -325,7 +362,9 @@ TEST(ShellWord, WhateverANameHoldsStaysOneWord) {
 }
 
 TEST(Gradescope, WhatASubmissionSaysIsShownPlain) {
-  Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "it said \x1b[2J\u202egnp\x01"), result("S.Shut", Verdict::kRight)}, ""});
+  Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "it said \x1b[2J\u202egnp\x01"),
+                              result("S.Shut", Verdict::kRight)},
+                             ""});
   grade.story = "a\u202eb";
   grade.notes = {"c\x07"};
   const auto json = nlohmann::json::parse(gradescope_json(grade));
@@ -334,7 +373,9 @@ TEST(Gradescope, WhatASubmissionSaysIsShownPlain) {
 }
 
 TEST_F(Folder, PagesWriteOutWhatHidesInANameOrAStory) {
-  Grade grade = graded("an\u202en", {{result("S.Open", Verdict::kWrong, "s\u202et"), result("S.Shut", Verdict::kRight)}, ""});
+  Grade grade = graded(
+      "an\u202en",
+      {{result("S.Open", Verdict::kWrong, "s\u202et"), result("S.Shut", Verdict::kRight)}, ""});
   const std::string html = submission_page(kind, grade, "").html();
   EXPECT_NE(html.find("an\\u{202E}n"), std::string::npos);
   EXPECT_NE(html.find("s\\u{202E}t"), std::string::npos);
@@ -343,30 +384,41 @@ TEST_F(Folder, PagesWriteOutWhatHidesInANameOrAStory) {
 
 TEST_F(Folder, PagesShowHostileNamesAndStoriesAsText) {
   const std::string evil = "<script>alert(1)</script>";
-  Grade grade = graded(evil, {{result("S.Open", Verdict::kWrong, evil), result("S.Shut", Verdict::kNotAttempted, evil)}, ""});
+  Grade grade = graded(evil, {{result("S.Open", Verdict::kWrong, evil),
+                               result("S.Shut", Verdict::kNotAttempted, evil)},
+                              ""});
   grade.notes = {evil};
   grade.media = {{"s", evil, evil, "s.png", "s.mp4", evil, true, {}}};
-  for (const std::string& html : {submission_page(kind, grade, evil).html(), index_page(kind, {grade}).html()}) {
+  for (const std::string& html :
+       {submission_page(kind, grade, evil).html(), index_page(kind, {grade}).html()}) {
     EXPECT_EQ(html.find("<script"), std::string::npos);
     EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
   }
 }
 
 TEST(CompilerStory, AFailureOfTheCompilerItselfSaysWhatToDo) {
-  const std::string story = compiler_story("a9_thing.cpp:7:3: internal compiler error: in foo, at cp/bar.cc:1\nPlease submit a full bug report\n", "/elsewhere/a9_thing.cpp");
+  const std::string story = compiler_story(
+      "a9_thing.cpp:7:3: internal compiler error: in foo, at cp/bar.cc:1\nPlease submit a full bug "
+      "report\n",
+      "/elsewhere/a9_thing.cpp");
   EXPECT_NE(story.find("a9_thing.cpp:7:3: internal compiler error"), std::string::npos) << story;
   EXPECT_NE(story.find("your code may be right"), std::string::npos) << story;
 }
 
 TEST(CompilerStory, AHeaderOfOnesOwnIsSaidNotToBeThere) {
-  const std::string story = compiler_story("a9_thing.cpp:1:10: fatal error: a9_thing.h: No such file or directory\n", "/elsewhere/a9_thing.cpp");
+  const std::string story =
+      compiler_story("a9_thing.cpp:1:10: fatal error: a9_thing.h: No such file or directory\n",
+                     "/elsewhere/a9_thing.cpp");
   EXPECT_NE(story.find("Only this one file is compiled"), std::string::npos) << story;
 }
 
 TEST(CompilerStory, KeepsTheErrorsAndNoFolderOfThisMachine) {
-  const std::string said = "In file included from /build/x/a9_thing.cpp:1:\n/build/x/a9_thing.cpp:3:7: warning: unused\n"
-                           "/build/x/a9_thing.cpp:12:5: error: expected ';'\n   12 | int x\n      |     ^\n/build/x/a9_thing.cpp:13:1: note: here\n";
-  EXPECT_EQ(compiler_story(said, "/elsewhere/a9_thing.cpp"), "a9_thing.cpp:12:5: error: expected ';'\n   12 | int x\n      |     ^\n");
+  const std::string said =
+      "In file included from /build/x/a9_thing.cpp:1:\n/build/x/a9_thing.cpp:3:7: warning: unused\n"
+      "/build/x/a9_thing.cpp:12:5: error: expected ';'\n   12 | int x\n      |     "
+      "^\n/build/x/a9_thing.cpp:13:1: note: here\n";
+  EXPECT_EQ(compiler_story(said, "/elsewhere/a9_thing.cpp"),
+            "a9_thing.cpp:12:5: error: expected ';'\n   12 | int x\n      |     ^\n");
 }
 
 }  // namespace

@@ -36,12 +36,13 @@ TEST(Digest, IsSha256) {
 
 TEST(Digest, AuthenticationIsHmacSha256) {
   // RFC 4231, test case 2.
-  EXPECT_EQ(authentication_code("Jefe", "what do ya want for nothing?"), "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843");
+  EXPECT_EQ(authentication_code("Jefe", "what do ya want for nothing?"),
+            "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843");
 }
 
 TEST(Digest, OfAFileIsThatOfItsBytes) {
   const PrivateFolder folder;
-  const std::string bytes(200'000, 'x');   // more than one piece
+  const std::string bytes(200'000, 'x');  // more than one piece
   write_whole(folder.path() / "file", bytes);
   EXPECT_EQ(digest_of_file(folder.path() / "file"), digest(bytes));
   EXPECT_EQ(digest_of_file(folder.path() / "none"), "missing");
@@ -53,12 +54,19 @@ TEST(Folders, OfTheDeadAreSweptAndOfTheLivingNot) {
   if (gone == 0) ::_exit(0);
   ::waitpid(gone, nullptr, 0);
   const std::string dead = std::to_string(gone);
-  for (const std::string& name : {"t-" + dead + "-a", "t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a", "t-" + dead, "u-" + dead + "-a"}) write_whole(where.path() / name / "file", "x");
-  fs::create_directory_symlink(where.path() / ("u-" + dead + "-a"), where.path() / ("t-" + dead + "-link"));
-  const int held = hold_folder(where.path() / ("t-" + dead + "-held"));   // as by a process of another container, whose number is unused here
+  for (const std::string& name :
+       {"t-" + dead + "-a", "t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a",
+        "t-" + dead, "u-" + dead + "-a"})
+    write_whole(where.path() / name / "file", "x");
+  fs::create_directory_symlink(where.path() / ("u-" + dead + "-a"),
+                               where.path() / ("t-" + dead + "-link"));
+  // as by a process of another container, whose number is unused here
+  const int held = hold_folder(where.path() / ("t-" + dead + "-held"));
   sweep_folders_of_the_dead(where.path(), "t-");
   EXPECT_FALSE(fs::exists(where.path() / ("t-" + dead + "-a")));
-  for (const std::string& name : {"t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a", "t-" + dead, "u-" + dead + "-a"}) EXPECT_TRUE(fs::exists(where.path() / name / "file")) << name;
+  for (const std::string& name : {"t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a",
+                                  "t-" + dead, "u-" + dead + "-a"})
+    EXPECT_TRUE(fs::exists(where.path() / name / "file")) << name;
   ::close(held);
 }
 
@@ -136,31 +144,41 @@ class Output : public ::testing::Test {
   void make(const fs::path& out, const std::string& folder) const {
     OutputFolder output(out, subs(), "a1");
     output.claim({folder});
-    for (const char* file : {"index.html", "results.json", "record.json", "media/pong.png"}) write_whole(out / folder / file, "x");
+    for (const char* file : {"index.html", "results.json", "record.json", "media/pong.png"})
+      write_whole(out / folder / file, "x");
   }
   PrivateFolder folder_;
 };
-bool names(const std::string& refusal, const std::string& part) { return refusal.find(part) != std::string::npos; }
+bool names(const std::string& refusal, const std::string& part) {
+  return refusal.find(part) != std::string::npos;
+}
 
 TEST_F(Output, ThatOverlapsTheSubmissionsIsRefusedByAnyPath) {
   fs::create_directories(subs() / "alice");
   fs::create_directory_symlink(subs(), root() / "link");
   fs::create_directory_symlink(root(), root() / "up");
-  for (const fs::path& out : {subs(), subs() / ".", subs() / "alice/..", root() / "link", root() / "up/subs"}) EXPECT_TRUE(names(refusal(out), "is the folder of the submissions itself")) << out;
-  for (const fs::path& out : {subs() / "out", subs() / "alice", root() / "link/out", root() / "up/subs/a/b"}) EXPECT_TRUE(names(refusal(out), "lies in the folder of the submissions")) << out;
-  for (const fs::path& out : {root(), root() / "up", root() / "subs/.."}) EXPECT_TRUE(names(refusal(out), "holds the folder of the submissions")) << out;
+  for (const fs::path& out :
+       {subs(), subs() / ".", subs() / "alice/..", root() / "link", root() / "up/subs"})
+    EXPECT_TRUE(names(refusal(out), "is the folder of the submissions itself")) << out;
+  for (const fs::path& out :
+       {subs() / "out", subs() / "alice", root() / "link/out", root() / "up/subs/a/b"})
+    EXPECT_TRUE(names(refusal(out), "lies in the folder of the submissions")) << out;
+  for (const fs::path& out : {root(), root() / "up", root() / "subs/.."})
+    EXPECT_TRUE(names(refusal(out), "holds the folder of the submissions")) << out;
   EXPECT_FALSE(fs::exists(subs() / "out"));
   EXPECT_EQ(refusal(root() / "subs2"), "") << "a name that begins alike is another folder";
 }
 
 TEST_F(Output, FilesOfOthersAreNamedAndNothingIsTouched) {
   write_whole(root() / "out/thesis.txt", "years of work");
-  EXPECT_TRUE(names(refusal(root() / "out"), "thesis.txt: was not written by this grader")) << refusal(root() / "out");
+  EXPECT_TRUE(names(refusal(root() / "out"), "thesis.txt: was not written by this grader"))
+      << refusal(root() / "out");
   EXPECT_EQ(std::distance(fs::directory_iterator(root() / "out"), {}), 1);
 }
 
 TEST_F(Output, FilesThatLookLikeOursAreNotWithoutTheManifest) {
-  for (const char* file : {"index.html", "alice/record.json", "alice/results.json", ".making-alice/x"}) {
+  for (const char* file :
+       {"index.html", "alice/record.json", "alice/results.json", ".making-alice/x"}) {
     fs::remove_all(root() / "out");
     write_whole(root() / "out" / file, "x");
     EXPECT_TRUE(names(refusal(root() / "out"), "was not written by this grader")) << file;
@@ -168,7 +186,8 @@ TEST_F(Output, FilesThatLookLikeOursAreNotWithoutTheManifest) {
 }
 
 TEST_F(Output, FilesPutAmongOursAreForeign) {
-  for (const char* file : {"notes.txt", "bob/record.json", "alice/comments.txt", "alice/media/talk.pdf", "alice/deep/x.html", ".making-bob/x"}) {
+  for (const char* file : {"notes.txt", "bob/record.json", "alice/comments.txt",
+                           "alice/media/talk.pdf", "alice/deep/x.html", ".making-bob/x"}) {
     fs::remove_all(root() / "out");
     make(root() / "out", "alice");
     EXPECT_EQ(refusal(root() / "out"), "") << file;
@@ -183,7 +202,8 @@ TEST_F(Output, AManifestThatLeadsElsewhereIsRefusedAndNothingIsTouched) {
     fs::remove_all(root() / "out");
     write_whole(root() / "victim/thesis.txt", "years of work");
     fs::create_directories(root() / "out/.making-x");
-    write_whole(root() / "out/.tumble-grade.json", R"({"assignment": "a1", "folders": ["x", ")" + name + R"("]})");
+    write_whole(root() / "out/.tumble-grade.json",
+                R"({"assignment": "a1", "folders": ["x", ")" + name + R"("]})");
     EXPECT_TRUE(names(refusal(root() / "out"), "was not written by this grader")) << name;
     EXPECT_TRUE(fs::exists(root() / "victim/thesis.txt")) << name;
   }
@@ -198,7 +218,8 @@ TEST_F(Output, ALinkAmongOursIsForeign) {
 
 TEST_F(Output, ResultsOfAnotherAssignmentStay) {
   make(root() / "out", "alice");
-  EXPECT_TRUE(names(refusal(root() / "out", "a2"), "holds results of a1, not of a2")) << refusal(root() / "out", "a2");
+  EXPECT_TRUE(names(refusal(root() / "out", "a2"), "holds results of a1, not of a2"))
+      << refusal(root() / "out", "a2");
 }
 
 TEST_F(Output, IsLockedForAsLongAsAProcessOfTheGradingLives) {
@@ -221,9 +242,13 @@ TEST_F(Output, IsLockedForAsLongAsAProcessOfTheGradingLives) {
 
 TEST_F(Output, WhatAKilledRunLeftIsSwept) {
   make(root() / "out", "alice");
-  for (const char* file : {".making-alice/alice/results.json", ".index.draft123.html", ".gradebook.draft9.csv", "..tumble-grade.draft5.json"}) write_whole(root() / "out" / file, "half");
+  for (const char* file : {".making-alice/alice/results.json", ".index.draft123.html",
+                           ".gradebook.draft9.csv", "..tumble-grade.draft5.json"})
+    write_whole(root() / "out" / file, "half");
   EXPECT_EQ(refusal(root() / "out"), "");
-  for (const char* file : {".making-alice", ".index.draft123.html", ".gradebook.draft9.csv", "..tumble-grade.draft5.json"}) EXPECT_FALSE(fs::exists(root() / "out" / file)) << file;
+  for (const char* file : {".making-alice", ".index.draft123.html", ".gradebook.draft9.csv",
+                           "..tumble-grade.draft5.json"})
+    EXPECT_FALSE(fs::exists(root() / "out" / file)) << file;
   EXPECT_TRUE(fs::exists(root() / "out/alice/record.json"));
 }
 
@@ -234,7 +259,7 @@ class Record : public ::testing::Test {
   Record() {
     kind.id = "a9";
     kind.title = "Thing";
-    grade.name = "x\xff";   // no UTF-8
+    grade.name = "x\xff";  // no UTF-8
     grade.folder = "x";
     grade.state = GradeState::kJudged;
     TestResult crashed;
@@ -243,11 +268,26 @@ class Record : public ::testing::Test {
     crashed.story = "SIGSEGV";
     grade.tests = {{{"S.Open", 100.0, "basic", "Open one", false}, crashed, 0.0}};
     grade.notes = {"a note"};
-    grade.changes = {{"S.Open", "Open one", "right, 100 of 100", "crashed, 0 of 100", "the submission changed"}};
-    grade.media = {{"pong", "Pong", "about", "pong.png", "pong.mp4", "", true, {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}}, "pong.html"}};
+    grade.changes = {
+        {"S.Open", "Open one", "right, 100 of 100", "crashed, 0 of 100", "the submission changed"}};
+    grade.media = {{"pong",
+                    "Pong",
+                    "about",
+                    "pong.png",
+                    "pong.mp4",
+                    "",
+                    true,
+                    {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}},
+                    "pong.html"}};
     grade.cost.scene = "A ball";
-    grade.cost.plots = {{"Error", {"step", "s", report::Scale::kLog}, {"error", "m", report::Scale::kLog}, {{"rk4", {1.0, 0.5}, {0.1, std::nan("")}, true}}, {{1e-9, "floor"}}, "caption"}};
-    grade.cost.tables = {{"counts", {{"name"}, {"n", true}}, {{{"a"}, {"1", "#x", report::Look::kBad}}}}};
+    grade.cost.plots = {{"Error",
+                         {"step", "s", report::Scale::kLog},
+                         {"error", "m", report::Scale::kLog},
+                         {{"rk4", {1.0, 0.5}, {0.1, std::nan("")}, true}},
+                         {{1e-9, "floor"}},
+                         "caption"}};
+    grade.cost.tables = {
+        {"counts", {{"name"}, {"n", true}}, {{{"a"}, {"1", "#x", report::Look::kBad}}}}};
     add_up(grade);
     write_grade(kind, grade, {"s", "j", "r", "p"}, place(), key);
   }
@@ -281,15 +321,20 @@ TEST_F(Record, WithAnyFieldChangedIsNotTrusted) {
   const auto json = nlohmann::ordered_json::parse(whole);
   for (const auto& [field, value] : json.items()) {
     auto forged = json;
-    if (field == "mac") forged[field] = std::string(64, '0');
-    else if (value.is_number()) forged[field] = 100.0;
-    else if (value.is_string()) forged[field] = value.get<std::string>() + "x";
-    else forged.erase(field);
+    if (field == "mac")
+      forged[field] = std::string(64, '0');
+    else if (value.is_number())
+      forged[field] = 100.0;
+    else if (value.is_string())
+      forged[field] = value.get<std::string>() + "x";
+    else
+      forged.erase(field);
     if (forged == json) continue;
     write_whole(place() / "record.json", forged.dump());
     EXPECT_FALSE(read(key).record) << field;
   }
-  for (const std::string text : {std::string(), std::string("{"), std::string("[]"), std::string("{\"mac\": 1}"), whole.substr(0, whole.size() / 2)}) {
+  for (const std::string text : {std::string(), std::string("{"), std::string("[]"),
+                                 std::string("{\"mac\": 1}"), whole.substr(0, whole.size() / 2)}) {
     write_whole(place() / "record.json", text);
     EXPECT_FALSE(read(key).record) << text;
   }
@@ -299,7 +344,8 @@ TEST_F(Record, WithAnyFieldChangedIsNotTrusted) {
 
 TEST_F(Record, OfOtherFilesOrAnotherFolderIsNotTrusted) {
   fs::copy(place(), folder_.path() / "y");
-  EXPECT_FALSE(read_earlier_run(folder_.path() / "y", "a9", key).record) << "a copy under another student's name";
+  EXPECT_FALSE(read_earlier_run(folder_.path() / "y", "a9", key).record)
+      << "a copy under another student's name";
   EXPECT_FALSE(read_earlier_run(place(), "a8", key).record);
   write_whole(place() / "index.html", "all right");
   EXPECT_EQ(read(key).problem, "its files have changed");

@@ -17,7 +17,8 @@ class BusyLoops {
       const pid_t child = ::fork();
       if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        for (volatile unsigned spin = 0;; spin = spin + 1) {}
+        for (volatile unsigned spin = 0;; spin = spin + 1) {
+        }
       }
       children_.push_back(child);
     }
@@ -33,13 +34,15 @@ class BusyLoops {
 
 TEST_F(Grading, BusyLoopsBesideItChangeNoByte) {
   id = "a2";
-  put("reference/a2_integration.cpp", text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a2_integration/a2_integration.cpp"));
+  put("reference/a2_integration.cpp",
+      text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a2_integration/a2_integration.cpp"));
   EXPECT_EQ(grade("calm").code, 0);
   const BusyLoops loops(4);
   const ProgramOutcome busy = grade("busy");
   EXPECT_EQ(busy.code, 0) << busy.printed;
   EXPECT_EQ(results("reference", "busy")["score"], 100.0) << busy.printed;
-  EXPECT_EQ(text_of(root / "busy/reference/results.json"), text_of(root / "calm/reference/results.json"));
+  EXPECT_EQ(text_of(root / "busy/reference/results.json"),
+            text_of(root / "calm/reference/results.json"));
 }
 
 TEST_F(Grading, SleepIsCharged) {
@@ -48,7 +51,8 @@ TEST_F(Grading, SleepIsCharged) {
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
   EXPECT_TRUE(says(outcome, "the time budget of 3 s was used up")) << outcome.printed;
   const auto tests = results("sleeper")["tests"];
-  EXPECT_EQ(tests[0]["extra_data"]["verdict"], "not attempted") << "a test that answers is judged by its answer";
+  EXPECT_EQ(tests[0]["extra_data"]["verdict"], "not attempted")
+      << "a test that answers is judged by its answer";
   EXPECT_EQ(tests.back()["extra_data"]["verdict"], "out of time or memory");
 }
 

@@ -9,7 +9,12 @@
 namespace tumble::grading {
 namespace {
 
-Rubric rubric(double open, double shut) { return {"a9", "Thing", {{"S.Open", open, "basic", "Open one", false}, {"S.Shut", shut, "advanced", "Shut one", true}}}; }
+Rubric rubric(double open, double shut) {
+  return {"a9",
+          "Thing",
+          {{"S.Open", open, "basic", "Open one", false},
+           {"S.Shut", shut, "advanced", "Shut one", true}}};
+}
 
 Grade judged() {
   TestResult right, wrong;
@@ -42,7 +47,8 @@ TEST(Regrade, AFileThatDidNotCompileEarnsNothingUnderAnyPoints) {
   Grade grade;
   grade.state = GradeState::kDoesNotCompile;
   grade.story = "error";
-  grade.tests = score_nothing(rubric(60, 40), Verdict::kWrong, "the file does not compile, so no test ran");
+  grade.tests =
+      score_nothing(rubric(60, 40), Verdict::kWrong, "the file does not compile, so no test ran");
   const auto again = graded_by(rubric(30, 70), grade);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->score, 0.0);

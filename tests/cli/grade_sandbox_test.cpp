@@ -1,5 +1,5 @@
-// Which sandbox protects grades: it is named on everything that is written, one below the policy is refused, and all give the
-// same verdicts. And what tumble doctor says of a machine.
+// Which sandbox protects grades: it is named on everything that is written, one below the policy is
+// refused, and all give the same verdicts. And what tumble doctor says of a machine.
 #include "framework/grading/sandbox/landlock.h"
 #include "tests/cli/grading_fixture.h"
 
@@ -24,28 +24,34 @@ TEST_F(GradeSandbox, EveryOutputNamesIt) {
   EXPECT_EQ(about["official"], true);
   const auto ledger = nlohmann::json::parse(text_of(root / "out/ledger.json"));
   EXPECT_EQ(ledger["submissions"][0]["sandbox"], about["sandbox"]);
-  for (const char* page : {"out/index.html", "out/alice/index.html"}) EXPECT_NE(text_of(root / page).find("sandbox landlock (ABI "), std::string::npos) << page;
+  for (const char* page : {"out/index.html", "out/alice/index.html"})
+    EXPECT_NE(text_of(root / page).find("sandbox landlock (ABI "), std::string::npos) << page;
 }
 
 TEST_F(GradeSandbox, OneBelowThePolicyIsRefusedBeforeAnythingIsWritten) {
   ::setenv("TUMBLE_SANDBOX", "bare", 1);
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 2) << outcome.printed;
-  EXPECT_TRUE(says(outcome, "less than the policy") && says(outcome, "--accept-sandbox bare")) << outcome.printed;
+  EXPECT_TRUE(says(outcome, "less than the policy") && says(outcome, "--accept-sandbox bare"))
+      << outcome.printed;
   EXPECT_FALSE(fs::exists(root / "out"));
-  EXPECT_EQ(grade("out", {"--no-media", "--accept-sandbox", "landlock"}).code, 2) << "another kind was accepted";
+  EXPECT_EQ(grade("out", {"--no-media", "--accept-sandbox", "landlock"}).code, 2)
+      << "another kind was accepted";
 }
 
 TEST_F(GradeSandbox, ForcedGradesSayOnEveryOutputThatTheyAreNotOfficial) {
-  const ProgramOutcome outcome = grade("out", {"--no-media", "--sandbox", "bare", "--accept-sandbox", "bare"});
+  const ProgramOutcome outcome =
+      grade("out", {"--no-media", "--sandbox", "bare", "--accept-sandbox", "bare"});
   ASSERT_EQ(outcome.code, 0) << outcome.printed;
   EXPECT_TRUE(says(outcome, "not an official grade")) << outcome.printed;
-  EXPECT_NE(results("alice")["output"].get<std::string>().find("not an official grade"), std::string::npos);
+  EXPECT_NE(results("alice")["output"].get<std::string>().find("not an official grade"),
+            std::string::npos);
   EXPECT_EQ(results("alice")["extra_data"]["official"], false);
   for (const char* file : {"out/index.html", "out/alice/index.html", "out/alice/record.json"})
     EXPECT_NE(text_of(root / file).find("not an official grade"), std::string::npos) << file;
   EXPECT_NE(text_of(root / "out/gradebook.csv").find("not official"), std::string::npos);
-  EXPECT_EQ(nlohmann::json::parse(text_of(root / "out/ledger.json"))["submissions"][0]["official"], false);
+  EXPECT_EQ(nlohmann::json::parse(text_of(root / "out/ledger.json"))["submissions"][0]["official"],
+            false);
   // A later official run does not take such a result over.
   const ProgramOutcome official = grade("out", {"--no-media", "--sandbox", "landlock"});
   EXPECT_FALSE(says(official, "unchanged since the last run")) << official.printed;
@@ -59,7 +65,8 @@ TEST_F(GradeSandbox, AllKindsGiveTheSameVerdicts) {
   put("erin/a1_impulse.cpp", text_of(kReference) + "\nint main() { return 0; }\n");
   std::map<std::string, nlohmann::json> first;
   for (const std::string kind : {"namespaces", "landlock", "bare"}) {
-    const ProgramOutcome outcome = grade(kind, {"--no-media", "--sandbox", kind, "--accept-sandbox", kind});
+    const ProgramOutcome outcome =
+        grade(kind, {"--no-media", "--sandbox", kind, "--accept-sandbox", kind});
     if (outcome.code == 2 && says(outcome, "does not work on this machine")) continue;
     ASSERT_EQ(outcome.code, 0) << kind << outcome.printed;
     for (const char* name : {"alice", "bob", "carol", "dave", "erin"}) {
@@ -85,9 +92,11 @@ TEST_F(GradeSandbox, DoctorsExitCodeIsItsVerdict) {
   const auto report = nlohmann::json::parse(here.printed);
   EXPECT_EQ(here.code, report["official_grades"] == true ? 0 : 1) << here.printed;
   ASSERT_EQ(report["sandboxes"].size(), 3u);
-  for (const auto& sandbox : report["sandboxes"]) EXPECT_EQ(sandbox["works"], sandbox["why_not"] == "") << sandbox;
+  for (const auto& sandbox : report["sandboxes"])
+    EXPECT_EQ(sandbox["works"], sandbox["why_not"] == "") << sandbox;
   for (const auto& finding : report["findings"])
-    EXPECT_TRUE(finding["state"] != "missing" || !finding["remedy"].get<std::string>().empty()) << "what is missing has a remedy: " << finding;
+    EXPECT_TRUE(finding["state"] != "missing" || !finding["remedy"].get<std::string>().empty())
+        << "what is missing has a remedy: " << finding;
 }
 
 TEST_F(GradeSandbox, DoctorFindsTheStrongestThatAContainerPermits) {
@@ -95,7 +104,9 @@ TEST_F(GradeSandbox, DoctorFindsTheStrongestThatAContainerPermits) {
   const auto docker = nlohmann::json::parse(doctor({launcher}).printed);
   EXPECT_EQ(docker["sandbox"]["kind"], "landlock");
   EXPECT_EQ(docker["sandboxes"][0]["works"], false);
-  EXPECT_NE(docker["sandboxes"][0]["why_not"].get<std::string>().find("namespace"), std::string::npos) << docker["sandboxes"][0];
+  EXPECT_NE(docker["sandboxes"][0]["why_not"].get<std::string>().find("namespace"),
+            std::string::npos)
+      << docker["sandboxes"][0];
   const ProgramOutcome older = doctor({launcher, "--no-landlock"});
   EXPECT_EQ(nlohmann::json::parse(older.printed)["sandbox"]["kind"], "bare");
   EXPECT_EQ(older.code, 1) << "no official grades there";

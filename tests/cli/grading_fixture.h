@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 inline const fs::path kProgram = fs::path(TUMBLE_BINARY_DIR) / "bin/tumble";
 inline const fs::path kStub = fs::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/a1_impulse.cpp";
-inline const fs::path kReference = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a1_impulse/a1_impulse.cpp";
+inline const fs::path kReference =
+    fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a1_impulse/a1_impulse.cpp";
 
 inline std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -37,7 +38,9 @@ inline std::string stub_that(const std::string& does) {
   return text.insert(at, does + "\n  ");
 }
 
-inline bool says(const ProgramOutcome& outcome, const std::string& words) { return outcome.printed.find(words) != std::string::npos; }
+inline bool says(const ProgramOutcome& outcome, const std::string& words) {
+  return outcome.printed.find(words) != std::string::npos;
+}
 
 /// Submissions in, in/NAME/..., and results in out. The test has a machine key of its own.
 class Grading : public ::testing::Test {
@@ -46,21 +49,29 @@ class Grading : public ::testing::Test {
     ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
     ::setenv("TUMBLE_GRADER_KEY", (root / "grader.key").c_str(), 1);
   }
-  void put(const std::string& file, const std::string& text) const { write_whole(root / "in" / file, text); }
-  std::vector<std::string> words_for(const std::string& out, const std::vector<std::string>& more) const {
-    std::vector<std::string> words = {kProgram.string(), "grade", id, (root / "in").string(), "--out", (root / out).string()};
+  void put(const std::string& file, const std::string& text) const {
+    write_whole(root / "in" / file, text);
+  }
+  std::vector<std::string> words_for(const std::string& out,
+                                     const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {kProgram.string(),      "grade", id,
+                                      (root / "in").string(), "--out", (root / out).string()};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  ProgramOutcome grade(const std::string& out, const std::vector<std::string>& more = {"--no-media"}) const {
+  ProgramOutcome grade(const std::string& out,
+                       const std::vector<std::string>& more = {"--no-media"}) const {
     return run_program(words_for(out, more), Output::kCaptured, 580.0);
   }
-  nlohmann::json results(const std::string& name, const std::string& out = "out") const { return nlohmann::json::parse(text_of(root / out / name / "results.json")); }
+  nlohmann::json results(const std::string& name, const std::string& out = "out") const {
+    return nlohmann::json::parse(text_of(root / out / name / "results.json"));
+  }
   /// Every file except times, by its path below root.
   std::map<std::string, std::string> files(const std::string& out) const {
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::recursive_directory_iterator(root / out))
-      if (entry.is_regular_file() && entry.path().filename() != "times.json") all[entry.path().lexically_relative(root / out).string()] = text_of(entry.path());
+      if (entry.is_regular_file() && entry.path().filename() != "times.json")
+        all[entry.path().lexically_relative(root / out).string()] = text_of(entry.path());
     return all;
   }
   PrivateFolder scratch_;

@@ -22,38 +22,49 @@ TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItReportsItAndExitsWith2) {
 TEST_F(CommandLine, AMistypedVerbOrSceneIsAnsweredWithTheNearest) {
   const Said verb = type("chek a1"), scene = type("run pon_200");
   EXPECT_EQ(verb.code, 2);
-  EXPECT_TRUE(holds(verb.err, "chek: there is no such verb. Did you mean 'check'? Known: ")) << verb.err;
+  EXPECT_TRUE(holds(verb.err, "chek: there is no such verb. Did you mean 'check'? Known: "))
+      << verb.err;
   EXPECT_EQ(scene.code, 2);
-  EXPECT_TRUE(holds(scene.err, "pon_200: there is no such scene. Did you mean 'pong_200'? ")) << scene.err;
+  EXPECT_TRUE(holds(scene.err, "pon_200: there is no such scene. Did you mean 'pong_200'? "))
+      << scene.err;
 }
 
 TEST_F(CommandLine, AnUnknownFlagIsAnsweredWithTheNearest) {
   const Said said = type("grade a1 somewhere --no-meda");
   EXPECT_EQ(said.code, 2);
-  EXPECT_NE(said.err.find("--no-meda: grade has no such flag. Did you mean '--no-media'? Known: "), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("--no-meda: grade has no such flag. Did you mean '--no-media'? Known: "),
+            std::string::npos)
+      << said.err;
 }
 
 TEST_F(CommandLine, ASceneThatNeedsAnAssignmentThatThereIsNotIsRefusedAtItsLine) {
-  std::ofstream(folder_ / "s.json") << "{ \"title\": \"t\", \"duration_s\": 1,\n  \"needs\": [\"a1\", \"a33\"],\n"
-                                       "  \"bodies\": [{ \"name\": \"b\", \"shape\": { \"sphere\": { \"radius_m\": 1 } }, \"mass_kg\": 1 }] }\n";
+  std::ofstream(folder_ / "s.json")
+      << "{ \"title\": \"t\", \"duration_s\": 1,\n  \"needs\": [\"a1\", \"a33\"],\n"
+         "  \"bodies\": [{ \"name\": \"b\", \"shape\": { \"sphere\": { \"radius_m\": 1 } }, "
+         "\"mass_kg\": 1 }] }\n";
   const Said said = type("run s.json");
   EXPECT_EQ(said.code, 2);
-  for (const std::string word : {"s.json:2", "/needs/1", "'a33'", "Did you mean 'a3'"}) EXPECT_NE(said.err.find(word), std::string::npos) << word << " in: " << said.err;
+  for (const std::string word : {"s.json:2", "/needs/1", "'a33'", "Did you mean 'a3'"})
+    EXPECT_NE(said.err.find(word), std::string::npos) << word << " in: " << said.err;
 }
 
 TEST_F(CommandLine, HelpListsEveryVerb) {
   const Said said = type("--help");
   EXPECT_EQ(said.code, 0);
-  for (const char* verb : {"check", "watch", "run", "poke", "cost", "inspect", "truths", "grade", "audit", "release", "demo"}) EXPECT_TRUE(holds(said.out, verb)) << verb;
+  for (const char* verb : {"check", "watch", "run", "poke", "cost", "inspect", "truths", "grade",
+                           "audit", "release", "demo"})
+    EXPECT_TRUE(holds(said.out, verb)) << verb;
 }
 
 #ifdef TUMBLE_HAS_REFERENCE
 // Every engine reports w h, in words and as JSON: 2 x discontinuities x step over bodies and time.
 TEST_F(CommandLine, RunReportsDiscontinuitiesPerBodyAndStepForEveryEngine) {
   for (const std::string engine : {"rd", "ca", "ordered", "tw"}) {
-    const std::string words = "run gas --n 8 --modules reference --duration-s 1 --propagator auto --engine " + engine;
+    const std::string words =
+        "run gas --n 8 --modules reference --duration-s 1 --propagator auto --engine " + engine;
     const nlohmann::json page = nlohmann::json::parse(type(words + " --json").out);
-    const double expected = 2.0 * page.at("counts").at("discontinuities").get<double>() * page.at("step_s").get<double>() / (8 * page.at("end_s").get<double>());
+    const double expected = 2.0 * page.at("counts").at("discontinuities").get<double>() *
+                            page.at("step_s").get<double>() / (8 * page.at("end_s").get<double>());
     ASSERT_GT(expected, 0.1) << engine;
     EXPECT_DOUBLE_EQ(page.at("w_h").get<double>(), expected) << engine;
     EXPECT_TRUE(holds(type(words).out, "w h ")) << engine;
@@ -61,12 +72,18 @@ TEST_F(CommandLine, RunReportsDiscontinuitiesPerBodyAndStepForEveryEngine) {
 }
 
 TEST_F(CommandLine, APageOfTwoTimewarpsHasTheVirtualTimesOfBoth) {
-  const Said said = type("run pong_1 --modules reference --engine tw --duration-s 0.5 --html both.html --beside engine=tw,a2=library");
+  const Said said = type(
+      "run pong_1 --modules reference --engine tw --duration-s 0.5 --html both.html --beside "
+      "engine=tw,a2=library");
   const std::string page = contents_of(folder_ / "both.html");
   std::size_t panels = 0;
-  for (std::size_t at = page.find("\"kind\":\"virtual_times\""); at != std::string::npos; at = page.find("\"kind\":\"virtual_times\"", at + 1)) ++panels;
+  for (std::size_t at = page.find("\"kind\":\"virtual_times\""); at != std::string::npos;
+       at = page.find("\"kind\":\"virtual_times\"", at + 1))
+    ++panels;
   EXPECT_EQ(panels, 2u) << said.err;
-  EXPECT_TRUE(holds(page, "\"title\":\"Virtual times, reference\"") && holds(page, "\"title\":\"Virtual times, library\"")) << said.err;
+  EXPECT_TRUE(holds(page, "\"title\":\"Virtual times, reference\"") &&
+              holds(page, "\"title\":\"Virtual times, library\""))
+      << said.err;
 }
 #endif
 
@@ -91,19 +108,31 @@ TEST_F(CommandLine, AnUnknownEngineOrAStepOfZeroIsAMistakeToRepair) {
 }
 
 TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
-  const Said alone = type("run t_handle --modules library --duration-s 0.5 --trajectory first.run --html alone.html");
+  const Said alone = type(
+      "run t_handle --modules library --duration-s 0.5 --trajectory first.run --html alone.html");
   EXPECT_TRUE(holds(alone.err, "wrote alone.html")) << alone.err;
-  const Said beside = type("run t_handle --modules library --duration-s 0.5 --step-s 0.02 --beside step-s=0.01 --html beside.html");
+  const Said beside = type(
+      "run t_handle --modules library --duration-s 0.5 --step-s 0.02 --beside step-s=0.01 --html "
+      "beside.html");
   const std::string page = contents_of(folder_ / "beside.html");
-  EXPECT_TRUE(holds(page, "\"label\":\"step 0.02 s\"") && holds(page, "\"label\":\"step 0.01 s\"")) << beside.err;
-  const Said recorded = type("run t_handle --modules library --duration-s 0.5 --beside recording=first.run --html recorded.html");
+  EXPECT_TRUE(holds(page, "\"label\":\"step 0.02 s\"") && holds(page, "\"label\":\"step 0.01 s\""))
+      << beside.err;
+  const Said recorded = type(
+      "run t_handle --modules library --duration-s 0.5 --beside recording=first.run --html "
+      "recorded.html");
   const std::string same = contents_of(folder_ / "recorded.html");
-  EXPECT_TRUE(holds(same, "\"label\":\"first\"") && holds(same, "\"difference\":null")) << recorded.err;   // the recording is of the same run
+  // the recording is of the same run
+  EXPECT_TRUE(holds(same, "\"label\":\"first\"") && holds(same, "\"difference\":null"))
+      << recorded.err;
 }
 
 TEST_F(CommandLine, BesideThatCannotBeIsRefusedBeforeAnythingRuns) {
-  for (const auto& [words, part] : {std::pair{"--beside reference", "Add --html"}, {"--html f.html --beside step-s=fast", "'fast'"}, {"--html f.html --beside recording=nowhere.run", "nowhere.run"},
-                                    {"--html f.html --beside recording=a.run,engine=rd", "as it was made"}, {"--html f.html --beside a9=reference", "a9"}}) {
+  for (const auto& [words, part] :
+       {std::pair{"--beside reference", "Add --html"},
+        {"--html f.html --beside step-s=fast", "'fast'"},
+        {"--html f.html --beside recording=nowhere.run", "nowhere.run"},
+        {"--html f.html --beside recording=a.run,engine=rd", "as it was made"},
+        {"--html f.html --beside a9=reference", "a9"}}) {
     const Said said = type(std::string("run t_handle --modules library ") + words);
     EXPECT_EQ(said.code, 2) << words;
     EXPECT_EQ(said.out, "") << words;
@@ -130,31 +159,39 @@ TEST_F(CommandLine, InspectWeighsABox) {
 TEST_F(CommandLine, InspectPrintsEveryLineOfAGoodModel) {
   const Said said = type("inspect box --density 1200");
   EXPECT_EQ(said.code, 0) << said.err;
-  const nlohmann::json object = nlohmann::json::parse(type("inspect box --density 1200 --json").out).at("objects").at(0);
-  for (const char* line : {"1 object ", "density 1200 kg/m^3", "closed, convex", "vertices, faces 8, 12", "bounding box", "size", "volume", "mass", "centre of mass", "inertia",
-                           "about the centre of mass", "principal axes"})
+  const nlohmann::json object =
+      nlohmann::json::parse(type("inspect box --density 1200 --json").out).at("objects").at(0);
+  for (const char* line :
+       {"1 object ", "density 1200 kg/m^3", "closed, convex", "vertices, faces 8, 12",
+        "bounding box", "size", "volume", "mass", "centre of mass", "inertia",
+        "about the centre of mass", "principal axes"})
     EXPECT_TRUE(holds(said.out, line)) << line << "\n" << said.out;
   EXPECT_FALSE(holds(said.out, "wrong") || holds(said.out, "remedy")) << said.out;
   // For any size of the box: mass is density times volume, volume is that of the bounding box, and
   // a box's moment about an axis is m (b^2 + c^2) / 12. Its corners are float32 in the file: 1e-6
   // relative.
-  const auto low = object.at("bounding_box_m").at("low"), high = object.at("bounding_box_m").at("high");
+  const auto low = object.at("bounding_box_m").at("low"),
+             high = object.at("bounding_box_m").at("high");
   double size[3], volume = 1.0;
-  for (int i = 0; i < 3; ++i) size[i] = high.at(i).get<double>() - low.at(i).get<double>(), volume *= size[i];
+  for (int i = 0; i < 3; ++i)
+    size[i] = high.at(i).get<double>() - low.at(i).get<double>(), volume *= size[i];
   const double mass = object.at("mass_kg");
   EXPECT_NEAR(object.at("volume_m3").get<double>(), volume, 1e-6 * volume);
   EXPECT_NEAR(mass, 1200 * volume, 1e-6 * mass);
   for (int i = 0; i < 3; ++i) {
     const double b = size[(i + 1) % 3], c = size[(i + 2) % 3], moment = mass * (b * b + c * c) / 12;
-    EXPECT_NEAR(object.at("inertia_com_mesh_kg_m2").at(i).at(i).get<double>(), moment, 1e-6 * moment);
-    EXPECT_NEAR(object.at("com_mesh_m").at(i).get<double>(), 0.5 * (low.at(i).get<double>() + high.at(i).get<double>()), 1e-6 * size[i]);
+    EXPECT_NEAR(object.at("inertia_com_mesh_kg_m2").at(i).at(i).get<double>(), moment,
+                1e-6 * moment);
+    EXPECT_NEAR(object.at("com_mesh_m").at(i).get<double>(),
+                0.5 * (low.at(i).get<double>() + high.at(i).get<double>()), 1e-6 * size[i]);
   }
   EXPECT_EQ(object.at("principal_moments_kg_m2").size(), 3u);
 }
 
 TEST_F(CommandLine, InspectOfABrokenModelKeepsWhatIsKnownAndSaysWhatToDo) {
   const Said said = type("inspect broken/lampshade");
-  for (const char* line : {"not a solid", "vertices, faces", "bounding box", "wrong", "remedy"}) EXPECT_TRUE(holds(said.out, line)) << line << "\n" << said.out;
+  for (const char* line : {"not a solid", "vertices, faces", "bounding box", "wrong", "remedy"})
+    EXPECT_TRUE(holds(said.out, line)) << line << "\n" << said.out;
   EXPECT_FALSE(holds(said.out, "centre of mass")) << "what is no solid has no weight: " << said.out;
 }
 
@@ -174,11 +211,13 @@ TEST_F(CommandLine, TruthsOfAFolderWithAnOddFileNameItAndCompareTheOthers) {
   fs::create_directory(folder_ / "some");
   std::ofstream(folder_ / "some" / "a_notes.json") << "{\"remarks\": []}\n";
   std::ofstream(folder_ / "some" / "b_cut.json") << "{\"id\": \"x";
-  fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / "tests/truths/bouncing_ball__e0.5.json", folder_ / "some" / "c_ball.json");
+  fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / "tests/truths/bouncing_ball__e0.5.json",
+                folder_ / "some" / "c_ball.json");
   const Said said = type("truths some");
   EXPECT_EQ(said.code, 2) << said.out;
   EXPECT_TRUE(holds(said.err, "a_notes.json") && holds(said.err, "b_cut.json")) << said.err;
-  EXPECT_TRUE(holds(said.out, "1 cases") && holds(said.out, "2 files could not be compared")) << said.out;
+  EXPECT_TRUE(holds(said.out, "1 cases") && holds(said.out, "2 files could not be compared"))
+      << said.out;
   EXPECT_EQ(nlohmann::json::parse(type("truths some --json").out).at("odd_files").size(), 2u);
 }
 #endif
@@ -198,7 +237,9 @@ TEST_F(CommandLine, CountsAreATableOfWhatHappened) {
   const std::size_t at = said.out.find("  counts");
   ASSERT_NE(at, std::string::npos) << said.out;
   EXPECT_TRUE(std::regex_search(said.out, std::regex("gap evaluations +[1-9]"))) << said.out;
-  EXPECT_FALSE(std::regex_search(said.out.substr(at, said.out.find("quantity") - at), std::regex(" 0\\s"))) << "what is 0 is left out: " << said.out;
+  EXPECT_FALSE(
+      std::regex_search(said.out.substr(at, said.out.find("quantity") - at), std::regex(" 0\\s")))
+      << "what is 0 is left out: " << said.out;
   std::istringstream lines(said.out);
   for (std::string line; std::getline(lines, line);)
     EXPECT_TRUE(!holds(line, "evaluations") || line.size() <= 120) << line;
@@ -211,14 +252,18 @@ TEST_F(CommandLine, BodiesThatOverlapAtTheStartAreRefusedByNameDepthAndRemedy) {
     {"name": "right", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0.8, 0, 0]}]})");
   const Said said = type("run deep.json --modules reference --png p.png");
   EXPECT_EQ(said.code, 2) << said.out << said.err;
-  EXPECT_TRUE(holds(said.err, "left") && holds(said.err, "right") && holds(said.err, "overlap") && holds(said.err, "0.2 m") && holds(said.err, "apart")) << said.err;
+  EXPECT_TRUE(holds(said.err, "left") && holds(said.err, "right") && holds(said.err, "overlap") &&
+              holds(said.err, "0.2 m") && holds(said.err, "apart"))
+      << said.err;
   EXPECT_FALSE(fs::exists(folder_ / "p.png"));
 }
 
 // A run is a function of its scene: the same command gives the same bytes.
 TEST_F(CommandLine, TheSameWordsGiveTheSameBytes) {
-  ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory a.run").code == 3, false);
-  ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory b.run").code == 3, false);
+  ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory a.run").code == 3,
+            false);
+  ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory b.run").code == 3,
+            false);
   // The command line is kept in the file, so the names have equal lengths.
   std::string a = contents_of(folder_ / "a.run"), b = contents_of(folder_ / "b.run");
   ASSERT_GT(a.size(), 1000u);
@@ -235,21 +280,27 @@ TEST_F(CommandLine, AFileThatCannotBeWrittenIsReportedAndNothingIsLeft) {
 
 // 40 N for 0.2 s along y on a free body: momentum 8 kg m/s, for any point of the force.
 TEST_F(CommandLine, APokeGivesMomentumForceTimesTime) {
-  const Said said = type("poke poked_box --modules reference --ray -0.6,-10,0.85,0,1,0 --force 0,40,0 --duration-s 0.2");
+  const Said said = type(
+      "poke poked_box --modules reference --ray -0.6,-10,0.85,0,1,0 --force 0,40,0 --duration-s "
+      "0.2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   EXPECT_TRUE(holds(said.out + said.err, "face")) << said.out;
 }
 
 // The pixel of the first example in README and handout.
 TEST_F(CommandLine, ThePixelOfTheReadmeHitsTheBox) {
-  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/README.md"), "poke poked_box --pixel 200,250 --force 0,40,0"));
-  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/handouts/a1_impulse.md"), "poke poked_box --pixel 200,250 --force 0,40,0"));
-  const Said said = type("poke poked_box --modules reference --pixel 200,250 --force 0,40,0 --duration-s 0.2");
+  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/README.md"),
+                    "poke poked_box --pixel 200,250 --force 0,40,0"));
+  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/handouts/a1_impulse.md"),
+                    "poke poked_box --pixel 200,250 --force 0,40,0"));
+  const Said said =
+      type("poke poked_box --modules reference --pixel 200,250 --force 0,40,0 --duration-s 0.2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
 }
 
 TEST_F(CommandLine, APokeThatHitsNothingSaysWhatTheRayCameNearestTo) {
-  const Said said = type("poke poked_box --modules reference --ray -0.6,-10,90,0,1,0 --force 0,40,0 --duration-s 0.2");
+  const Said said = type(
+      "poke poked_box --modules reference --ray -0.6,-10,90,0,1,0 --force 0,40,0 --duration-s 0.2");
   EXPECT_EQ(said.code, 2) << said.out;
   EXPECT_TRUE(holds(said.err, "box")) << said.err;
 }
@@ -269,10 +320,12 @@ TEST_F(CommandLine, PlotsOfAPageBecomePicturesOfTheWidthAskedFor) {
     const std::string png = contents_of(folder_ / said.out.substr(0, said.out.find('\n')));
     ASSERT_GT(png.size(), 24u);
     EXPECT_EQ(png.substr(1, 3), "PNG");
-    EXPECT_EQ(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]), 900);   // the width in its header
+    // the width in its header
+    EXPECT_EQ(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]), 900);
   }
   const Said drawn = type("plots toi/index.html --svg --out drawn");
-  EXPECT_TRUE(contents_of(folder_ / drawn.out.substr(0, drawn.out.find('\n'))).starts_with("<?xml")) << drawn.err;
+  EXPECT_TRUE(contents_of(folder_ / drawn.out.substr(0, drawn.out.find('\n'))).starts_with("<?xml"))
+      << drawn.err;
   std::ofstream(folder_ / "empty.html") << "<p>words</p>";
   for (const char* page : {"empty.html", "nowhere.html"}) {
     const Said refused = type(std::string("plots ") + page);
@@ -284,9 +337,13 @@ TEST_F(CommandLine, PlotsOfAPageBecomePicturesOfTheWidthAskedFor) {
 TEST_F(CommandLine, EnginesAreComparedInATableAndOnAPage) {
   const Said said = type("engines gas --sizes 10,20 --duration-s 0.5 --modules a1=reference");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
-  for (const char* words : {"n = 10", "n = 20", "Anti-messages", "same trace, bit for bit", "out/engines/gas/index.html"}) EXPECT_TRUE(holds(said.out, words)) << words << "\n" << said.out;
+  for (const char* words : {"n = 10", "n = 20", "Anti-messages", "same trace, bit for bit",
+                            "out/engines/gas/index.html"})
+    EXPECT_TRUE(holds(said.out, words)) << words << "\n" << said.out;
   const std::string page = contents_of(folder_ / "out/engines/gas/index.html");
-  for (const char* words : {"conservative advancement", "Average integration step", "Error of the energy"}) EXPECT_TRUE(holds(page, words)) << words;
+  for (const char* words :
+       {"conservative advancement", "Average integration step", "Error of the energy"})
+    EXPECT_TRUE(holds(page, words)) << words;
 }
 
 TEST_F(CommandLine, ThePageOfAllEnginesRefusesWhatBelongsToOneSceneAndTheOtherWayRound) {
@@ -304,8 +361,11 @@ TEST_F(CommandLine, ThePageOfAllEnginesRefusesWhatBelongsToOneSceneAndTheOtherWa
 TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
   const Said engine = type("run gas --n 5 --engine timewarp --modules a1=reference");
   EXPECT_EQ(engine.code, 2);
-  EXPECT_TRUE(holds(engine.err, "there is no engine of that name") && holds(engine.err, "tw (timewarp)")) << engine.err;
-  const Said propagator = type("run gas --n 5 --engine tw --propagator laws --modules a1=reference");
+  EXPECT_TRUE(holds(engine.err, "there is no engine of that name") &&
+              holds(engine.err, "tw (timewarp)"))
+      << engine.err;
+  const Said propagator =
+      type("run gas --n 5 --engine tw --propagator laws --modules a1=reference");
   EXPECT_EQ(propagator.code, 2);
   EXPECT_TRUE(holds(propagator.err, "closed form only")) << propagator.err;
   const Said size = type("run bouncing_ball --n 5");
@@ -320,20 +380,24 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
 // modules are used where the tree has them.
 TEST_F(CommandLine, ASchedulerIsTriedOnScenesOfOtherAssignments) {
   for (const char* id : {"a3", "a4"})
-    if (!std::ifstream(std::string(TUMBLE_BINARY_DIR "/modules/") + id + "_reference.so")) GTEST_SKIP() << "this tree has no " << id << " but the student's";
-  const Said said = type("run dominoes_row --n 2 --duration-s 0.1 --engine tw --modules a4=reference");
+    if (!std::ifstream(std::string(TUMBLE_BINARY_DIR "/modules/") + id + "_reference.so"))
+      GTEST_SKIP() << "this tree has no " << id << " but the student's";
+  const Said said =
+      type("run dominoes_row --n 2 --duration-s 0.1 --engine tw --modules a4=reference");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   EXPECT_TRUE(holds(said.out, "rollbacks")) << said.out;
 }
 
 TEST_F(CommandLine, RunAndPokeTakeAModelAtOnce) {
-  const Said free = type("run t_handle.3ds --modules reference"), dropped = type("run wedge.3ds --drop --scale 0.5 --modules reference");
+  const Said free = type("run t_handle.3ds --modules reference"),
+             dropped = type("run wedge.3ds --drop --scale 0.5 --modules reference");
   EXPECT_EQ(free.code, 0) << free.out << free.err;
   EXPECT_TRUE(holds(free.out, "free in space")) << free.out;
   EXPECT_TRUE(holds(free.out, "angular_momentum")) << free.out;
   EXPECT_EQ(dropped.code, 0) << dropped.out << dropped.err;
   EXPECT_TRUE(holds(dropped.out, "dropped on a floor")) << dropped.out;
-  const Said poked = type("poke t_handle.3ds --pixel 320,240 --force 0,40,0 --duration-s 0.2 --modules reference");
+  const Said poked =
+      type("poke t_handle.3ds --pixel 320,240 --force 0,40,0 --duration-s 0.2 --modules reference");
   EXPECT_EQ(poked.code, 0) << poked.out << poked.err;
   EXPECT_TRUE(holds(poked.out, "hit body")) << poked.out;
   EXPECT_EQ(type("explain t_handle.3ds").code, 0);
@@ -344,7 +408,9 @@ TEST_F(CommandLine, RunAndPokeTakeAModelAtOnce) {
 TEST_F(CommandLine, AStubIsNotAttempted) {
   const Said said = type("run ball_against_wall --modules a1=student,a2=reference");
   EXPECT_EQ(said.code, 4) << said.out << said.err;
-  EXPECT_TRUE(holds(said.out + said.err, "not attempted") || holds(said.out + said.err, "not written")) << said.err;
+  EXPECT_TRUE(holds(said.out + said.err, "not attempted") ||
+              holds(said.out + said.err, "not written"))
+      << said.err;
 }
 
 TEST_F(CommandLine, AnAuditOfAnUnknownSlipIsAnsweredWithTheNearest) {
@@ -372,18 +438,23 @@ TEST_F(CommandLine, WordsAboutAModelAreRefusedOfAScene) {
 
 TEST_F(CommandLine, InspectSaysHowToSeeAModelMove) {
   const Said said = type("inspect t_handle --scale 0.5");
-  EXPECT_TRUE(holds(said.out, "tumble run") && holds(said.out, "t_handle.3ds --scale 0.5")) << said.out;
-  EXPECT_FALSE(holds(type("inspect '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'").out, "tumble run"));
+  EXPECT_TRUE(holds(said.out, "tumble run") && holds(said.out, "t_handle.3ds --scale 0.5"))
+      << said.out;
+  EXPECT_FALSE(holds(type("inspect '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'").out,
+                     "tumble run"));
 }
 
 // A number would be compared as metres whatever its label.
 TEST_F(CommandLine, ACheckInAUnitThatIsNotItsKindsIsRefusedAtItsLine) {
-  write_whole(folder_ / "cm.json", R"({"title": "t", "duration_s": 1, "bodies": [{"name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}],
+  write_whole(
+      folder_ / "cm.json",
+      R"({"title": "t", "duration_s": 1, "bodies": [{"name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}],
     "checks": [{"kind": "final_position", "body": "b", "expected": [0, 0, 0], "tolerance": 1,
                 "unit": "cm", "why": "w"}]})");
   const Said said = type("run cm.json --modules library");
   EXPECT_EQ(said.code, 2) << said.out << said.err;
-  for (const char* part : {"cm.json:3", "/checks/0/unit", "'cm'", "in m,"}) EXPECT_TRUE(holds(said.err, part)) << part << " in: " << said.err;
+  for (const char* part : {"cm.json:3", "/checks/0/unit", "'cm'", "in m,"})
+    EXPECT_TRUE(holds(said.err, part)) << part << " in: " << said.err;
 }
 
 }  // namespace

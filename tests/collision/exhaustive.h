@@ -20,7 +20,7 @@ inline Real root(Real x) {
   if (!(x > 0)) return 0;
   Real y = std::sqrt(static_cast<double>(x));
   if (!(y > 0)) return 0;
-  for (int i = 0; i < 2; ++i) y = (y + x / y) / 2;   // digits double each time
+  for (int i = 0; i < 2; ++i) y = (y + x / y) / 2;  // digits double each time
   return y;
 }
 inline Real magnitude(Real x) { return x < 0 ? -x : x; }
@@ -30,11 +30,17 @@ struct Exact {
 
   static Exact of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
   Real dot(const Exact& o) const { return x * o.x + y * o.y + z * o.z; }
-  Exact cross(const Exact& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
+  Exact cross(const Exact& o) const {
+    return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x};
+  }
   Real squared() const { return dot(*this); }
   Real norm() const { return root(squared()); }
-  friend Exact operator+(const Exact& a, const Exact& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend Exact operator-(const Exact& a, const Exact& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Exact operator+(const Exact& a, const Exact& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend Exact operator-(const Exact& a, const Exact& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
   friend Exact operator*(Real k, const Exact& a) { return {k * a.x, k * a.y, k * a.z}; }
 };
 
@@ -44,13 +50,20 @@ struct PlacedSurface {
   std::vector<std::array<int, 3>> faces;
 };
 
-inline PlacedSurface placed_exactly(const TriangleMesh& mesh, const collision::Pose& pose, const Vector3d& origin) {
-  const Matrix3d rotation = pose.world_from_body.toRotationMatrix();   // rounded like the solid's own
+inline PlacedSurface placed_exactly(const TriangleMesh& mesh, const collision::Pose& pose,
+                                    const Vector3d& origin) {
+  // rounded like the solid's own
+  const Matrix3d rotation = pose.world_from_body.toRotationMatrix();
   const Exact offset = Exact::of(pose.com_world) - Exact::of(origin);
   PlacedSurface surface;
   for (const Vector3d& v : mesh.vertices)
-    surface.vertices.push_back(Exact{Exact::of(rotation.row(0)).dot(Exact::of(v)), Exact::of(rotation.row(1)).dot(Exact::of(v)), Exact::of(rotation.row(2)).dot(Exact::of(v))} + offset);
-  for (const Face& f : mesh.faces) surface.faces.push_back({static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2])});
+    surface.vertices.push_back(Exact{Exact::of(rotation.row(0)).dot(Exact::of(v)),
+                                     Exact::of(rotation.row(1)).dot(Exact::of(v)),
+                                     Exact::of(rotation.row(2)).dot(Exact::of(v))} +
+                               offset);
+  for (const Face& f : mesh.faces)
+    surface.faces.push_back(
+        {static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2])});
   return surface;
 }
 
@@ -60,11 +73,14 @@ inline Real exact_point_to_segment(const Exact& p, const Exact& a, const Exact& 
   return (p - a - t * ab).norm();
 }
 
-inline Real exact_point_to_triangle(const Exact& p, const Exact& a, const Exact& b, const Exact& c) {
+inline Real exact_point_to_triangle(const Exact& p, const Exact& a, const Exact& b,
+                                    const Exact& c) {
   const Exact n = (b - a).cross(c - a);
-  const bool over = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 && n.dot((a - c).cross(p - c)) >= 0;
+  const bool over = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
+                    n.dot((a - c).cross(p - c)) >= 0;
   if (over) return magnitude(n.dot(p - a)) / n.norm();
-  return std::min({exact_point_to_segment(p, a, b), exact_point_to_segment(p, b, c), exact_point_to_segment(p, c, a)});
+  return std::min({exact_point_to_segment(p, a, b), exact_point_to_segment(p, b, c),
+                   exact_point_to_segment(p, c, a)});
 }
 
 /// Only for nearest points inside both segments: beyond an end the distance is that of a corner.
@@ -77,7 +93,8 @@ inline Real exact_line_to_line(const Exact& p, const Exact& q, const Exact& r, c
   return magnitude(n.dot(w)) / root(squared);
 }
 
-/// Largest separation over all normals of faces and products of edges: <= 0 exactly where the two overlap or touch.
+/// Largest separation over all normals of faces and products of edges: <= 0 exactly where the two
+/// overlap or touch.
 inline Real exact_separation(const PlacedSurface& a, const PlacedSurface& b) {
   Real best = -kFar;
   const auto offer = [&](const Exact& across) {
@@ -106,7 +123,7 @@ inline Real exact_separation(const PlacedSurface& a, const PlacedSurface& b) {
         }
     }
   }
-  const Real kParallel = 1e-20;   // rad: the cross product has thirteen digits left
+  const Real kParallel = 1e-20;  // rad: the cross product has thirteen digits left
   for (const Exact& u : edges[0])
     for (const Exact& v : edges[1])
       if (const Exact across = u.cross(v); across.norm() > kParallel) offer(across);
@@ -120,7 +137,9 @@ inline Real exact_gap(const PlacedSurface& a, const PlacedSurface& b) {
   Real distance = kFar;
   const auto corners_to_faces = [&](const PlacedSurface& s, const PlacedSurface& t) {
     for (const Exact& p : s.vertices)
-      for (const auto& f : t.faces) distance = std::min(distance, exact_point_to_triangle(p, t.vertices[f[0]], t.vertices[f[1]], t.vertices[f[2]]));
+      for (const auto& f : t.faces)
+        distance = std::min(distance, exact_point_to_triangle(p, t.vertices[f[0]], t.vertices[f[1]],
+                                                              t.vertices[f[2]]));
   };
   corners_to_faces(a, b);
   corners_to_faces(b, a);
@@ -129,7 +148,9 @@ inline Real exact_gap(const PlacedSurface& a, const PlacedSurface& b) {
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           if (f[i] < f[(i + 1) % 3] && g[j] < g[(j + 1) % 3])
-            distance = std::min(distance, exact_line_to_line(a.vertices[f[i]], a.vertices[f[(i + 1) % 3]], b.vertices[g[j]], b.vertices[g[(j + 1) % 3]]));
+            distance = std::min(distance,
+                                exact_line_to_line(a.vertices[f[i]], a.vertices[f[(i + 1) % 3]],
+                                                   b.vertices[g[j]], b.vertices[g[(j + 1) % 3]]));
   return distance;
 }
 

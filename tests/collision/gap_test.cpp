@@ -42,21 +42,27 @@ double point_to_triangle(const Vector3d& p, const Triangle3& t) {
   return over ? std::abs(n.dot(p - t[0])) / n.norm() : nearest;
 }
 
-double segment_to_segment(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s) {
-  double nearest = std::min({point_to_segment(p, r, s), point_to_segment(q, r, s), point_to_segment(r, p, q), point_to_segment(s, p, q)});
+double segment_to_segment(const Vector3d& p, const Vector3d& q, const Vector3d& r,
+                          const Vector3d& s) {
+  double nearest = std::min({point_to_segment(p, r, s), point_to_segment(q, r, s),
+                             point_to_segment(r, p, q), point_to_segment(s, p, q)});
   const Vector3d u = q - p, v = s - r, w = p - r;
-  const double a = u.dot(u), b = u.dot(v), c = v.dot(v), d = u.dot(w), e = v.dot(w), determinant = a * c - b * b;
+  const double a = u.dot(u), b = u.dot(v), c = v.dot(v), d = u.dot(w), e = v.dot(w),
+               determinant = a * c - b * b;
   if (determinant > 1e-12 * a * c) {
     const double t = (b * e - c * d) / determinant, k = (a * e - b * d) / determinant;
-    if (t >= 0 && t <= 1 && k >= 0 && k <= 1) nearest = std::min(nearest, (w + t * u - k * v).norm());
+    if (t >= 0 && t <= 1 && k >= 0 && k <= 1)
+      nearest = std::min(nearest, (w + t * u - k * v).norm());
   }
   return nearest;
 }
 
 bool segment_crosses(const Vector3d& p, const Vector3d& q, const Triangle3& t) {
-  const auto volume = [](const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) { return (b - a).cross(c - a).dot(d - a); };
+  const auto volume = [](const Vector3d& a, const Vector3d& b, const Vector3d& c,
+                         const Vector3d& d) { return (b - a).cross(c - a).dot(d - a); };
   if ((volume(t[0], t[1], t[2], p) > 0) == (volume(t[0], t[1], t[2], q) > 0)) return false;
-  const bool s0 = volume(p, q, t[0], t[1]) > 0, s1 = volume(p, q, t[1], t[2]) > 0, s2 = volume(p, q, t[2], t[0]) > 0;
+  const bool s0 = volume(p, q, t[0], t[1]) > 0, s1 = volume(p, q, t[1], t[2]) > 0,
+             s2 = volume(p, q, t[2], t[0]) > 0;
   return s0 == s1 && s1 == s2;
 }
 
@@ -66,15 +72,19 @@ Surface placed(const TriangleMesh& mesh, const Pose& pose) {
   Surface surface;
   for (const Face& face : mesh.faces) {
     Triangle3 t;
-    for (int i = 0; i < 3; ++i) t[i] = pose.com_world + pose.world_from_body * mesh.vertices[face[i]];
+    for (int i = 0; i < 3; ++i)
+      t[i] = pose.com_world + pose.world_from_body * mesh.vertices[face[i]];
     surface.push_back(t);
   }
   return surface;
 }
 
 bool inside(const Vector3d& p, const Surface& surface) {
-  const Vector3d far = p + Vector3d(97.3, 41.7, 63.1);   // not in a plane of any model
-  return std::count_if(surface.begin(), surface.end(), [&](const Triangle3& t) { return segment_crosses(p, far, t); }) % 2 == 1;
+  const Vector3d far = p + Vector3d(97.3, 41.7, 63.1);  // not in a plane of any model
+  return std::count_if(surface.begin(), surface.end(),
+                       [&](const Triangle3& t) { return segment_crosses(p, far, t); }) %
+             2 ==
+         1;
 }
 
 struct BruteForce {
@@ -87,10 +97,13 @@ BruteForce brute_force(const Surface& a, const Surface& b) {
   for (const Triangle3& s : a) {
     for (const Triangle3& t : b) {
       for (int i = 0; i < 3; ++i) {
-        found.distance = std::min({found.distance, point_to_triangle(s[i], t), point_to_triangle(t[i], s)});
-        found.cross = found.cross || segment_crosses(s[i], s[(i + 1) % 3], t) || segment_crosses(t[i], t[(i + 1) % 3], s);
+        found.distance =
+            std::min({found.distance, point_to_triangle(s[i], t), point_to_triangle(t[i], s)});
+        found.cross = found.cross || segment_crosses(s[i], s[(i + 1) % 3], t) ||
+                      segment_crosses(t[i], t[(i + 1) % 3], s);
         for (int j = 0; j < 3; ++j)
-          found.distance = std::min(found.distance, segment_to_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+          found.distance = std::min(found.distance,
+                                    segment_to_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
       }
     }
   }
@@ -105,16 +118,22 @@ struct Solid {
 };
 
 Solid model(const std::string& name) {
-  const MeshSolid solid = load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid;
+  const MeshSolid solid =
+      load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid;
   return {name, solid.mesh_body, CollisionShape(solid)};
 }
 
 class Poses {
  public:
   explicit Poses(unsigned seed) : random_(seed) {}
-  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  double in(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
   Vector3d vector() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
-  Pose pose(double spread) { return {spread * vector(), Quaterniond(in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1)).normalized()}; }
+  Pose pose(double spread) {
+    return {spread * vector(),
+            Quaterniond(in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1)).normalized()};
+  }
 
  private:
   std::mt19937_64 random_;
@@ -130,15 +149,18 @@ void expect_same(const BruteForce& expected, const collision::Gap& found, const 
     EXPECT_LT(found.distance, 0.0) << what << ": surfaces cross";
     return;
   }
-  if (expected.one_in_other) return;   // detected by `overlapping` only: gaps are for bodies that were apart before
+  // detected by `overlapping` only: gaps are for bodies that were apart before
+  if (expected.one_in_other) return;
   EXPECT_NEAR(found.distance, expected.distance, kRounding) << what;
-  EXPECT_NEAR((found.point_a_world - found.point_b_world).norm(), found.distance, kRounding) << what << ": witness points";
+  EXPECT_NEAR((found.point_a_world - found.point_b_world).norm(), found.distance, kRounding)
+      << what << ": witness points";
   EXPECT_NEAR(found.normal_b_to_a_world.norm(), 1.0, kRounding) << what;
 }
 
 TEST(Gap, OfAnyTwoModelsIsTheSmallestOverAllFaces) {
   std::vector<Solid> solids;
-  for (const char* name : {"torus", "l_shape", "t_handle", "wedge", "rock_1"}) solids.push_back(model(name));
+  for (const char* name : {"torus", "l_shape", "t_handle", "wedge", "rock_1"})
+    solids.push_back(model(name));
   Poses random(11);
   int crossing = 0, apart = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
@@ -149,8 +171,10 @@ TEST(Gap, OfAnyTwoModelsIsTheSmallestOverAllFaces) {
         const Pose pose_a = random.pose(0.5 * reach), pose_b = random.pose(0.5 * reach);
         const BruteForce expected = brute_force(placed(a.mesh, pose_a), placed(b.mesh, pose_b));
         ++(expected.cross ? crossing : apart);
-        expect_same(expected, collision::compute_gap(a.shape, pose_a, b.shape, pose_b), a.name + " and " + b.name);
-        EXPECT_EQ(collision::overlapping(a.shape, pose_a, b.shape, pose_b, 0.0), expected.cross || expected.one_in_other);
+        expect_same(expected, collision::compute_gap(a.shape, pose_a, b.shape, pose_b),
+                    a.name + " and " + b.name);
+        EXPECT_EQ(collision::overlapping(a.shape, pose_a, b.shape, pose_b, 0.0),
+                  expected.cross || expected.one_in_other);
       }
     }
   }
@@ -170,7 +194,9 @@ TEST(Gap, OfAModelAndABoxIsTheSmallestOverAllFaces) {
       const BruteForce expected = brute_force(placed(solid.mesh, pose), placed(box_mesh, box_pose));
       if (!expected.cross && !expected.one_in_other)
         expect_same(expected, collision::compute_gap(solid.shape, pose, box_shape, box_pose), name);
-      EXPECT_EQ(collision::overlapping(solid.shape, pose, box_shape, box_pose, 0.0), expected.cross || expected.one_in_other) << name;
+      EXPECT_EQ(collision::overlapping(solid.shape, pose, box_shape, box_pose, 0.0),
+                expected.cross || expected.one_in_other)
+          << name;
     }
   }
 }
@@ -189,9 +215,13 @@ TEST(Gap, OfAModelAndABallOrAPlaneIsThatOfItsNearestPoint) {
         to_center = std::min(to_center, point_to_triangle(other.com_world, t));
         for (const Vector3d& v : t) over_floor = std::min(over_floor, n.dot(v - other.com_world));
       }
-      EXPECT_NEAR(collision::compute_gap(solid.shape, pose, floor, other).distance, over_floor, kRounding) << name;
+      EXPECT_NEAR(collision::compute_gap(solid.shape, pose, floor, other).distance, over_floor,
+                  kRounding)
+          << name;
       if (inside(other.com_world, surface)) continue;
-      EXPECT_NEAR(collision::compute_gap(solid.shape, pose, ball, other).distance, to_center - 0.2, kRounding) << name;
+      EXPECT_NEAR(collision::compute_gap(solid.shape, pose, ball, other).distance, to_center - 0.2,
+                  kRounding)
+          << name;
     }
   }
 }
@@ -201,7 +231,8 @@ TEST(Gap, IsSymmetricInTheTwoBodies) {
   Poses random(14);
   for (int k = 0; k < 100; ++k) {
     const Pose p = random.pose(1.5), q = random.pose(1.5);
-    const collision::Gap there = collision::compute_gap(torus.shape, p, handle.shape, q), back = collision::compute_gap(handle.shape, q, torus.shape, p);
+    const collision::Gap there = collision::compute_gap(torus.shape, p, handle.shape, q),
+                         back = collision::compute_gap(handle.shape, q, torus.shape, p);
     if (there.distance > 0) {
       EXPECT_NEAR(there.distance, back.distance, kRounding);
     }
@@ -220,8 +251,11 @@ TEST(Gap, StaysAccurateFarFromTheOriginAndAtEveryScale) {
       Pose p = random.pose(1.5), q = random.pose(1.5);
       const double expected = collision::compute_gap(torus.shape, p, torus.shape, q).distance;
       if (expected < 0) continue;
-      const Vector3d shift(1048576.0, -524288.0, 262144.0);   // m: one rounding of it is 1.2e-10 m
-      const double far = collision::compute_gap(torus.shape, {p.com_world + shift, p.world_from_body}, torus.shape, {q.com_world + shift, q.world_from_body}).distance;
+      const Vector3d shift(1048576.0, -524288.0, 262144.0);  // m: one rounding of it is 1.2e-10 m
+      const double far =
+          collision::compute_gap(torus.shape, {p.com_world + shift, p.world_from_body}, torus.shape,
+                                 {q.com_world + shift, q.world_from_body})
+              .distance;
       EXPECT_NEAR(far, expected, 4 * 1.2e-10);
       p.com_world *= scale;
       q.com_world *= scale;

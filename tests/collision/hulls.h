@@ -35,7 +35,8 @@ inline Shape random_hull(int vertices, unsigned seed) {
   std::normal_distribution<double> normal;
   std::vector<Vector3d> points;
   for (int i = 0; i < vertices; ++i) {
-    const Vector3d direction = Vector3d(normal(random), normal(random), normal(random)).normalized();
+    const Vector3d direction =
+        Vector3d(normal(random), normal(random), normal(random)).normalized();
     points.push_back(direction.cwiseProduct(Vector3d(0.5, 0.45, 0.35)));
   }
   return MeshSolid{hull_mesh(points), true};

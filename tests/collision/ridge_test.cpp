@@ -24,14 +24,15 @@ struct Brick {
     TriangleMesh surface = surface_of(Box{0.5 * (high - low)});
     const int first = static_cast<int>(mesh.vertices.size());
     for (const Vector3d& v : surface.vertices) mesh.vertices.push_back(v + 0.5 * (low + high));
-    for (const Face& f : surface.faces) mesh.faces.push_back({first + f[0], first + f[1], first + f[2]});
+    for (const Face& f : surface.faces)
+      mesh.faces.push_back({first + f[0], first + f[1], first + f[2]});
   }
 };
 
 /// A ball that skims a slab and may hit a ridge on it, 1 mm wide. At t = 0 the ball is half a metre
 /// before x = 0.
 struct Flight {
-  double radius, height, sinking, ridge_x, ridge_top;   // [m], [m], [m/s], [m], [m]
+  double radius, height, sinking, ridge_x, ridge_top;  // [m], [m], [m/s], [m], [m]
   static constexpr double kSpeed = 300.0, kStep = 1.0 / 60;
 
   Brick slab() const { return {{-10, -5, -1}, {10, 5, 0}}; }
@@ -60,7 +61,8 @@ struct Flight {
                           state.pose.com_world = place(t);
                           state.velocity_world = {kSpeed, 0, -sinking};
                           return state;
-                        }, {}};
+                        },
+                        {}};
     const Motion still{[](double) { return MotionState{}; }, {}};
     const auto impact = collision::first_impact(ball, flying, ground, still, 0.0, kStep);
     return impact ? impact->time : kNever;
@@ -77,12 +79,14 @@ TEST(Ridge, BallThatSkimsASlabHitsTheRidgeFirst) {
             const Flight flight{radius, height, sinking, ridge_x, height + part * radius};
             const double truth = flight.truth(), found = flight.found();
             ++cases;
-            if (truth < kNever && flight.ridge().distance(flight.place(truth)) - radius < 1e-9) ++on_ridge;
+            if (truth < kNever && flight.ridge().distance(flight.place(truth)) - radius < 1e-9)
+              ++on_ridge;
             // The reference stops within 1e-13 m of touching; at an angle of incidence of 1e-2 or
             // more that is 1e-11 m along the path, at 300 m/s.
-            if (found == truth) continue;   // also where neither finds an impact
-            EXPECT_NEAR(found, truth, 1e-11) << "radius " << radius << ", height " << height << ", sinking " << sinking << ", ridge at " << ridge_x
-                                             << " up to " << flight.ridge_top;
+            if (found == truth) continue;  // also where neither finds an impact
+            EXPECT_NEAR(found, truth, 1e-11)
+                << "radius " << radius << ", height " << height << ", sinking " << sinking
+                << ", ridge at " << ridge_x << " up to " << flight.ridge_top;
           }
   EXPECT_EQ(cases, 432);
   EXPECT_GT(on_ridge, 200);

@@ -18,8 +18,8 @@ using collision::Motion;
 using collision::MotionState;
 
 // Uniform acceleration and uniform spin about a fixed axis.
-Motion flight(const Vector3d& x0, const Vector3d& v0, const Vector3d& acceleration, const Vector3d& omega,
-              const Quaterniond& q0 = Quaterniond::Identity()) {
+Motion flight(const Vector3d& x0, const Vector3d& v0, const Vector3d& acceleration,
+              const Vector3d& omega, const Quaterniond& q0 = Quaterniond::Identity()) {
   Motion motion;
   motion.at = [=](double t) {
     MotionState state;
@@ -40,8 +40,8 @@ Motion still(const Vector3d& x, const Quaterniond& q = Quaterniond::Identity()) 
   return flight(x, Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), q);
 }
 
-std::optional<Impact> impact(const CollisionShape& a, const Motion& ma, const CollisionShape& b, const Motion& mb, double until,
-                             bool library_root_finder) {
+std::optional<Impact> impact(const CollisionShape& a, const Motion& ma, const CollisionShape& b,
+                             const Motion& mb, double until, bool library_root_finder) {
   collision::ImpactOptions options;
   if (library_root_finder) options.root_finder = library_laws().find_impact_time;
   collision::ImpactCost cost;
@@ -58,14 +58,20 @@ TEST_P(TimeOfImpact, SpherePlane) {
     const auto truth = read_truth("toi_sphere_plane/" + name);
     const Vector3d n = vector(input(truth, "n"));
     const CollisionShape ball{Sphere{number(input(truth, "R"))}}, plane{HalfSpace{}};
-    const Motion fall = flight(vector(input(truth, "x0")), vector(input(truth, "v0")), {0, 0, -number(input(truth, "g"))}, Vector3d::Zero());
-    const Motion floor = still(n * (number(input(truth, "d")) / n.norm()), shortest_turn(Vector3d::UnitZ(), n));
+    const Motion fall = flight(vector(input(truth, "x0")), vector(input(truth, "v0")),
+                               {0, 0, -number(input(truth, "g"))}, Vector3d::Zero());
+    const Motion floor =
+        still(n * (number(input(truth, "d")) / n.norm()), shortest_turn(Vector3d::UnitZ(), n));
     const auto found = impact(ball, fall, plane, floor, 10.0, GetParam());
     ASSERT_TRUE(found) << name;
     EXPECT_NEAR(found->time, number(output(truth, "toi")), pass_mark(truth, "toi")) << name;
-    EXPECT_NEAR(found->rate, number(output(truth, "normal_velocity_at_toi")), pass_mark(truth, "normal_velocity_at_toi")) << name;
-    EXPECT_LE((found->gap.point_a_world - vector(output(truth, "contact_point"))).cwiseAbs().maxCoeff(),
-              std::max(pass_mark(truth, "contact_point"), 1e-16)) << name;
+    EXPECT_NEAR(found->rate, number(output(truth, "normal_velocity_at_toi")),
+                pass_mark(truth, "normal_velocity_at_toi"))
+        << name;
+    EXPECT_LE(
+        (found->gap.point_a_world - vector(output(truth, "contact_point"))).cwiseAbs().maxCoeff(),
+        std::max(pass_mark(truth, "contact_point"), 1e-16))
+        << name;
   }
 }
 
@@ -78,29 +84,43 @@ TEST_P(TimeOfImpact, RodPlane) {
     const CollisionShape rod{MeshSolid{mesh, true}}, plane{HalfSpace{}};
     // The angle phi rotates x towards z: about -y.
     const double phi = number(input(truth, "phi0")), omega = number(input(truth, "omega"));
-    const Motion motion = flight({0, 0, number(input(truth, "h"))}, {0, 0, number(input(truth, "v_up"))}, {0, 0, -number(input(truth, "g"))},
-                                 {0, -omega, 0}, Quaterniond(Eigen::AngleAxisd(phi, -Vector3d::UnitY())));
+    const Motion motion =
+        flight({0, 0, number(input(truth, "h"))}, {0, 0, number(input(truth, "v_up"))},
+               {0, 0, -number(input(truth, "g"))}, {0, -omega, 0},
+               Quaterniond(Eigen::AngleAxisd(phi, -Vector3d::UnitY())));
     const auto found = impact(rod, motion, plane, still(Vector3d::Zero()), 10.0, GetParam());
     ASSERT_TRUE(found) << name;
     EXPECT_NEAR(found->time, number(output(truth, "toi")), pass_mark(truth, "toi")) << name;
-    EXPECT_NEAR(found->rate, number(output(truth, "tip_normal_velocity")), pass_mark(truth, "tip_normal_velocity")) << name;
+    EXPECT_NEAR(found->rate, number(output(truth, "tip_normal_velocity")),
+                pass_mark(truth, "tip_normal_velocity"))
+        << name;
   }
 }
 
 TEST_P(TimeOfImpact, Boxes) {
-  for (const std::string name : {"boxes_edge_edge_principal_spin", "cubes_edge_edge", "cubes_vertex_face"}) {
+  for (const std::string name :
+       {"boxes_edge_edge_principal_spin", "cubes_edge_edge", "cubes_vertex_face"}) {
     const auto truth = read_truth("toi_boxes/" + name);
-    const auto solid = [&](const char* half) { return CollisionShape{Box{vector(input(truth, half))}}; };
-    const auto motion = [&](const char* x, const char* v, const char* w) {
-      return flight(vector(input(truth, x)), vector(input(truth, v)), Vector3d::Zero(), vector(input(truth, w)));
+    const auto solid = [&](const char* half) {
+      return CollisionShape{Box{vector(input(truth, half))}};
     };
-    const auto found = impact(solid("half_A"), motion("xA", "vA", "omegaA_world"), solid("half_B"), motion("xB", "vB", "omegaB_world"), 3.0, GetParam());
+    const auto motion = [&](const char* x, const char* v, const char* w) {
+      return flight(vector(input(truth, x)), vector(input(truth, v)), Vector3d::Zero(),
+                    vector(input(truth, w)));
+    };
+    const auto found = impact(solid("half_A"), motion("xA", "vA", "omegaA_world"), solid("half_B"),
+                              motion("xB", "vB", "omegaB_world"), 3.0, GetParam());
     ASSERT_TRUE(found) << name;
     EXPECT_NEAR(found->time, number(output(truth, "toi")), pass_mark(truth, "toi")) << name;
     const Vector3d normal = found->gap.normal_b_to_a_world + vector(output(truth, "normal_A_to_B"));
     EXPECT_LE(normal.cwiseAbs().maxCoeff(), pass_mark(truth, "normal_A_to_B")) << name;
-    EXPECT_LE((found->gap.point_a_world - vector(output(truth, "contact_point"))).cwiseAbs().maxCoeff(), pass_mark(truth, "contact_point")) << name;
-    EXPECT_NEAR(found->rate, number(output(truth, "relative_normal_velocity")), pass_mark(truth, "relative_normal_velocity")) << name;
+    EXPECT_LE(
+        (found->gap.point_a_world - vector(output(truth, "contact_point"))).cwiseAbs().maxCoeff(),
+        pass_mark(truth, "contact_point"))
+        << name;
+    EXPECT_NEAR(found->rate, number(output(truth, "relative_normal_velocity")),
+                pass_mark(truth, "relative_normal_velocity"))
+        << name;
   }
 }
 
@@ -108,8 +128,11 @@ TEST_P(TimeOfImpact, Tunnel) {
   const auto truth = read_truth("toi_tunnel/bullet_1000");
   const double half = 0.5 * number(input(truth, "wall_thickness"));
   const CollisionShape bullet{Sphere{number(input(truth, "R"))}}, wall{Box{{half, 1.0, 1.0}}};
-  const Motion shot = flight(Vector3d::Zero(), {number(input(truth, "v")), 0, 0}, Vector3d::Zero(), Vector3d::Zero());
-  const auto found = impact(bullet, shot, wall, still({number(input(truth, "wall_front_face_x")) + half, 0, 0}), 1.0, GetParam());
+  const Motion shot = flight(Vector3d::Zero(), {number(input(truth, "v")), 0, 0}, Vector3d::Zero(),
+                             Vector3d::Zero());
+  const auto found =
+      impact(bullet, shot, wall, still({number(input(truth, "wall_front_face_x")) + half, 0, 0}),
+             1.0, GetParam());
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->time, number(output(truth, "toi")), pass_mark(truth, "toi"));
 }
@@ -121,19 +144,25 @@ TEST_P(TimeOfImpact, Grazing) {
       std::optional<Impact> found;
       if (name == "ceiling") {
         const CollisionShape ball{Sphere{number(input(truth, "R"))}}, plane{HalfSpace{}};
-        const Motion thrown = flight({0, 0, number(input(truth, "h"))}, {0, 0, number(input(truth, "v"))}, {0, 0, -number(input(truth, "g"))}, Vector3d::Zero());
-        const Motion ceiling = still({0, 0, number(row.at("ceiling_height"))}, Quaterniond(0, 1, 0, 0));
+        const Motion thrown =
+            flight({0, 0, number(input(truth, "h"))}, {0, 0, number(input(truth, "v"))},
+                   {0, 0, -number(input(truth, "g"))}, Vector3d::Zero());
+        const Motion ceiling =
+            still({0, 0, number(row.at("ceiling_height"))}, Quaterniond(0, 1, 0, 0));
         found = impact(ball, thrown, plane, ceiling, 1.0, GetParam());
       } else {
-        const CollisionShape one{Sphere{number(input(truth, "R1"))}}, two{Sphere{number(input(truth, "R2"))}};
-        const Motion passing = flight({-number(input(truth, "D")), number(row.at("impact_parameter")), 0}, {number(input(truth, "v")), 0, 0},
-                                      Vector3d::Zero(), Vector3d::Zero());
+        const CollisionShape one{Sphere{number(input(truth, "R1"))}},
+            two{Sphere{number(input(truth, "R2"))}};
+        const Motion passing =
+            flight({-number(input(truth, "D")), number(row.at("impact_parameter")), 0},
+                   {number(input(truth, "v")), 0, 0}, Vector3d::Zero(), Vector3d::Zero());
         found = impact(one, passing, two, still(Vector3d::Zero()), 4.0, GetParam());
       }
       EXPECT_FALSE(found && row.at("verdict") == "miss") << name << " gap " << row.at("gap");
       if (row.at("verdict") == "hit") {
         ASSERT_TRUE(found) << name << " gap " << row.at("gap");
-        EXPECT_NEAR(found->time, number(row.at("toi")), 100 * number(row.at("toi_tolerance_floor"))) << name << " gap " << row.at("gap");
+        EXPECT_NEAR(found->time, number(row.at("toi")), 100 * number(row.at("toi_tolerance_floor")))
+            << name << " gap " << row.at("gap");
       }
       EXPECT_TRUE(!found || std::isfinite(found->time));
     }

@@ -22,16 +22,23 @@ inline nlohmann::json read_truth(const std::string& id) {
 }
 
 inline double number(const nlohmann::json& value) {
-  return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr) : value.get<double>();
+  return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr)
+                           : value.get<double>();
 }
-inline Vector3d vector(const nlohmann::json& value) { return {number(value[0]), number(value[1]), number(value[2])}; }
+inline Vector3d vector(const nlohmann::json& value) {
+  return {number(value[0]), number(value[1]), number(value[2])};
+}
 inline std::vector<double> numbers(const nlohmann::json& value) {
   std::vector<double> all;
   for (const auto& v : value) all.push_back(number(v));
   return all;
 }
-inline nlohmann::json input(const nlohmann::json& truth, const std::string& name) { return truth.at("inputs").at(name).at("value"); }
-inline nlohmann::json output(const nlohmann::json& truth, const std::string& name) { return truth.at("outputs").at(name).at("value"); }
+inline nlohmann::json input(const nlohmann::json& truth, const std::string& name) {
+  return truth.at("inputs").at(name).at("value");
+}
+inline nlohmann::json output(const nlohmann::json& truth, const std::string& name) {
+  return truth.at("outputs").at(name).at("value");
+}
 /// Tolerance: 100 times the error floor of double precision.
 inline double pass_mark(const nlohmann::json& truth, const std::string& name) {
   return 100 * number(truth.at("outputs").at(name).at("tolerance_floor"));

@@ -37,7 +37,9 @@ TEST(NearestWord, FarOrEmptyWordHasNoSuggestion) {
 TEST(NearestWord, QuestionIsAppendedToASentence) {
   EXPECT_EQ(did_you_mean("chek", {"check"}), " Did you mean 'check'?");
   EXPECT_EQ(did_you_mean("chek", {"run"}), "");
-  EXPECT_STREQ(UserError("chek", "no verb." + did_you_mean("chek", {"check"}), "Known: check.").what(), "chek: no verb. Did you mean 'check'? Known: check.");
+  EXPECT_STREQ(
+      UserError("chek", "no verb." + did_you_mean("chek", {"check"}), "Known: check.").what(),
+      "chek: no verb. Did you mean 'check'? Known: check.");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kNone = 1e300;   // no error is too large to count
+constexpr double kNone = 1e300;  // no error is too large to count
 
 std::vector<double> halvings(double first, int count) {
   std::vector<double> h;
@@ -32,7 +32,8 @@ TEST(FittedOrder, OfAPowerLawIsItsExponent) {
 TEST(FittedOrder, IgnoresTheErrorFloorAndTooCoarseSteps) {
   const std::vector<double> h = halvings(1.0, 10);
   std::vector<double> error;
-  for (const double step : h) error.push_back(std::min(step * step + 1e-4, 0.5));   // second order between a ceiling and a floor
+  // second order between a ceiling and a floor
+  for (const double step : h) error.push_back(std::min(step * step + 1e-4, 0.5));
   const auto fit = fit_order(h, error, 1e-4, 0.3);
   ASSERT_TRUE(fit);
   // The floor of 1e-4 is at most a tenth of each error counted: log2(1.1) = 0.14 off. Errors at the

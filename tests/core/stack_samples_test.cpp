@@ -24,13 +24,16 @@ namespace tumble::testing {
 
 namespace {
 
-const std::vector<StackSamples::Part> kParts = {{"quick", {"tumble::testing::quick_part_of_samples"}}, {"slow", {"tumble::testing::slow_part_of_samples"}}};
+const std::vector<StackSamples::Part> kParts = {
+    {"quick", {"tumble::testing::quick_part_of_samples"}},
+    {"slow", {"tumble::testing::slow_part_of_samples"}}};
 constexpr double kSigmas = 5.0;
 
 // The standard error of N independent samples; evenly spaced samples have a smaller one.
 void expect_share(const StackSamples::Shares& shares, std::size_t part, double expected) {
   ASSERT_GT(shares.samples, 20U) << "0.6 s at 10 ms or less";
-  EXPECT_NEAR(shares.of_part[part], expected, kSigmas * std::sqrt(expected * (1 - expected) / static_cast<double>(shares.samples)));
+  EXPECT_NEAR(shares.of_part[part], expected,
+              kSigmas * std::sqrt(expected * (1 - expected) / static_cast<double>(shares.samples)));
 }
 
 TEST(StackSamples, MeasureTheShareOfEachPart) {
@@ -50,7 +53,9 @@ TEST(StackSamples, BelongToTheInnermostPart) {
   samples.begin();
   slow_part_of_samples();
   samples.end();
-  const auto shares = samples.shares({{"outer", {"tumble::testing::slow_part_of_samples"}}, {"inner", {"tumble::testing::spin_for_samples"}}}, {});
+  const auto shares = samples.shares({{"outer", {"tumble::testing::slow_part_of_samples"}},
+                                      {"inner", {"tumble::testing::spin_for_samples"}}},
+                                     {});
   EXPECT_LT(shares.of_part[0], 0.05);
   EXPECT_GT(shares.of_part[1], 0.9);
 }
@@ -60,7 +65,10 @@ TEST(StackSamples, BelongToThePartWithTheLongestMatchingPrefix) {
   samples.begin();
   slow_part_of_samples();
   samples.end();
-  EXPECT_GT(samples.shares({{"all", {"tumble::testing::s"}}, {"this", {"tumble::testing::spin_for"}}}, {}).of_part[1], 0.9);
+  EXPECT_GT(
+      samples.shares({{"all", {"tumble::testing::s"}}, {"this", {"tumble::testing::spin_for"}}}, {})
+          .of_part[1],
+      0.9);
 }
 
 TEST(StackSamples, LeaveOutExcludedFunctions) {
@@ -92,12 +100,14 @@ TEST(StackSamples, TakenTwiceAtOnceAreRefusedAndAfterTheEndThereAreNone) {
   second.begin();
   second.end();
   slow_part_of_samples();
-  EXPECT_LE(second.shares(kParts, {}).samples, 1U);   // the timer may fire between begin and end
+  EXPECT_LE(second.shares(kParts, {}).samples, 1U);  // the timer may fire between begin and end
 }
 
 TEST(StackSamples, KnowFunctionsByTheirNames) {
   EXPECT_TRUE(StackSamples::is_known("tumble::testing::slow_part"));
-  EXPECT_TRUE(StackSamples::is_known("tumble::testing::StackSamples_KnowFunctionsByTheirNames_Test")) << "within an unnamed namespace";
+  EXPECT_TRUE(
+      StackSamples::is_known("tumble::testing::StackSamples_KnowFunctionsByTheirNames_Test"))
+      << "within an unnamed namespace";
   EXPECT_FALSE(StackSamples::is_known("tumble::testing::no_function_has_such_a_name"));
 }
 

@@ -27,7 +27,8 @@ TEST(ContactProblem, BlockAtTheFrictionAngleSticks) {
   const ContactProblem problem = box_on_slope(3, angle, 0.5);
   const ContactSolution solution = solve_contacts(problem);
   EXPECT_TRUE(solution.converged);
-  // On the border of sliding the law leaves the velocity free to second order: the root of the tolerance is what can be asked for.
+  // On the border of sliding the law leaves the velocity free to second order: the root of the
+  // tolerance is what can be asked for.
   EXPECT_LE(solution.velocities[1].linear_world.norm(), std::sqrt(kRelative) * kGravity * kStep);
 }
 
@@ -37,9 +38,12 @@ TEST(ContactProblem, BlockAboveTheFrictionAngleSlides) {
   const ContactSolution solution = solve_contacts(problem);
   EXPECT_TRUE(solution.converged);
   const Vector3d down_slope(std::cos(angle), 0, -std::sin(angle));
-  const double speed = kGravity * kStep * (std::sin(angle) - mu * std::cos(angle));  // a = g (sin a - mu cos a)
-  EXPECT_NEAR(solution.velocities[1].linear_world.dot(down_slope), speed, kRelative * kGravity * kStep);
-  EXPECT_NEAR(sum_of_impulses(solution, 0, 4).dot(down_slope), -mu * mass * kGravity * kStep * std::cos(angle), kRelative * mass);
+  // a = g (sin a - mu cos a)
+  const double speed = kGravity * kStep * (std::sin(angle) - mu * std::cos(angle));
+  EXPECT_NEAR(solution.velocities[1].linear_world.dot(down_slope), speed,
+              kRelative * kGravity * kStep);
+  EXPECT_NEAR(sum_of_impulses(solution, 0, 4).dot(down_slope),
+              -mu * mass * kGravity * kStep * std::cos(angle), kRelative * mass);
   EXPECT_LE(judge(problem, solution).worst(), 4 * kRelative * kGravity * kStep);
 }
 
@@ -74,12 +78,14 @@ TEST(ContactProblem, SpinningCubeIsBrakedByItsCorners) {
   ContactProblem problem = stack_of_boxes({3.0}, 0.5);
   problem.bodies[1].omega_world = Vector3d(0, 0, 7);
   const ContactSolution solution = solve_contacts(problem);
-  EXPECT_NEAR(solution.velocities[1].angular_world.z(), 7 - 6 * 0.5 * kGravity * kStep * std::sqrt(0.5), 1e-11);
+  EXPECT_NEAR(solution.velocities[1].angular_world.z(),
+              7 - 6 * 0.5 * kGravity * kStep * std::sqrt(0.5), 1e-11);
   EXPECT_LE(solution.velocities[1].linear_world.norm(), 1e-11);
 }
 
 TEST(ContactProblem, DiagonalPushMovesAlongTheDiagonal) {
-  // 150 N on 10 kg with mu = 0.4: a = (150 - 39.24) / 10. A pyramid of friction along x and y would hold more, or pull sideways.
+  // 150 N on 10 kg with mu = 0.4: a = (150 - 39.24) / 10. A pyramid of friction along x and y would
+  // hold more, or pull sideways.
   for (const double direction : {0.785, 0.3, 1.1}) {
     ContactProblem problem = stack_of_boxes({10.0}, 0.4);
     const Vector3d way(std::cos(direction), std::sin(direction), 0);
@@ -92,7 +98,8 @@ TEST(ContactProblem, DiagonalPushMovesAlongTheDiagonal) {
   }
 }
 
-/// A cube on smooth ground, thrown along x, tied to the world at its middle by `copies` of one row along x.
+/// A cube on smooth ground, thrown along x, tied to the world at its middle by `copies` of one row
+/// along x.
 ContactProblem tied_cube(int copies, double friction) {
   ContactProblem problem = stack_of_boxes({2.0}, friction);
   problem.bodies[1].velocity_world.x() = 1;
@@ -113,8 +120,11 @@ TEST(ContactProblem, RowsHoldBesideContactsAndMayBeDoubled) {
       const ContactProblem problem = tied_cube(copies, friction);
       const ContactSolution solution = solve_contacts(problem);
       EXPECT_TRUE(solution.converged) << copies;
-      EXPECT_NEAR(solution.row_impulses.sum() + sum_of_impulses(solution, 0, 4).x(), -2, 1e-11) << copies;
-      if (friction == 0) { EXPECT_NEAR(solution.row_impulses.sum(), -2, 1e-11) << copies; }
+      EXPECT_NEAR(solution.row_impulses.sum() + sum_of_impulses(solution, 0, 4).x(), -2, 1e-11)
+          << copies;
+      if (friction == 0) {
+        EXPECT_NEAR(solution.row_impulses.sum(), -2, 1e-11) << copies;
+      }
       EXPECT_LE(judge(problem, solution).worst(), 1e-11) << copies;
     }
 }
@@ -128,7 +138,8 @@ TEST(ContactProblem, WithoutSolutionItSaysSo) {
 TEST(ContactProblem, SameProblemSameBits) {
   const ContactProblem problem = stack_of_boxes({1.0, 3.0, 0.2, 5.0}, 0.3);
   const ContactSolution one = solve_contacts(problem), two = solve_contacts(problem);
-  for (std::size_t i = 0; i < one.impulses_world.size(); ++i) EXPECT_EQ(one.impulses_world[i], two.impulses_world[i]);
+  for (std::size_t i = 0; i < one.impulses_world.size(); ++i)
+    EXPECT_EQ(one.impulses_world[i], two.impulses_world[i]);
 }
 
 }  // namespace

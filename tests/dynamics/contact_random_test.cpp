@@ -1,4 +1,5 @@
-// Thousands of random problems: frictionless ones against trying out every set of active contacts, others against the law itself.
+// Thousands of random problems: frictionless ones against trying out every set of active contacts,
+// others against the law itself.
 #include <gtest/gtest.h>
 
 #include "framework/core/decompositions.h"
@@ -8,10 +9,12 @@ namespace tumble::testing {
 namespace {
 
 PushedBody random_body(Random& random, double mass_decades) {
-  const double mass = std::pow(10.0, random.between(0, mass_decades)), size = random.between(0.3, 2);
+  const double mass = std::pow(10.0, random.between(0, mass_decades)),
+               size = random.between(0.3, 2);
   const Matrix3d turn = random_rotation(random).toRotationMatrix();
   const Vector3d moments = mass * size * size * 0.1 * random_moments(random).normalized();
-  PushedBody body = body_at(mass, turn * moments.asDiagonal() * turn.transpose(), random_vector(random, 1));
+  PushedBody body =
+      body_at(mass, turn * moments.asDiagonal() * turn.transpose(), random_vector(random, 1));
   body.velocity_world = random_vector(random, 1);
   body.omega_world = random_vector(random, 1);
   return body;
@@ -21,24 +24,33 @@ struct Recipe {
   int most_bodies = 6, most_contacts = 40;
   double mass_decades = 4, most_friction = 2, least_target = 0;
   bool duplicates = true;
-  bool pile = true;                    // normals lead from body to body and up from the floor; else anywhere, as in a shell
+  // normals lead from body to body and up from the floor; else anywhere, as in a shell
+  bool pile = true;
 };
 
 ContactProblem random_problem(Random& random, const Recipe& recipe) {
   ContactProblem problem;
-  const int bodies = 1 + static_cast<int>(random.below(recipe.most_bodies)), contacts = 1 + static_cast<int>(random.below(recipe.most_contacts));
+  const int bodies = 1 + static_cast<int>(random.below(recipe.most_bodies)),
+            contacts = 1 + static_cast<int>(random.below(recipe.most_contacts));
   problem.bodies.push_back(fixed_body());
-  for (int i = 0; i < bodies; ++i) problem.bodies.push_back(random_body(random, recipe.mass_decades));
+  for (int i = 0; i < bodies; ++i)
+    problem.bodies.push_back(random_body(random, recipe.mass_decades));
   for (int i = 0; i < contacts; ++i) {
     const int a = 1 + static_cast<int>(random.below(bodies));
-    const int b = (a + 1 + static_cast<int>(random.below(bodies))) % (bodies + 1);  // another, or the floor
+    // another, or the floor
+    const int b = (a + 1 + static_cast<int>(random.below(bodies))) % (bodies + 1);
     Vector3d normal = random_rotation(random) * Vector3d::UnitZ();
-    const Vector3d outwards = b == 0 ? Vector3d(0, 0, 1) : Vector3d(problem.bodies[a].com_world - problem.bodies[b].com_world);
+    const Vector3d outwards =
+        b == 0 ? Vector3d(0, 0, 1)
+               : Vector3d(problem.bodies[a].com_world - problem.bodies[b].com_world);
     if (recipe.pile && normal.dot(outwards) < 0) normal = -normal;
-    const Vector3d point = problem.bodies[a].com_world - random.between(0.1, 0.6) * normal + random_vector(random, 0.4);
-    problem.contacts.push_back(contact_at(a, b, point, normal, random.unit() < 0.2 ? 0.0 : random.between(0, recipe.most_friction)));
+    const Vector3d point = problem.bodies[a].com_world - random.between(0.1, 0.6) * normal +
+                           random_vector(random, 0.4);
+    problem.contacts.push_back(contact_at(
+        a, b, point, normal, random.unit() < 0.2 ? 0.0 : random.between(0, recipe.most_friction)));
     problem.contacts.back().target = -random.between(0, recipe.least_target);
-    if (recipe.duplicates && random.unit() < 0.2) problem.contacts.push_back(problem.contacts[random.below(problem.contacts.size())]);
+    if (recipe.duplicates && random.unit() < 0.2)
+      problem.contacts.push_back(problem.contacts[random.below(problem.contacts.size())]);
   }
   return problem;
 }
@@ -50,8 +62,10 @@ struct Lcp {
 };
 
 Lcp dense_lcp(const ContactProblem& problem) {
-  const auto n = static_cast<Eigen::Index>(problem.contacts.size()), m = 6 * static_cast<Eigen::Index>(problem.bodies.size());
-  Lcp lcp{MatrixXd::Zero(n, n), MatrixXd::Zero(n, m), MatrixXd::Zero(m, m), VectorXd::Zero(n), VectorXd::Zero(m)};
+  const auto n = static_cast<Eigen::Index>(problem.contacts.size()),
+             m = 6 * static_cast<Eigen::Index>(problem.bodies.size());
+  Lcp lcp{MatrixXd::Zero(n, n), MatrixXd::Zero(n, m), MatrixXd::Zero(m, m), VectorXd::Zero(n),
+          VectorXd::Zero(m)};
   for (std::size_t b = 0; b < problem.bodies.size(); ++b) {
     const PushedBody& body = problem.bodies[b];
     lcp.inverse_mass.block<3, 3>(6 * b, 6 * b).diagonal().setConstant(body.inverse_mass);
@@ -64,7 +78,8 @@ Lcp dense_lcp(const ContactProblem& problem) {
     for (const int body : {c.body_a, c.body_b}) {
       const Vector3d d = (body == c.body_a ? 1 : -1) * c.normal_b_to_a_world;
       lcp.jacobian.block<1, 3>(i, 6 * body) += d.transpose();
-      lcp.jacobian.block<1, 3>(i, 6 * body + 3) += (c.point_world - problem.bodies[body].com_world).cross(d).transpose();
+      lcp.jacobian.block<1, 3>(i, 6 * body + 3) +=
+          (c.point_world - problem.bodies[body].com_world).cross(d).transpose();
     }
     lcp.base[i] = -c.target;
   }
@@ -73,7 +88,8 @@ Lcp dense_lcp(const ContactProblem& problem) {
   return lcp;
 }
 
-/// The velocities (unique) after trying every set of closed contacts: the one with the least violation.
+/// The velocities (unique) after trying every set of closed contacts: the one with the least
+/// violation.
 VectorXd velocities_by_enumeration(const Lcp& lcp) {
   const Eigen::Index n = lcp.base.size();
   VectorXd best = VectorXd::Zero(n);
@@ -102,13 +118,19 @@ TEST(RandomContacts, FrictionlessOnesAgreeWithTryingEverySet) {
   constexpr int kProblems = 3000;
   Random random(1);
   for (int k = 0; k < kProblems; ++k) {
-    const ContactProblem problem = random_problem(random, {.most_bodies = 3, .most_contacts = 7, .mass_decades = 1, .most_friction = 0, .least_target = 0.1, .duplicates = false});
+    const ContactProblem problem = random_problem(random, {.most_bodies = 3,
+                                                           .most_contacts = 7,
+                                                           .mass_decades = 1,
+                                                           .most_friction = 0,
+                                                           .least_target = 0.1,
+                                                           .duplicates = false});
     const ContactSolution solution = solve_contacts(problem);
     ASSERT_TRUE(solution.converged) << k;
     const VectorXd exact = velocities_by_enumeration(dense_lcp(problem));
     for (std::size_t b = 0; b < problem.bodies.size(); ++b) {
       ASSERT_LE((exact.segment<3>(6 * b) - solution.velocities[b].linear_world).norm(), 1e-8) << k;
-      ASSERT_LE((exact.segment<3>(6 * b + 3) - solution.velocities[b].angular_world).norm(), 1e-8) << k;
+      ASSERT_LE((exact.segment<3>(6 * b + 3) - solution.velocities[b].angular_world).norm(), 1e-8)
+          << k;
     }
   }
 }
@@ -132,12 +154,19 @@ int failures_among(int problems, int seed, const Recipe& recipe) {
 
 // A few contacts a body, as convex bodies have: thousands without one failure.
 TEST(RandomContacts, OfAFewContactsObeyTheLaw) {
-  EXPECT_LE(failures_among(2000, 2, {.most_bodies = 4, .most_contacts = 6, .mass_decades = 4, .most_friction = 1}), 2);
-  EXPECT_LE(failures_among(1000, 3, {.most_bodies = 20, .most_contacts = 20, .mass_decades = 2, .most_friction = 1}), 1);
+  EXPECT_LE(
+      failures_among(2000, 2,
+                     {.most_bodies = 4, .most_contacts = 6, .mass_decades = 4, .most_friction = 1}),
+      2);
+  EXPECT_LE(
+      failures_among(
+          1000, 3, {.most_bodies = 20, .most_contacts = 20, .mass_decades = 2, .most_friction = 1}),
+      1);
 }
 
-// Up to forty contacts pressed on a handful of bodies from all sides, friction up to 2, masses 1 : 10^4: jams, in which no method known is
-// sure to arrive. About one in thirty is not solved to 1e-12, and says so.
+// Up to forty contacts pressed on a handful of bodies from all sides, friction up to 2, masses 1 :
+// 10^4: jams, in which no method known is sure to arrive. About one in thirty is not solved to
+// 1e-12, and says so.
 TEST(RandomContacts, InJamsObeyTheLawOrSayThatTheyDoNot) {
   EXPECT_LE(failures_among(300, 4, {.most_bodies = 10}), 25);
 }

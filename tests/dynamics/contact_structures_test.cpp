@@ -1,4 +1,5 @@
-// Structures that stand or fall by a known number: stacks, unequal masses, tables, arches, cards, wedges, the rod of Painleve.
+// Structures that stand or fall by a known number: stacks, unequal masses, tables, arches, cards,
+// wedges, the rod of Painleve.
 #include <gtest/gtest.h>
 
 #include "tests/dynamics/contact_scenes.h"
@@ -10,12 +11,14 @@ constexpr double kFall = kGravity * kStep;  // m/s: the speed that a step's fall
 
 double fastest(const ContactSolution& solution) {
   double speed = 0;
-  for (const Velocity& v : solution.velocities) speed = std::max({speed, v.linear_world.norm(), v.angular_world.norm()});
+  for (const Velocity& v : solution.velocities)
+    speed = std::max({speed, v.linear_world.norm(), v.angular_world.norm()});
   return speed;
 }
 
 ContactProblem warm(ContactProblem problem, const ContactSolution& solution) {
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) problem.contacts[i].warm_start_world = solution.impulses_world[i];
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i)
+    problem.contacts[i].warm_start_world = solution.impulses_world[i];
   return problem;
 }
 
@@ -44,7 +47,8 @@ TEST(Structures, HeavyBoxesOnLightOnesRestAndPressWithTheirWeight) {
     EXPECT_TRUE(solution.converged) << solution.residual;
     EXPECT_NEAR(sum_of_impulses(solution, 4, 4).z(), ratio * kFall, 1e-9 * ratio * kFall);
     EXPECT_NEAR(sum_of_impulses(solution, 0, 4).z(), (ratio + 1) * kFall, 1e-9 * ratio * kFall);
-    EXPECT_LE(fastest(solution), 1e-15 * 20 * ratio * kFall);  // rounding of the heavy box's impulse moves the light one
+    // rounding of the heavy box's impulse moves the light one
+    EXPECT_LE(fastest(solution), 1e-15 * 20 * ratio * kFall);
   }
 }
 
@@ -56,25 +60,30 @@ TEST(Structures, TableOnFourLegsStandsEvenly) {
   EXPECT_LE(fastest(solution), 1e-12 * kFall);
 }
 
-/// A semicircle of n equal stones of middle radius 1 between two fixed abutments, half a metre deep.
+/// A semicircle of n equal stones of middle radius 1 between two fixed abutments, half a metre
+/// deep.
 ContactProblem arch(int n, double thickness, double friction) {
   constexpr double kDepth = 0.5, kDensity = 2000;
   const double inner = 1 - thickness / 2, outer = 1 + thickness / 2, angle = EIGEN_PI / n;
   const double area = 0.5 * angle * (outer * outer - inner * inner);
-  const double com = 4.0 / 3 * std::sin(angle / 2) / angle * (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer - inner * inner);
+  const double com = 4.0 / 3 * std::sin(angle / 2) / angle *
+                     (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer - inner * inner);
   ContactProblem problem;
   problem.bodies.push_back(fixed_body());
   const auto radial = [](double a) { return Vector3d(std::cos(a), 0, std::sin(a)); };
   for (int i = 0; i < n; ++i) {
     const double middle = (i + 0.5) * angle;
-    const Matrix3d turn = Eigen::AngleAxisd(-middle, Vector3d::UnitY()).toRotationMatrix();  // x to the radius
-    problem.bodies.push_back(box_body(kDensity * kDepth * area, {thickness, kDepth, angle}, com * radial(middle), turn));
+    // x to the radius
+    const Matrix3d turn = Eigen::AngleAxisd(-middle, Vector3d::UnitY()).toRotationMatrix();
+    problem.bodies.push_back(
+        box_body(kDensity * kDepth * area, {thickness, kDepth, angle}, com * radial(middle), turn));
   }
   for (int joint = 0; joint <= n; ++joint) {
     const double a = joint * angle;
     const Vector3d normal(-std::sin(a), 0, std::cos(a));  // onwards
     const int before = joint, after = joint < n ? joint + 1 : 0;
-    add_patch(problem, after, before, radial(a), 0.5 * thickness * radial(a), 0.5 * kDepth * Vector3d::UnitY(), normal, friction);
+    add_patch(problem, after, before, radial(a), 0.5 * thickness * radial(a),
+              0.5 * kDepth * Vector3d::UnitY(), normal, friction);
   }
   let_fall(problem);
   return problem;
@@ -99,12 +108,16 @@ ContactProblem card_tent(double a, double friction) {
   problem.bodies.push_back(fixed_body());
   for (const double side : {-1.0, 1.0}) {
     const Matrix3d turn = Eigen::AngleAxisd(-side * a, Vector3d::UnitY()).toRotationMatrix();
-    problem.bodies.push_back(box_body(0.1, {1e-3, 1.0, 1.0}, Vector3d(side * 0.5 * std::sin(a), 0, 0.5 * std::cos(a)), turn));
+    problem.bodies.push_back(box_body(
+        0.1, {1e-3, 1.0, 1.0}, Vector3d(side * 0.5 * std::sin(a), 0, 0.5 * std::cos(a)), turn));
   }
   for (const double y : {-0.5, 0.5}) {
     for (const int card : {1, 2})
-      problem.contacts.push_back(contact_at(card, 0, Vector3d((card == 1 ? -1 : 1) * std::sin(a), y, 0), Vector3d::UnitZ(), friction));
-    problem.contacts.push_back(contact_at(1, 2, Vector3d(0, y, std::cos(a)), -Vector3d::UnitX(), friction));
+      problem.contacts.push_back(contact_at(card, 0,
+                                            Vector3d((card == 1 ? -1 : 1) * std::sin(a), y, 0),
+                                            Vector3d::UnitZ(), friction));
+    problem.contacts.push_back(
+        contact_at(1, 2, Vector3d(0, y, std::cos(a)), -Vector3d::UnitX(), friction));
   }
   let_fall(problem);
   return problem;
@@ -112,7 +125,8 @@ ContactProblem card_tent(double a, double friction) {
 
 TEST(Structures, CardTentStandsFromHalfTheTangent) {
   for (const double a : {0.1, 0.3, 0.6}) {
-    const ContactSolution stands = solve_contacts(card_tent(a, 1.1 * std::tan(a) / 2)), slides = solve_contacts(card_tent(a, 0.9 * std::tan(a) / 2));
+    const ContactSolution stands = solve_contacts(card_tent(a, 1.1 * std::tan(a) / 2)),
+                          slides = solve_contacts(card_tent(a, 0.9 * std::tan(a) / 2));
     EXPECT_TRUE(stands.converged && slides.converged) << a;
     EXPECT_LE(fastest(stands), 1e-11 * kFall) << a;
     EXPECT_GE(fastest(slides), 1e-3 * kFall) << a;
@@ -131,14 +145,17 @@ Constraint hold(int body, int axis) {  // velocity along the axis stays what the
 /// A wedge of half-angle a between two jaws on rails that close at 1 m/s.
 ContactProblem wedge_in_jaws(double a, double friction) {
   ContactProblem problem;
-  problem.bodies = {fixed_body(), box_body(1, {0.2, 0.2, 0.4}, Vector3d::Zero()), fixed_body(), fixed_body()};
+  problem.bodies = {fixed_body(), box_body(1, {0.2, 0.2, 0.4}, Vector3d::Zero()), fixed_body(),
+                    fixed_body()};
   for (const int jaw : {2, 3}) {
     const double side = jaw == 2 ? -1 : 1;
     problem.bodies[jaw].inverse_mass = 0.1;
     problem.bodies[jaw].velocity_world = Vector3d(-side, 0, 0);
     for (const int axis : {1, 2}) problem.rows.push_back(hold(jaw, axis));
-    const Vector3d normal(-side * std::cos(a), 0, std::sin(a)), along(side * std::sin(a), 0, std::cos(a));
-    add_patch(problem, 1, jaw, Vector3d(side * 0.1, 0, 0), 0.1 * along, 0.1 * Vector3d::UnitY(), normal, friction);
+    const Vector3d normal(-side * std::cos(a), 0, std::sin(a)),
+        along(side * std::sin(a), 0, std::cos(a));
+    add_patch(problem, 1, jaw, Vector3d(side * 0.1, 0, 0), 0.1 * along, 0.1 * Vector3d::UnitY(),
+              normal, friction);
   }
   problem.row_targets = VectorXd::Zero(4);
   return problem;
@@ -146,7 +163,8 @@ ContactProblem wedge_in_jaws(double a, double friction) {
 
 TEST(Structures, WedgeLocksFromTheTangent) {
   for (const double a : {0.05, 0.2, 0.5}) {
-    const ContactProblem locks = wedge_in_jaws(a, 1.02 * std::tan(a)), slips = wedge_in_jaws(a, 0.98 * std::tan(a));
+    const ContactProblem locks = wedge_in_jaws(a, 1.02 * std::tan(a)),
+                         slips = wedge_in_jaws(a, 0.98 * std::tan(a));
     const ContactSolution locked = solve_contacts(locks), slipped = solve_contacts(slips);
     EXPECT_TRUE(locked.converged && slipped.converged) << a;
     EXPECT_LE(fastest(locked), 1e-10) << a;
@@ -160,7 +178,10 @@ ContactProblem painleve_rod(double friction, double sliding, double falling) {
   const double theta = std::atan(2.0), cosine = std::cos(theta), sine = std::sin(theta);
   const Matrix3d turn = Eigen::AngleAxisd(-theta, Vector3d::UnitY()).toRotationMatrix();
   ContactProblem problem;
-  problem.bodies = {fixed_body(), body_at(1, turn * Vector3d(1e-6, 1.0 / 3, 1.0 / 3).asDiagonal() * turn.transpose(), Vector3d(cosine, 0, sine))};
+  problem.bodies = {
+      fixed_body(),
+      body_at(1, turn * Vector3d(1e-6, 1.0 / 3, 1.0 / 3).asDiagonal() * turn.transpose(),
+              Vector3d(cosine, 0, sine))};
   problem.bodies[1].velocity_world = Vector3d(sliding, 0, falling);
   problem.contacts.push_back(contact_at(1, 0, Vector3d::Zero(), Vector3d::UnitZ(), friction));
   let_fall(problem);
@@ -168,7 +189,8 @@ ContactProblem painleve_rod(double friction, double sliding, double falling) {
 }
 
 double energy_of(const PushedBody& body, const Vector3d& v, const Vector3d& w) {
-  return 0.5 * v.squaredNorm() / body.inverse_mass + 0.5 * w.dot(body.inverse_inertia_world.inverse() * w);
+  return 0.5 * v.squaredNorm() / body.inverse_mass +
+         0.5 * w.dot(body.inverse_inertia_world.inverse() * w);
 }
 
 TEST(Structures, PainleveRodHasAnImpulseAndGainsNoEnergy) {
@@ -180,7 +202,9 @@ TEST(Structures, PainleveRodHasAnImpulseAndGainsNoEnergy) {
         EXPECT_TRUE(solution.converged) << friction << " " << sliding;
         const PushedBody& rod = problem.bodies[1];
         const double before = energy_of(rod, rod.velocity_world, rod.omega_world);
-        EXPECT_LE(energy_of(rod, solution.velocities[1].linear_world, solution.velocities[1].angular_world), before * (1 + 1e-14));
+        EXPECT_LE(energy_of(rod, solution.velocities[1].linear_world,
+                            solution.velocities[1].angular_world),
+                  before * (1 + 1e-14));
         EXPECT_LE(judge(problem, solution).worst(), 1e-11 * rod.velocity_world.norm());
       }
 }

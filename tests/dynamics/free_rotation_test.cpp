@@ -35,15 +35,22 @@ TEST(FreeRotation, AgreesWithEveryTruth) {
     for (const nlohmann::json& time : input(truth, "times")) {
       const std::string t = "t" + time.get<std::string>();
       const Spin found = rotation.after(start, number(time));
-      EXPECT_LE(difference(found.world_from_body, quaternion(output(truth, "q_" + t))), pass_mark(truth, "q_" + t)) << id << " q_" << t;
-      EXPECT_LE((found.omega_body - vector(output(truth, "omega_body_" + t))).cwiseAbs().maxCoeff(), pass_mark(truth, "omega_body_" + t)) << id << " " << t;
+      EXPECT_LE(difference(found.world_from_body, quaternion(output(truth, "q_" + t))),
+                pass_mark(truth, "q_" + t))
+          << id << " q_" << t;
+      EXPECT_LE((found.omega_body - vector(output(truth, "omega_body_" + t))).cwiseAbs().maxCoeff(),
+                pass_mark(truth, "omega_body_" + t))
+          << id << " " << t;
     }
   }
 }
 
-// Rounding of inputs is carried along by the motion itself: neighbouring spins part by about |w| t times as much, and by |w| t
-// again where their energies differ. 1000 eps (1 + |w| t)^2 leaves a margin of 100; a wrong term shows in the first digits.
-double allowed(const Spin& start, double t) { return 1000 * kEps * std::pow(1 + start.omega_body.norm() * std::abs(t), 2); }
+// Rounding of inputs is carried along by the motion itself: neighbouring spins part by about |w| t
+// times as much, and by |w| t again where their energies differ. 1000 eps (1 + |w| t)^2 leaves a
+// margin of 100; a wrong term shows in the first digits.
+double allowed(const Spin& start, double t) {
+  return 1000 * kEps * std::pow(1 + start.omega_body.norm() * std::abs(t), 2);
+}
 
 TEST(FreeRotation, GoesInTwoStridesWhereItGoesInOne) {
   Random random(11);
@@ -51,8 +58,10 @@ TEST(FreeRotation, GoesInTwoStridesWhereItGoesInOne) {
     const FreeRotation rotation(random_moments(random).asDiagonal());
     const Spin start{random_rotation(random), random_vector(random, 3)};
     const double t1 = random.between(0, 20), t2 = random.between(-20, 20);
-    const Spin once = rotation.after(start, t1 + t2), twice = rotation.after(rotation.after(start, t1), t2);
-    EXPECT_LE(difference(once.world_from_body, twice.world_from_body), allowed(start, 40)) << "top " << i;
+    const Spin once = rotation.after(start, t1 + t2),
+               twice = rotation.after(rotation.after(start, t1), t2);
+    EXPECT_LE(difference(once.world_from_body, twice.world_from_body), allowed(start, 40))
+        << "top " << i;
   }
 }
 
@@ -62,14 +71,21 @@ TEST(FreeRotation, KeepsEnergyAndAngularMomentum) {
     const Vector3d moments = random_moments(random);
     const FreeRotation rotation(moments.asDiagonal());
     const Spin start{random_rotation(random), random_vector(random, 3)};
-    const auto energy = [&](const Spin& s) { return 0.5 * s.omega_body.dot(moments.cwiseProduct(s.omega_body)); };
-    const auto momentum = [&](const Spin& s) -> Vector3d { return s.world_from_body * moments.cwiseProduct(s.omega_body); };
+    const auto energy = [&](const Spin& s) {
+      return 0.5 * s.omega_body.dot(moments.cwiseProduct(s.omega_body));
+    };
+    const auto momentum = [&](const Spin& s) -> Vector3d {
+      return s.world_from_body * moments.cwiseProduct(s.omega_body);
+    };
     for (const double t : {0.1, 7.0, 1000.0}) {
       const Spin later = rotation.after(start, t);
-      // Conserved exactly by the motion: only the last rounding to double and the angle's (below 1e-16 |w| t) are left.
+      // Conserved exactly by the motion: only the last rounding to double and the angle's (below
+      // 1e-16 |w| t) are left.
       const double round_off = 20 * kEps + 2e-16 * start.omega_body.norm() * t;
-      EXPECT_NEAR(energy(later), energy(start), round_off * energy(start)) << "top " << i << " at " << t;
-      EXPECT_LE((momentum(later) - momentum(start)).norm(), round_off * momentum(start).norm() * 10) << "top " << i << " at " << t;
+      EXPECT_NEAR(energy(later), energy(start), round_off * energy(start))
+          << "top " << i << " at " << t;
+      EXPECT_LE((momentum(later) - momentum(start)).norm(), round_off * momentum(start).norm() * 10)
+          << "top " << i << " at " << t;
     }
   }
 }
@@ -84,22 +100,30 @@ TEST(FreeRotation, DoesNotCareForTheAxesOfTheBodyFrame) {
     const FreeRotation principal(moments.asDiagonal()), tilted(0.5 * (tensor + tensor.transpose()));
     const Spin start{random_rotation(random), random_vector(random, 3)};
     const Spin expected = principal.after(start, 5.0);
-    const Spin found = tilted.after({start.world_from_body * body_from_principal.conjugate(), body_from_principal * start.omega_body}, 5.0);
-    // Diagonalising a tensor leaves its moments with a few eps of the largest: a needle's least one loses up to 100 times as much.
-    EXPECT_LE(difference(found.world_from_body * body_from_principal, expected.world_from_body), 100 * allowed(start, 5.0)) << "top " << i;
+    const Spin found = tilted.after({start.world_from_body * body_from_principal.conjugate(),
+                                     body_from_principal * start.omega_body},
+                                    5.0);
+    // Diagonalising a tensor leaves its moments with a few eps of the largest: a needle's least one
+    // loses up to 100 times as much.
+    EXPECT_LE(difference(found.world_from_body * body_from_principal, expected.world_from_body),
+              100 * allowed(start, 5.0))
+        << "top " << i;
   }
 }
 
 TEST(FreeRotation, TurnsABallEvenly) {
   const FreeRotation rotation(0.4 * Matrix3d::Identity());
-  const Spin later = rotation.after({Quaterniond::Identity(), {0, 0, M_PI}}, 0.5);  // a quarter of a turn about z
-  EXPECT_LE(difference(later.world_from_body, Quaterniond(std::sqrt(0.5), 0, 0, std::sqrt(0.5))), 4 * kEps);
+  // a quarter of a turn about z
+  const Spin later = rotation.after({Quaterniond::Identity(), {0, 0, M_PI}}, 0.5);
+  EXPECT_LE(difference(later.world_from_body, Quaterniond(std::sqrt(0.5), 0, 0, std::sqrt(0.5))),
+            4 * kEps);
   EXPECT_EQ(later.omega_body, Vector3d(0, 0, M_PI));
 }
 
 TEST(AdvanceFreely, MovesStraightAndLeavesMomentaBitForBit) {
   const Inertia inertia = finite_inertia(2.0, Vector3d(1, 2, 3).asDiagonal());
-  const RigidBodyState state{{1, 2, 3}, Quaterniond(0.5, 0.5, 0.5, 0.5), {4, -2, 1}, {0.3, 2.0, -0.1}};
+  const RigidBodyState state{
+      {1, 2, 3}, Quaterniond(0.5, 0.5, 0.5, 0.5), {4, -2, 1}, {0.3, 2.0, -0.1}};
   const RigidBodyState later = advance_freely(state, inertia, 3.0);
   EXPECT_LE((later.com_world - Vector3d(7, -1, 4.5)).norm(), 10 * kEps);
   EXPECT_EQ(later.momentum_world, state.momentum_world);

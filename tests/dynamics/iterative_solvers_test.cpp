@@ -1,4 +1,5 @@
-// Iterative solvers and root finders to compare with: what they solve, and that their tolerance is what they keep.
+// Iterative solvers and root finders to compare with: what they solve, and that their tolerance is
+// what they keep.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,7 +13,8 @@ namespace {
 
 constexpr int kLinks = 6;
 
-/// A chain of six bodies, each held to the one before; the first is infinitely heavy. Rows along directions that turn, off the centres.
+/// A chain of six bodies, each held to the one before; the first is infinitely heavy. Rows along
+/// directions that turn, off the centres.
 struct Chain {
   std::vector<Constraint> constraints;
   std::vector<ConstrainedBody> bodies;
@@ -21,7 +23,10 @@ struct Chain {
 Chain chain() {
   Chain chain;
   for (int i = 0; i <= kLinks; ++i) {
-    ConstrainedBody body{i == 0 ? 0.0 : 1.0 / i, i == 0 ? Matrix3d(Matrix3d::Zero()) : Matrix3d(Vector3d(1.0, 2.0, 3.0).asDiagonal()), Vector6d::Zero()};
+    ConstrainedBody body{
+        i == 0 ? 0.0 : 1.0 / i,
+        i == 0 ? Matrix3d(Matrix3d::Zero()) : Matrix3d(Vector3d(1.0, 2.0, 3.0).asDiagonal()),
+        Vector6d::Zero()};
     if (i > 0) body.free_acceleration << 0.1 * i, 0.0, -9.81, 0.3, -0.2 * i, 0.1;
     chain.bodies.push_back(body);
     if (i == 0) continue;
@@ -38,19 +43,29 @@ Chain chain() {
 }
 
 /// J u of every row, where a row's bodies go by u.
-double along(const Constraint& constraint, const std::vector<Vector6d>& u) { return constraint.row.jacobian_a.dot(u[constraint.body_a]) + constraint.row.jacobian_b.dot(u[constraint.body_b]); }
+double along(const Constraint& constraint, const std::vector<Vector6d>& u) {
+  return constraint.row.jacobian_a.dot(u[constraint.body_a]) +
+         constraint.row.jacobian_b.dot(u[constraint.body_b]);
+}
 
 /// How far C'' is from what is wanted, with the multipliers applied as forces.
 double residual_of(const Chain& chain, const VectorXd& lambda, const VectorXd& wanted) {
   std::vector<Vector6d> u;
   for (const ConstrainedBody& body : chain.bodies) u.push_back(body.free_acceleration);
   for (std::size_t i = 0; i < chain.constraints.size(); ++i)
-    for (const auto& [body, jacobian] : {std::pair{chain.constraints[i].body_a, chain.constraints[i].row.jacobian_a}, std::pair{chain.constraints[i].body_b, chain.constraints[i].row.jacobian_b}}) {
-      u[body].head<3>() += chain.bodies[body].inverse_mass * lambda[static_cast<Eigen::Index>(i)] * jacobian.head<3>();
-      u[body].tail<3>() += chain.bodies[body].inverse_inertia_world * (lambda[static_cast<Eigen::Index>(i)] * jacobian.tail<3>());
+    for (const auto& [body, jacobian] :
+         {std::pair{chain.constraints[i].body_a, chain.constraints[i].row.jacobian_a},
+          std::pair{chain.constraints[i].body_b, chain.constraints[i].row.jacobian_b}}) {
+      u[body].head<3>() += chain.bodies[body].inverse_mass * lambda[static_cast<Eigen::Index>(i)] *
+                           jacobian.head<3>();
+      u[body].tail<3>() += chain.bodies[body].inverse_inertia_world *
+                           (lambda[static_cast<Eigen::Index>(i)] * jacobian.tail<3>());
     }
   double most = 0.0;
-  for (std::size_t i = 0; i < chain.constraints.size(); ++i) most = std::max(most, std::abs(along(chain.constraints[i], u) + chain.constraints[i].row.velocity_product - wanted[static_cast<Eigen::Index>(i)]));
+  for (std::size_t i = 0; i < chain.constraints.size(); ++i)
+    most = std::max(
+        most, std::abs(along(chain.constraints[i], u) + chain.constraints[i].row.velocity_product -
+                       wanted[static_cast<Eigen::Index>(i)]));
   return most;
 }
 
@@ -61,7 +76,11 @@ TEST(Gradients, MultipliersHoldTheLinksToTheTolerance) {
     Laws laws;
     solve_links_by_gradients(tolerance, laws);
     // The right-hand side is below 40 m/s^2 in every row, 100 in the 2-norm.
-    EXPECT_LE(residual_of(links, laws.constraint_multipliers(links.constraints, links.bodies, wanted), wanted), 100.0 * tolerance) << tolerance;
+    EXPECT_LE(
+        residual_of(links, laws.constraint_multipliers(links.constraints, links.bodies, wanted),
+                    wanted),
+        100.0 * tolerance)
+        << tolerance;
   }
 }
 
@@ -74,26 +93,28 @@ TEST(Gradients, CorrectionBringsEveryRowBack) {
   ASSERT_EQ(change.size(), 6 * (kLinks + 1));
   std::vector<Vector6d> u;
   for (int k = 0; k <= kLinks; ++k) u.push_back(change.segment<6>(6 * k));
-  for (int i = 0; i < kLinks; ++i) EXPECT_NEAR(along(links.constraints[i], u), -error[i], 1e-12);   // 1e-13 of 0.1, some roundings
+  // 1e-13 of 0.1, some roundings
+  for (int i = 0; i < kLinks; ++i) EXPECT_NEAR(along(links.constraints[i], u), -error[i], 1e-12);
 }
 
 TEST(Sweeps, ForcesPushOnlyAndOnlyWhereBodiesTouch) {
   MatrixXd A(3, 3);
   A << 2.0, 0.5, 0.1, 0.5, 1.5, -0.2, 0.1, -0.2, 1.0;
-  const VectorXd b = (VectorXd(3) << -4.0, -1.0, 2.0).finished();   // the third wants to part
+  const VectorXd b = (VectorXd(3) << -4.0, -1.0, 2.0).finished();  // the third wants to part
   Laws laws;
   solve_contacts_by_sweeps(1e-13, laws);
   const VectorXd f = laws.contact_forces(A, b), a = A * f + b;
   for (int i = 0; i < 3; ++i) {
     EXPECT_GE(f[i], 0.0);
-    EXPECT_GE(a[i], -1e-11);                  // 1e-13 of the largest force, times entries of A
+    EXPECT_GE(a[i], -1e-11);  // 1e-13 of the largest force, times entries of A
     EXPECT_NEAR(f[i] * a[i], 0.0, 1e-10);
   }
   EXPECT_GT(f[0], 0.0);
   EXPECT_EQ(f[2], 0.0);
 }
 
-/// Eight bodies of 1 kg one on the other, the lowest on the ground, each touching the next in one point below its centre, after a step's fall.
+/// Eight bodies of 1 kg one on the other, the lowest on the ground, each touching the next in one
+/// point below its centre, after a step's fall.
 ContactProblem tower() {
   constexpr int kBodies = 8;
   ContactProblem problem;
@@ -124,7 +145,10 @@ double farthest_from_weights(const ContactSolution& solution) {
   double most = 0.0;
   const double weight = 9.81 / 60.0;
   for (std::size_t i = 0; i < solution.impulses_world.size(); ++i)
-    most = std::max(most, (solution.impulses_world[i] - Vector3d(0.0, 0.0, weight * static_cast<double>(solution.impulses_world.size() - i))).norm());
+    most = std::max(
+        most, (solution.impulses_world[i] -
+               Vector3d(0.0, 0.0, weight * static_cast<double>(solution.impulses_world.size() - i)))
+                  .norm());
   return most;
 }
 
@@ -133,12 +157,15 @@ TEST(Sweeps, WithFrictionEndAtTheirToleranceAndTightOnesTakeMore) {
   solve_contacts_by_sweeps(1e-2, loose);
   solve_contacts_by_sweeps(1e-10, tight);
   solve_contacts_by_newton(1e-10, newton);
-  const ContactSolution coarse = loose.friction_impulses(tower(), {}), fine = tight.friction_impulses(tower(), {}), direct = newton.friction_impulses(tower(), {});
+  const ContactSolution coarse = loose.friction_impulses(tower(), {}),
+                        fine = tight.friction_impulses(tower(), {}),
+                        direct = newton.friction_impulses(tower(), {});
   EXPECT_TRUE(coarse.converged && fine.converged && direct.converged);
   EXPECT_LE(fine.residual, 1e-10);
   EXPECT_GT(fine.sweeps, 2 * coarse.sweeps);
-  // Velocities are right to the tolerance times 0.16 m/s; impulses are the sums of eight of them, over the least eigenvalue of the tower
-  // (4 sin^2(pi / 34) = 0.034): 1e-10 * 0.16 * 8 / 0.034. The loose ones are off by far more than that.
+  // Velocities are right to the tolerance times 0.16 m/s; impulses are the sums of eight of them,
+  // over the least eigenvalue of the tower (4 sin^2(pi / 34) = 0.034): 1e-10 * 0.16 * 8 / 0.034.
+  // The loose ones are off by far more than that.
   EXPECT_LT(farthest_from_weights(fine), 4e-9);
   EXPECT_LT(farthest_from_weights(direct), 4e-9);
   EXPECT_GT(farthest_from_weights(coarse), 1e-3);
@@ -146,8 +173,10 @@ TEST(Sweeps, WithFrictionEndAtTheirToleranceAndTightOnesTakeMore) {
 }
 
 TEST(RootMethods, ReachTheirToleranceOnAFallingBody) {
-  // 2 - t - 4.905 t^2, which closes at (-1 + sqrt(1 + 8 4.905)) / (2 4.905); a bracket of half a second.
-  const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; }, rate = [](double t) { return -1.0 - 9.81 * t; };
+  // 2 - t - 4.905 t^2, which closes at (-1 + sqrt(1 + 8 4.905)) / (2 4.905); a bracket of half a
+  // second.
+  const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; },
+                       rate = [](double t) { return -1.0 - 9.81 * t; };
   const double exact = (-1.0 + std::sqrt(1.0 + 8.0 * 4.905)) / (2.0 * 4.905);
   for (const RootMethod& method : root_methods())
     for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
@@ -159,13 +188,19 @@ TEST(RootMethods, ReachTheirToleranceOnAFallingBody) {
 }
 
 TEST(RootMethods, SayWhereThereIsNoSignChange) {
-  for (const RootMethod& method : root_methods()) EXPECT_EQ(method.find([](double) { return 1.0; }, [](double) { return 0.0; }, 0.0, 1.0, 1e-6).status, RootStatus::kNoSignChange) << method.word;
+  for (const RootMethod& method : root_methods())
+    EXPECT_EQ(
+        method.find([](double) { return 1.0; }, [](double) { return 0.0; }, 0.0, 1.0, 1e-6).status,
+        RootStatus::kNoSignChange)
+        << method.word;
   EXPECT_THROW(root_method_named("newtn"), UserError);
 }
 
 TEST(RootMethods, NewtonLooksAtFewerGapsThanBisection) {
-  const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; }, rate = [](double t) { return -1.0 - 9.81 * t; };
-  EXPECT_LT(3 * root_method_named("newton").find(gap, rate, 0.3, 0.8, 1e-12).evaluations, root_method_named("bisection").find(gap, rate, 0.3, 0.8, 1e-12).evaluations);
+  const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; },
+                       rate = [](double t) { return -1.0 - 9.81 * t; };
+  EXPECT_LT(3 * root_method_named("newton").find(gap, rate, 0.3, 0.8, 1e-12).evaluations,
+            root_method_named("bisection").find(gap, rate, 0.3, 0.8, 1e-12).evaluations);
 }
 
 }  // namespace

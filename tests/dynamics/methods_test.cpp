@@ -1,4 +1,5 @@
-// Methods of integration to compare with: each is of the order that it promises, or keeps to the tolerance that it is given.
+// Methods of integration to compare with: each is of the order that it promises, or keeps to the
+// tolerance that it is given.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,7 +12,9 @@ namespace tumble::testing {
 namespace {
 
 // y'' = -y from (1, 0): (cos t, -sin t).
-const OdeFunction kSwing = [](double, const VectorXd& y) -> VectorXd { return Eigen::Vector2d(y[1], -y[0]); };
+const OdeFunction kSwing = [](double, const VectorXd& y) -> VectorXd {
+  return Eigen::Vector2d(y[1], -y[0]);
+};
 
 double error_at_1(const StepFunction& step, int steps) {
   VectorXd y = Eigen::Vector2d(1.0, 0.0);
@@ -23,8 +26,10 @@ TEST(Methods, OfFixedStepsHaveTheOrderTheyPromise) {
   for (const Method& method : methods()) {
     if (method.controlled) continue;
     const StepFunction step = step_of(method, kUnset);
-    // The next term of the error is smaller by the step, 1/64: of the order that is 0.05 at most. A wrong stage costs a whole order.
-    EXPECT_NEAR(std::log2(error_at_1(step, 64) / error_at_1(step, 128)), method.order, 0.05) << method.name;
+    // The next term of the error is smaller by the step, 1/64: of the order that is 0.05 at most. A
+    // wrong stage costs a whole order.
+    EXPECT_NEAR(std::log2(error_at_1(step, 64) / error_at_1(step, 128)), method.order, 0.05)
+        << method.name;
   }
 }
 
@@ -34,7 +39,8 @@ TEST(Methods, ThatControlTheirErrorKeepToTheTolerance) {
     double last = 1.0;
     for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
       const double error = error_at_1(step_of(method, tolerance), 1);
-      // The tolerance is of a step; in one radian there are tens of them at most, with a method of order 4 at 1e-10 some hundred.
+      // The tolerance is of a step; in one radian there are tens of them at most, with a method of
+      // order 4 at 1e-10 some hundred.
       EXPECT_LT(error, 200 * tolerance) << method.name << ", tolerance " << tolerance;
       EXPECT_LT(error, last) << method.name << ": a smaller tolerance must make a smaller error";
       last = error;
@@ -49,14 +55,20 @@ TEST(Methods, ImplicitOneTakesStepsThatStabilityForbidsOthers) {
     ++calls;
     return VectorXd::Constant(1, -1e6 * (y[0] - std::cos(t)));
   };
-  const VectorXd end = step_of(method_named("rosenbrock4"), 1e-6)(stiff, 0.0, VectorXd::Constant(1, 1.0), 1.0);
-  EXPECT_NEAR(end[0], std::cos(1.0), 1e-5);   // ten times the tolerance; the solution lags by 1e-6 sin t
-  EXPECT_LT(calls, 20000);                    // at least 1e6 / 3 steps of more than one call for an explicit method
+  const VectorXd end =
+      step_of(method_named("rosenbrock4"), 1e-6)(stiff, 0.0, VectorXd::Constant(1, 1.0), 1.0);
+  // ten times the tolerance; the solution lags by 1e-6 sin t
+  EXPECT_NEAR(end[0], std::cos(1.0), 1e-5);
+  // at least 1e6 / 3 steps of more than one call for an explicit method
+  EXPECT_LT(calls, 20000);
 }
 
-// y' = -1000 ln y from t = 1/2 on, nothing before: y falls from 2 to 1 and is positive all the way. A trial across the edge, as long as stillness lets it
-// be, leads below 0, where there is no logarithm.
-VectorXd fall_to_one(double t, const VectorXd& y) { return VectorXd::Constant(1, t < 0.5 ? 0.0 : -1000.0 * std::log(y[0])); }
+// y' = -1000 ln y from t = 1/2 on, nothing before: y falls from 2 to 1 and is positive all the way.
+// A trial across the edge, as long as stillness lets it be, leads below 0, where there is no
+// logarithm.
+VectorXd fall_to_one(double t, const VectorXd& y) {
+  return VectorXd::Constant(1, t < 0.5 ? 0.0 : -1000.0 * std::log(y[0]));
+}
 
 TEST(Methods, ThatControlTheirErrorTakeBackATrialThatGoesWrong) {
   constexpr double kTolerance = 1e-6;
@@ -71,7 +83,9 @@ TEST(Methods, ThatControlTheirErrorTakeBackATrialThatGoesWrong) {
         return slope;
       };
       // At the end explicit methods go to and fro about 1 by what the tolerance lets them.
-      EXPECT_NEAR(step_of(method, kTolerance)(f, 0.0, VectorXd::Constant(1, 2.0), 1.0)[0], 1.0, 100 * kTolerance) << method.name;
+      EXPECT_NEAR(step_of(method, kTolerance)(f, 0.0, VectorXd::Constant(1, 2.0), 1.0)[0], 1.0,
+                  100 * kTolerance)
+          << method.name;
       EXPECT_GT(wrong, 0) << method.name << ": the case does not try what it is about";
     }
   }
@@ -92,8 +106,10 @@ TEST(Methods, WhereNoStepWillDoSayWhenAndWhy) {
         const std::string words = error.what();
         const std::size_t at = words.find("no step is short enough at t = ");
         ASSERT_NE(at, std::string::npos) << method.name << ": " << words;
-        EXPECT_NEAR(std::stod(words.substr(at + 31)), 0.5, 2e-5) << method.name;   // differences for an implicit method's Jacobian look 6e-6 s ahead
-        EXPECT_NE(words.find(throws ? "the rope is torn" : "not a number"), std::string::npos) << method.name << ": " << words;
+        // differences for an implicit method's Jacobian look 6e-6 s ahead
+        EXPECT_NEAR(std::stod(words.substr(at + 31)), 0.5, 2e-5) << method.name;
+        EXPECT_NE(words.find(throws ? "the rope is torn" : "not a number"), std::string::npos)
+            << method.name << ": " << words;
       }
     }
   }
@@ -101,26 +117,38 @@ TEST(Methods, WhereNoStepWillDoSayWhenAndWhy) {
 
 // Parts of a step end where the step does but for a rounding of t, and what is left is a part too.
 TEST(Methods, GoOnFarFromTheBeginningOfTime) {
-  const OdeFunction swing = [](double, const VectorXd& y) -> VectorXd { return Vector2d(y[1], -50.0 * y[0]); };
+  const OdeFunction swing = [](double, const VectorXd& y) -> VectorXd {
+    return Vector2d(y[1], -50.0 * y[0]);
+  };
   for (const Method& method : methods()) {
     if (!method.controlled) continue;
     for (const double tolerance : {1e-8, 3e-11, 1e-11, 3e-12}) {
-      if (method.word == std::string("rosenbrock4") && tolerance < 1e-8) continue;   // of fourth order, with differences: some thousand parts a step
+      // of fourth order, with differences: some thousand parts a step
+      if (method.word == std::string("rosenbrock4") && tolerance < 1e-8) continue;
       VectorXd y = Vector2d(0.0, 1.0);
-      for (int k = 0; k < 60; ++k) ASSERT_NO_THROW(y = step_of(method, tolerance)(swing, 4.0 + k / 60.0, y, 1.0 / 60.0)) << method.name << ", tolerance " << tolerance << ", step " << k;
-      EXPECT_NEAR(y[1], std::cos(std::sqrt(50.0)), 1e4 * tolerance) << method.name;   // some hundred parts, each to the tolerance of what sums to 60 of them
+      for (int k = 0; k < 60; ++k)
+        ASSERT_NO_THROW(y = step_of(method, tolerance)(swing, 4.0 + k / 60.0, y, 1.0 / 60.0))
+            << method.name << ", tolerance " << tolerance << ", step " << k;
+      // some hundred parts, each to the tolerance of what sums to 60 of them
+      EXPECT_NEAR(y[1], std::cos(std::sqrt(50.0)), 1e4 * tolerance) << method.name;
     }
   }
 }
 
 // The first part that is tried is the shorter the greater the slope: no reason to refuse it.
 TEST(Methods, BearSlopesOfAnySize) {
-  const OdeFunction weight = [](double, const VectorXd& y) -> VectorXd { return VectorXd::Constant(1, -6e25 + 0.0 * y[0]); };
+  const OdeFunction weight = [](double, const VectorXd& y) -> VectorXd {
+    return VectorXd::Constant(1, -6e25 + 0.0 * y[0]);
+  };
   for (const Method& method : methods())
-    if (method.controlled) EXPECT_NEAR(step_of(method, 1e-9)(weight, 0.0, VectorXd::Zero(1), 0.01)[0] / -6e23, 1.0, 1e-12) << method.name;
+    if (method.controlled)
+      EXPECT_NEAR(step_of(method, 1e-9)(weight, 0.0, VectorXd::Zero(1), 0.01)[0] / -6e23, 1.0,
+                  1e-12)
+          << method.name;
 }
 
-// A time limit that is hit within a trial is no trial too long; nor is a module whose process has died.
+// A time limit that is hit within a trial is no trial too long; nor is a module whose process has
+// died.
 TEST(Methods, WhatStaysSoEndsAStepAtOnce) {
   struct TimeIsUp : std::runtime_error, Final {
     TimeIsUp() : std::runtime_error("time is up") {}
@@ -133,7 +161,8 @@ TEST(Methods, WhatStaysSoEndsAStepAtOnce) {
         return -y;
       };
       const auto a_second = [&] {
-        for (int k = 0; k < 10; ++k) step_of(method, 1e-6)(limited, 0.1 * k, VectorXd::Constant(1, 1.0), 0.1);
+        for (int k = 0; k < 10; ++k)
+          step_of(method, 1e-6)(limited, 0.1 * k, VectorXd::Constant(1, 1.0), 0.1);
       };
       EXPECT_THROW(a_second(), TimeIsUp) << method.name;
       EXPECT_EQ(calls, at) << method.name;
@@ -141,8 +170,12 @@ TEST(Methods, WhatStaysSoEndsAStepAtOnce) {
 }
 
 TEST(Methods, WhatIsNotWrittenYetIsNoMatterOfTheStep) {
-  const OdeFunction stub = [](double, const VectorXd&) -> VectorXd { throw NotImplemented("state_derivative", "handouts/a2_integration.md"); };
-  for (const Method& method : methods()) EXPECT_THROW(step_of(method, 1e-6)(stub, 0.0, VectorXd::Constant(1, 1.0), 1.0), NotImplemented) << method.name;
+  const OdeFunction stub = [](double, const VectorXd&) -> VectorXd {
+    throw NotImplemented("state_derivative", "handouts/a2_integration.md");
+  };
+  for (const Method& method : methods())
+    EXPECT_THROW(step_of(method, 1e-6)(stub, 0.0, VectorXd::Constant(1, 1.0), 1.0), NotImplemented)
+        << method.name;
 }
 
 TEST(Methods, UnknownNameIsRefusedWithTheNearest) {

@@ -1,4 +1,5 @@
-// The impulse of one impact with restitution and friction: closed forms, and what must hold for every inverse effective mass.
+// The impulse of one impact with restitution and friction: closed forms, and what must hold for
+// every inverse effective mass.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -9,9 +10,11 @@
 namespace tumble::point_impact_test {
 namespace {
 
-constexpr double kRounding = 1e-12;   // some hundred roundings of numbers of the size of 1
+constexpr double kRounding = 1e-12;  // some hundred roundings of numbers of the size of 1
 
-Vector3d random_vector(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
+Vector3d random_vector(Random& random) {
+  return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+}
 
 /// K of rank 1 to 3: sums of so many a a^T.
 Matrix3d random_inverse_mass(Random& random, int rank) {
@@ -28,7 +31,9 @@ TEST(PointImpact, OfABallOnAFloorStopsTheSlipOrTakesWhatFrictionAllows) {
   Matrix3d K = Matrix3d::Identity() * 3.5;
   K(2, 2) = 1.0;
   const Vector3d n(0, 0, 1), velocity(0.7, 0, -2);
-  const auto impulse = [&](double mu) { return impulse_of({K, velocity, n, 1.5 * 2.0, mu}).impulse_on_a_world; };
+  const auto impulse = [&](double mu) {
+    return impulse_of({K, velocity, n, 1.5 * 2.0, mu}).impulse_on_a_world;
+  };
   EXPECT_LT((impulse(1.0) - Vector3d(-0.2, 0, 3)).norm(), kRounding);
   EXPECT_LT((impulse(0.05) - Vector3d(-0.15, 0, 3)).norm(), kRounding);
   EXPECT_LT((impulse(0.0) - Vector3d(0, 0, 3)).norm(), kRounding);
@@ -46,7 +51,8 @@ TEST(PointImpact, InAPlaneFrictionChangesTheNormalImpulseByTheCoupling) {
 }
 
 TEST(PointImpact, FrictionThatWouldCreateEnergyIsTakenAsFarAsItCreatesNone) {
-  // Kane and Levinson: the normal impulse drags the contact point back along x, friction then pushes it on. e = 1.
+  // Kane and Levinson: the normal impulse drags the contact point back along x, friction then
+  // pushes it on. e = 1.
   Matrix3d K;
   K << 2.0, 0, 1.5, 0, 2.0, 0, 1.5, 0, 2.0;
   const Vector3d n(0, 0, 1), velocity(-0.2, 0, -1);
@@ -68,11 +74,13 @@ TEST(PointImpact, ObeysRestitutionTheConeAndEnergyForEveryInverseMass) {
     // A velocity that the bodies can have: in the range of K where they are held.
     Vector3d velocity = K * random_vector(random);
     if (n.dot(velocity) > 0) velocity = -velocity;
-    const double e = trial % 7 == 0 ? 1.0 : random.between(0, 1), mu = random.between(0, 2), rise = -(1 + e) * n.dot(velocity);
+    const double e = trial % 7 == 0 ? 1.0 : random.between(0, 1), mu = random.between(0, 2),
+                 rise = -(1 + e) * n.dot(velocity);
     const PointImpulse found = impulse_of({K, velocity, n, rise, mu});
     const Vector3d& p = found.impulse_on_a_world;
     const double size = velocity.norm() + (K * p).norm(), normal = n.dot(p);
-    const Vector3d tangential = p - normal * n, after = velocity + K * p, slip = after - n.dot(after) * n;
+    const Vector3d tangential = p - normal * n, after = velocity + K * p,
+                   slip = after - n.dot(after) * n;
     ASSERT_TRUE(p.allFinite()) << trial;
     EXPECT_NEAR(n.dot(after), -e * n.dot(velocity), 1e-11 * size) << trial;
     EXPECT_LE(tangential.norm(), mu * normal * (1 + 1e-12)) << trial;
@@ -83,10 +91,13 @@ TEST(PointImpact, ObeysRestitutionTheConeAndEnergyForEveryInverseMass) {
     }
     if (tangential.norm() < mu * normal * (1 - 1e-9)) {
       ++sticks;
-      EXPECT_LT(slip.norm(), 1e-9 * size) << trial << " rank " << rank;   // K of two nearly equal directions loses some digits
+      // K of two nearly equal directions loses some digits
+      EXPECT_LT(slip.norm(), 1e-9 * size) << trial << " rank " << rank;
     } else {
       ++slides;
-      EXPECT_LT((slip.norm() * tangential + tangential.norm() * slip).norm(), 1e-9 * size * tangential.norm()) << trial << " rank " << rank;
+      EXPECT_LT((slip.norm() * tangential + tangential.norm() * slip).norm(),
+                1e-9 * size * tangential.norm())
+          << trial << " rank " << rank;
     }
   }
   EXPECT_GT(sticks, 1000);

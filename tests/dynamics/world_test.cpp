@@ -54,7 +54,8 @@ TEST(World, StartsWithTheMomentaOfTheVelocitiesGiven) {
   // 2/5 m r^2 = 0.2 kg m^2
   EXPECT_LE((state.angular_momentum_world - Vector3d(0, 1, 0)).norm(), 4 * kEps);
   EXPECT_LE((omega_of(state, world.bodies[0].inertia) - Vector3d(0, 5, 0)).norm(), 20 * kEps);
-  EXPECT_NEAR(kinetic_energy(state, world.bodies[0].inertia), 0.5 * 2 * 10 + 0.5 * 0.2 * 25, 20 * kEps * 12.5);
+  EXPECT_NEAR(kinetic_energy(state, world.bodies[0].inertia), 0.5 * 2 * 10 + 0.5 * 0.2 * 25,
+              20 * kEps * 12.5);
 }
 
 TEST(World, RefusesWhatCannotBe) {
@@ -68,7 +69,8 @@ TEST(World, RefusesWhatCannotBe) {
   plane.inertia_body_kg_m2 = Matrix3d::Identity();
   EXPECT_THROW(build_world(scene_of({plane})), UserError);
   scene::Scene pushed = scene_of({ball("a", 1.0)});
-  pushed.effects.of<effects::PointForceSpec>() = {{.body = "b", .force_n = {1, 0, 0}, .point_m = {0, 0, 0}, .start_s = 0, .duration_s = 1}};
+  pushed.effects.of<effects::PointForceSpec>() = {
+      {.body = "b", .force_n = {1, 0, 0}, .point_m = {0, 0, 0}, .start_s = 0, .duration_s = 1}};
   EXPECT_THROW(build_world(pushed), UserError);
 }
 
@@ -76,11 +78,14 @@ TEST(World, TurnsAngularVelocityIntoMomentumAndBack) {
   Random random(31);
   for (int i = 0; i < 100; ++i) {
     const Inertia inertia = finite_inertia(1.0, random_moments(random).asDiagonal());
-    RigidBodyState state{Vector3d::Zero(), random_rotation(random), Vector3d::Zero(), random_vector(random, 5)};
+    RigidBodyState state{Vector3d::Zero(), random_rotation(random), Vector3d::Zero(),
+                         random_vector(random, 5)};
     const Vector3d omega_world = omega_of(state, inertia);
     const Vector3d back = angular_momentum_of(omega_world, state.world_from_body, inertia);
-    EXPECT_LE((back - state.angular_momentum_world).norm(), 2000 * kEps * 5);  // moments differ by up to 100 times
-    EXPECT_NEAR(kinetic_energy(state, inertia), 0.5 * omega_world.dot(state.angular_momentum_world), 20 * kEps * kinetic_energy(state, inertia));
+    // moments differ by up to 100 times
+    EXPECT_LE((back - state.angular_momentum_world).norm(), 2000 * kEps * 5);
+    EXPECT_NEAR(kinetic_energy(state, inertia), 0.5 * omega_world.dot(state.angular_momentum_world),
+                20 * kEps * kinetic_energy(state, inertia));
   }
 }
 
@@ -96,7 +101,8 @@ TEST(World, MovesAWallAsPrescribedWithTheRateOfItsPosition) {
   for (const double t : {0.1, 0.7, 3.0}) {
     // Central difference of h = 1e-5 s: A w^3 h^2 / 6 = 1e-9 of truncation, 2e-11 of rounding.
     const double h = 1e-5;
-    const Vector3d rate = (prescribed_position(wall, t + h) - prescribed_position(wall, t - h)) / (2 * h);
+    const Vector3d rate =
+        (prescribed_position(wall, t + h) - prescribed_position(wall, t - h)) / (2 * h);
     EXPECT_LE((prescribed_velocity(wall, t) - rate).norm(), 2e-9) << t;
   }
 }
@@ -119,7 +125,11 @@ TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
 
 TEST(World, HasNoLinksThatTheSceneDoesNotAskFor) {
   const World world = build_world(scene_of({ball("a", 2.0), ball("b", 2.0)}));
-  EXPECT_TRUE(world.effects.of<effects::SpringLink>().empty() && world.effects.of<effects::RodLink>().empty() && world.effects.of<effects::JointLink>().empty() && world.effects.of<effects::Drag>().empty() && world.effects.of<effects::Motor>().empty() && world.apart.empty());
+  EXPECT_TRUE(world.effects.of<effects::SpringLink>().empty() &&
+              world.effects.of<effects::RodLink>().empty() &&
+              world.effects.of<effects::JointLink>().empty() &&
+              world.effects.of<effects::Drag>().empty() &&
+              world.effects.of<effects::Motor>().empty() && world.apart.empty());
   EXPECT_FALSE(world.contact.has_value());
   EXPECT_FALSE(world.stabilisation.has_value());
 }
@@ -128,13 +138,15 @@ TEST(World, HasNoLinksThatTheSceneDoesNotAskFor) {
 scene::Scene two_balls() {
   scene::Scene scene = scene_of({ball("a", 2.0), ball("b", 3.0)});
   scene.bodies[1].position_m = {4, 0, 0};
-  scene.bodies[1].world_from_body = Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitZ()));
+  scene.bodies[1].world_from_body =
+      Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitZ()));
   return scene;
 }
 
 TEST(World, AnchorsMoveWithTheirBodies) {
   scene::Scene scene = two_balls();
-  scene.effects.of<effects::SpringSpec>().push_back({"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
+  scene.effects.of<effects::SpringSpec>().push_back(
+      {"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
   World world = build_world(scene);
   const effects::SpringLink& link = world.effects.of<effects::SpringLink>()[0];
   EXPECT_EQ(link.a.body, 1);
@@ -142,9 +154,11 @@ TEST(World, AnchorsMoveWithTheirBodies) {
   std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
   EXPECT_LE((anchor_point(link.a, states) - Vector3d(4, 1, 0)).norm(), 10 * kEps * 4);
   states[1].momentum_world = 3.0 * Vector3d(0, 0, 5);
-  states[1].angular_momentum_world = angular_momentum_of({0, 0, 2}, states[1].world_from_body, world.bodies[1].inertia);
+  states[1].angular_momentum_world =
+      angular_momentum_of({0, 0, 2}, states[1].world_from_body, world.bodies[1].inertia);
   const AnchorState moving = anchor_state(link.a, world, states, 0.0);
-  EXPECT_LE((moving.velocity_world - Vector3d(-2, 0, 5)).norm(), 50 * kEps * 5);   // v + w x (0, 1, 0)
+  // v + w x (0, 1, 0)
+  EXPECT_LE((moving.velocity_world - Vector3d(-2, 0, 5)).norm(), 50 * kEps * 5);
   EXPECT_EQ(anchor_state(link.b, world, states, 0.0).velocity_world, Vector3d::Zero());
   // E = 10 N/m / 2 (6 m - 2 m)^2
   EXPECT_NEAR(invariants_of(world, states).potential_energy, 80.0, 50 * kEps * 80);
@@ -155,9 +169,11 @@ TEST(World, AnchorOfAMovingWallFollowsIt) {
   scene.bodies[0].immovable = true;
   scene.bodies[0].mass_kg.reset();
   scene.bodies[0].motion = scene::PrescribedMotion{{0, 0, 2}, {0, 0, 0}, 0.0};
-  scene.effects.of<effects::RodSpec>().push_back({"stick", {"a", {0, 1, 0}}, {"b", {0, 0, 0}}, std::sqrt(17.0), ""});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"stick", {"a", {0, 1, 0}}, {"b", {0, 0, 0}}, std::sqrt(17.0), ""});
   const World world = build_world(scene);
-  const AnchorState moved = anchor_state(world.effects.of<effects::RodLink>()[0].a, world, {world.bodies[0].state, world.bodies[1].state}, 3.0);
+  const AnchorState moved = anchor_state(world.effects.of<effects::RodLink>()[0].a, world,
+                                         {world.bodies[0].state, world.bodies[1].state}, 3.0);
   EXPECT_EQ(moved.point_world, Vector3d(0, 1, 6));
   EXPECT_EQ(moved.velocity_world, Vector3d(0, 0, 2));
   EXPECT_TRUE(world.stabilisation.has_value());
@@ -181,15 +197,19 @@ TEST(World, BothBodiesOfAJointSeeItsPointAndAxisInTheSamePlace) {
   const std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
   EXPECT_LE((anchor_point(link.a, states) - hinge.point_m).norm(), 10 * kEps * 4);
   EXPECT_LE((anchor_point(link.b, states) - hinge.point_m).norm(), 10 * kEps * 4);
-  EXPECT_LE((states[1].world_from_body * link.a_from_joint * Vector3d::UnitZ() - hinge.axis).norm(), 20 * kEps);
-  EXPECT_LE((states[0].world_from_body * link.b_from_joint * Vector3d::UnitZ() - hinge.axis).norm(), 20 * kEps);
+  EXPECT_LE((states[1].world_from_body * link.a_from_joint * Vector3d::UnitZ() - hinge.axis).norm(),
+            20 * kEps);
+  EXPECT_LE((states[0].world_from_body * link.b_from_joint * Vector3d::UnitZ() - hinge.axis).norm(),
+            20 * kEps);
   EXPECT_EQ(world.effects.of<effects::Motor>()[0].hinge.name, link.name);
-  EXPECT_EQ(world.apart, (std::vector<std::pair<int, int>>{{0, 1}})) << "joined bodies never collide";
+  EXPECT_EQ(world.apart, (std::vector<std::pair<int, int>>{{0, 1}}))
+      << "joined bodies never collide";
 }
 
 TEST(World, RodsDoNotKeepFromCollidingAndPairsApartAreSortedOnce) {
   scene::Scene scene = two_balls();
-  scene.effects.of<effects::RodSpec>().push_back({"stick", {"a", {0, 0, 0}}, {"b", {0, 0, 0}}, 4.0, ""});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"stick", {"a", {0, 0, 0}}, {"b", {0, 0, 0}}, 4.0, ""});
   EXPECT_TRUE(build_world(scene).apart.empty());
   scene.apart = {{"b", "a"}, {"a", "b"}};
   EXPECT_EQ(build_world(scene).apart, (std::vector<std::pair<int, int>>{{0, 1}}));
@@ -197,10 +217,12 @@ TEST(World, RodsDoNotKeepFromCollidingAndPairsApartAreSortedOnce) {
 
 TEST(World, RefusesLinksThatCannotBe) {
   scene::Scene scene = two_balls();
-  scene.effects.of<effects::SpringSpec>().push_back({"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
+  scene.effects.of<effects::SpringSpec>().push_back(
+      {"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
   EXPECT_THROW(build_world(scene), UserError);
   scene.effects.of<effects::SpringSpec>().clear();
-  scene.effects.of<effects::RodSpec>().push_back({"stick", {"", {0, 0, 0}}, {"", {1, 0, 0}}, 1, ""});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"stick", {"", {0, 0, 0}}, {"", {1, 0, 0}}, 1, ""});
   EXPECT_THROW(build_world(scene), UserError);
   scene.effects.of<effects::RodSpec>().clear();
   scene.effects.of<effects::MotorSpec>().emplace_back();

@@ -13,7 +13,7 @@ namespace tumble::effects {
 namespace {
 
 constexpr double kEps = 2.3e-16;
-constexpr double kRounding = 1e-13;   // of a moment: some hundred roundings of a sum over faces
+constexpr double kRounding = 1e-13;  // of a moment: some hundred roundings of a sum over faces
 
 Vector3d drawn_direction(Random& random) {
   Vector3d direction;
@@ -34,36 +34,46 @@ TEST(Submerged, BallIsTheSphericalCap) {
   const double R = 0.7;
   for (const double h : {0.0, 0.1, 0.35, 0.7, 1.0, 1.4}) {
     const Submerged cap = submerged_ball(R, Vector3d::UnitZ(), h - R);
-    const double volume = std::numbers::pi * h * h * (3 * R - h) / 3, middle = h > 0 ? 0.75 * (2 * R - h) * (2 * R - h) / (3 * R - h) : 0.0;   // below the centre
+    // below the centre
+    const double volume = std::numbers::pi * h * h * (3 * R - h) / 3,
+                 middle = h > 0 ? 0.75 * (2 * R - h) * (2 * R - h) / (3 * R - h) : 0.0;
     EXPECT_NEAR(cap.volume, volume, 20 * kEps * R * R * R) << h;
     EXPECT_NEAR(cap.first.z(), -volume * middle, 20 * kEps * std::pow(R, 4)) << h;
   }
   const Submerged whole = submerged_ball(R, Vector3d::UnitX(), 5.0);
-  EXPECT_LE((whole.second - whole.volume * R * R / 5 * Matrix3d::Identity()).norm(), 20 * kEps * std::pow(R, 5));
+  EXPECT_LE((whole.second - whole.volume * R * R / 5 * Matrix3d::Identity()).norm(),
+            20 * kEps * std::pow(R, 5));
 }
 
 TEST(Submerged, CornerOfACubeIsATetrahedron) {
   const double edge = 0.3;
   const Floatable cube(Box{Vector3d::Constant(0.5)});
-  const Submerged corner = cube.under(Vector3d::Ones().normalized(), (-1.5 + edge) / std::sqrt(3.0));
+  const Submerged corner =
+      cube.under(Vector3d::Ones().normalized(), (-1.5 + edge) / std::sqrt(3.0));
   EXPECT_NEAR(corner.volume, std::pow(edge, 3) / 6, kRounding);
-  EXPECT_LE((corner.first / corner.volume - Vector3d::Constant(-0.5 + edge / 4)).norm(), kRounding / corner.volume);
+  EXPECT_LE((corner.first / corner.volume - Vector3d::Constant(-0.5 + edge / 4)).norm(),
+            kRounding / corner.volume);
 }
 
 TEST(Submerged, BoxUnderALevelIsABox) {
   const Floatable box(Box{{0.5, 0.4, 0.15}});
-  const Submerged lower = box.under(Vector3d::UnitZ(), 0.03);   // 0.18 m high, its middle at -0.06
+  const Submerged lower = box.under(Vector3d::UnitZ(), 0.03);  // 0.18 m high, its middle at -0.06
   const Vector3d size(1.0, 0.8, 0.18);
   EXPECT_NEAR(lower.volume, size.prod(), kRounding);
   EXPECT_LE((lower.first / lower.volume - Vector3d(0, 0, -0.06)).norm(), kRounding);
-  const Matrix3d about_middle = lower.second - lower.volume * Vector3d(0, 0, -0.06) * Vector3d(0, 0, -0.06).transpose();
-  EXPECT_LE((about_middle - Matrix3d((size.prod() / 12 * size.cwiseAbs2()).asDiagonal())).norm(), kRounding);
+  const Matrix3d about_middle =
+      lower.second - lower.volume * Vector3d(0, 0, -0.06) * Vector3d(0, 0, -0.06).transpose();
+  EXPECT_LE((about_middle - Matrix3d((size.prod() / 12 * size.cwiseAbs2()).asDiagonal())).norm(),
+            kRounding);
 }
 
-// What lies on both sides of a plane makes the whole, in every moment; of solids that are hollow in places, too.
+// What lies on both sides of a plane makes the whole, in every moment; of solids that are hollow in
+// places, too.
 TEST(Submerged, BothSidesMakeTheWhole) {
   Random random(7);
-  for (const Floatable& solid : {Floatable(Box{{0.5, 0.2, 0.1}}), model("gear.3ds"), model("chess_pawn.3ds"), Floatable(Ellipsoid{{0.5, 0.3, 0.2}, {0.1, 0, -0.1}})}) {
+  for (const Floatable& solid :
+       {Floatable(Box{{0.5, 0.2, 0.1}}), model("gear.3ds"), model("chess_pawn.3ds"),
+        Floatable(Ellipsoid{{0.5, 0.3, 0.2}, {0.1, 0, -0.1}})}) {
     const Submerged& whole = solid.whole();
     const double r = solid.radius();
     for (int i = 0; i < 50; ++i) {
@@ -80,7 +90,8 @@ TEST(Submerged, BothSidesMakeTheWhole) {
 // An ellipsoid of equal axes is a ball.
 TEST(Submerged, EllipsoidOfEqualAxesIsABall) {
   const Vector3d normal = Vector3d(1, 2, -2).normalized();
-  const Submerged ball = submerged_ball(0.4, normal, 0.1), same = submerged_ellipsoid({Vector3d::Constant(0.4)}, normal, 0.1);
+  const Submerged ball = submerged_ball(0.4, normal, 0.1),
+                  same = submerged_ellipsoid({Vector3d::Constant(0.4)}, normal, 0.1);
   EXPECT_NEAR(ball.volume, same.volume, 50 * kEps);
   EXPECT_LE((ball.first - same.first).norm() + (ball.second - same.second).norm(), 50 * kEps);
 }

@@ -12,11 +12,11 @@ namespace tumble::testing {
 namespace {
 
 using engines::CostChoices;
+using engines::CostMethod;
 using engines::CostOptions;
 using engines::CostReference;
-using engines::CostMethod;
 
-constexpr double kFrames = 60.0;   // Hz
+constexpr double kFrames = 60.0;  // Hz
 
 /// A box that tumbles for a second.
 scene::Scene tumbling() { return free_top(Vector3d(3.0, 2.0, 5.0)); }
@@ -29,17 +29,21 @@ CostReference truth_at_frames(const scene::Scene& scene) {
 
 /// @param most_s  of the search: generous, because the CPU times of a loaded machine are not tested
 CostChoices chosen(const std::vector<CostMethod>& methods, const engines::CostGoal& goal) {
-  return engines::choose_method(tumbling(), methods, truth_at_frames(tumbling()), goal, 60.0, {}, [](const engines::CostChoice&) {});
+  return engines::choose_method(tumbling(), methods, truth_at_frames(tumbling()), goal, 60.0, {},
+                                [](const engines::CostChoice&) {});
 }
 
 /// The error of a new run with the choice, against the final state in closed form.
 double error_of_the_run(const engines::CostChoice& choice) {
   const CostReference reference = truth_at_frames(tumbling());
-  const engines::CostRun run = engines::run_of(tumbling(), choice.method, reference, choice.steps, choice.tolerance, {});
+  const engines::CostRun run =
+      engines::run_of(tumbling(), choice.method, reference, choice.steps, choice.tolerance, {});
   TrajectoryRecorder recorder;
   engines::run_scene(run.scene, run.laws, run.options, recorder);
   double most = 0.0;
-  for (std::size_t k = 0; k < reference.samples.size(); ++k) most = std::max(most, engines::distance_between(recorder.trajectory().frames.at(k), reference.samples[k], reference.radii));
+  for (std::size_t k = 0; k < reference.samples.size(); ++k)
+    most = std::max(most, engines::distance_between(recorder.trajectory().frames.at(k),
+                                                    reference.samples[k], reference.radii));
   return most;
 }
 
@@ -70,7 +74,7 @@ TEST(Choice, ControlledMethodsReachWhatIsAsked) {
 }
 
 TEST(Choice, AnErrorThatNoMethodReachesIsNotPromised) {
-  const CostChoices found = chosen({method_of("euler")}, {1e-12, {}});   // needs 1e12 steps
+  const CostChoices found = chosen({method_of("euler")}, {1e-12, {}});  // needs 1e12 steps
   EXPECT_FALSE(found.best);
   ASSERT_TRUE(found.closest);
   EXPECT_GT(found.closest->result.error_m, 1e-12);
@@ -82,12 +86,17 @@ TEST(Choice, ABudgetBuysTheLeastErrorThatFitsInIt) {
   EXPECT_EQ(found.best->method.name, "Fehlberg 7(8)");
   EXPECT_LE(found.best->result.cpu_s, 30.0);
   EXPECT_LT(error_of_the_run(*found.best), 1e-10);
-  EXPECT_FALSE(chosen({method_of("euler")}, {{}, 1e-9}).best);   // a nanosecond is too short for any run
+  // a nanosecond is too short for any run
+  EXPECT_FALSE(chosen({method_of("euler")}, {{}, 1e-9}).best);
 }
 
 TEST(Choice, ALawThatIsWrongReachesNoAccuracy) {
   CostMethod method = method_of("rk4");
-  method.laws.state_derivative = [right = method.laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) -> VectorXd { return 0.99 * right(state, inertia, wrench); };
+  method.laws.state_derivative = [right = method.laws.state_derivative](
+                                     const RigidBodyState& state, const Inertia& inertia,
+                                     const Wrench& wrench) -> VectorXd {
+    return 0.99 * right(state, inertia, wrench);
+  };
   EXPECT_FALSE(chosen({method}, {1e-4, {}}).best);
 }
 
@@ -102,17 +111,26 @@ scene::Scene judged_by_energy(double tolerance) {
 }
 
 TEST(ByNumbers, AnErrorIsTheShareOfWhatIsAllowed) {
-  const CostReference wide = engines::by_numbers(judged_by_energy(1e-2), {}, "none"), narrow = engines::by_numbers(judged_by_energy(1e-4), {}, "none");
-  const double share = engines::run_at_resolution(judged_by_energy(1e-2), method_of("euler"), wide, 4, kUnset, {}).error_m;
-  const engines::CostResult strict = engines::run_at_resolution(judged_by_energy(1e-4), method_of("euler"), narrow, 4, kUnset, {});
+  const CostReference wide = engines::by_numbers(judged_by_energy(1e-2), {}, "none"),
+                      narrow = engines::by_numbers(judged_by_energy(1e-4), {}, "none");
+  const double share =
+      engines::run_at_resolution(judged_by_energy(1e-2), method_of("euler"), wide, 4, kUnset, {})
+          .error_m;
+  const engines::CostResult strict =
+      engines::run_at_resolution(judged_by_energy(1e-4), method_of("euler"), narrow, 4, kUnset, {});
   EXPECT_GT(share, 0.0);
-  EXPECT_NEAR(strict.error_m / share, 100.0, 1e-9);   // the tolerance is a hundredth
+  EXPECT_NEAR(strict.error_m / share, 100.0, 1e-9);  // the tolerance is a hundredth
   EXPECT_NE(strict.worst.find("energy"), std::string::npos) << strict.worst;
-  EXPECT_LT(engines::run_at_resolution(judged_by_energy(1e-4), method_of("rk4"), narrow, 4, kUnset, {}).error_m, 1.0);
+  EXPECT_LT(
+      engines::run_at_resolution(judged_by_energy(1e-4), method_of("rk4"), narrow, 4, kUnset, {})
+          .error_m,
+      1.0);
 }
 
 TEST(ByNumbers, WhereNothingIsAllowedAndSomethingIsThereARunIsWrong) {
-  const engines::CostResult result = engines::run_at_resolution(judged_by_energy(0.0), method_of("euler"), engines::by_numbers(judged_by_energy(0.0), {}, "none"), 1, kUnset, {});
+  const engines::CostResult result = engines::run_at_resolution(
+      judged_by_energy(0.0), method_of("euler"),
+      engines::by_numbers(judged_by_energy(0.0), {}, "none"), 1, kUnset, {});
   EXPECT_TRUE(std::isinf(result.error_m)) << result.error_m;
 }
 
@@ -120,7 +138,9 @@ TEST(ByNumbers, WhereNothingIsAllowedAndSomethingIsThereARunIsWrong) {
 truths::Case pendulum_case(const std::string& mass) {
   using truths::Value;
   const auto text = [](const std::string& words) { return Value("test", words); };
-  const auto input = [&](const std::string& name, const Value& value) { return std::pair<std::string, Value>(name, Value("test", Value::Members{{"value", value}})); };
+  const auto input = [&](const std::string& name, const Value& value) {
+    return std::pair<std::string, Value>(name, Value("test", Value::Members{{"value", value}}));
+  };
   const auto list = [&](const std::vector<std::string>& numbers) {
     Value::List all;
     for (const std::string& number : numbers) all.push_back(text(number));
@@ -128,30 +148,45 @@ truths::Case pendulum_case(const std::string& mass) {
   };
   truths::Case known;
   known.family = "chain";
-  known.inputs = Value("test", Value::Members{input("masses", list({mass})), input("lengths", list({"1"})), input("g", text("9.81")), input("theta0", list({"1.57079632679489661923132169164"})),
-                                              input("omega0", list({"0"})), input("times", list({"0.5"}))});
-  known.outputs = Value("test", Value::Members{input("positions_t0.5", Value("test", Value::List{list({"0.5", "-0.866"})}))});
+  known.inputs =
+      Value("test", Value::Members{input("masses", list({mass})), input("lengths", list({"1"})),
+                                   input("g", text("9.81")),
+                                   input("theta0", list({"1.57079632679489661923132169164"})),
+                                   input("omega0", list({"0"})), input("times", list({"0.5"}))});
+  known.outputs = Value(
+      "test",
+      Value::Members{input("positions_t0.5", Value("test", Value::List{list({"0.5", "-0.866"})}))});
   return known;
 }
 
 TEST(KnownPositions, AreThoseOfTheSameProblemOnly) {
-  const scene::Scene scene = truths::straight_chain({2.0}, 1.0, Vector3d::UnitX(), Vector3d(0.0, 0.0, -9.81));
+  const scene::Scene scene =
+      truths::straight_chain({2.0}, 1.0, Vector3d::UnitX(), Vector3d(0.0, 0.0, -9.81));
   const auto places = truths::known_positions(scene, pendulum_case("2"));
   ASSERT_EQ(places.size(), 1u);
   EXPECT_EQ(places[0].time_s, 0.5);
   EXPECT_EQ(places[0].com_world, Vector3d(0.5, 0.0, -0.866));
   EXPECT_TRUE(truths::known_positions(scene, pendulum_case("2.001")).empty());
-  EXPECT_TRUE(truths::known_positions(truths::straight_chain({2.0}, 1.0, Vector3d::UnitX(), Vector3d(0.0, 0.0, -9.8)), pendulum_case("2")).empty());
-  EXPECT_TRUE(truths::known_positions(truths::straight_chain({2.0}, 1.0, -Vector3d::UnitZ(), Vector3d(0.0, 0.0, -9.81)), pendulum_case("2")).empty());
+  EXPECT_TRUE(truths::known_positions(
+                  truths::straight_chain({2.0}, 1.0, Vector3d::UnitX(), Vector3d(0.0, 0.0, -9.8)),
+                  pendulum_case("2"))
+                  .empty());
+  EXPECT_TRUE(truths::known_positions(
+                  truths::straight_chain({2.0}, 1.0, -Vector3d::UnitZ(), Vector3d(0.0, 0.0, -9.81)),
+                  pendulum_case("2"))
+                  .empty());
 }
 
 TEST(KnownPositions, RaiseTheErrorFloorOfAReferenceThatMissesThem) {
   CostReference reference = engines::find_reference(tumbling(), library_laws(), {});
   const double before = reference.floor_m;
-  const Vector3d there = Vector3d(1.0, 0.0, 0.0) * 0.5;   // the top moves at 1 m/s
-  engines::check_reference(tumbling(), library_laws(), {{0.5, 0, there}, {7.0, 0, there}}, "a file", reference);   // the second is after the end of the reference
+  const Vector3d there = Vector3d(1.0, 0.0, 0.0) * 0.5;  // the top moves at 1 m/s
+  // the second is after the end of the reference
+  engines::check_reference(tumbling(), library_laws(), {{0.5, 0, there}, {7.0, 0, there}}, "a file",
+                           reference);
   EXPECT_LT(reference.floor_m, before + 1e-14);
-  engines::check_reference(tumbling(), library_laws(), {{0.5, 0, there + Vector3d(0.0, 1e-5, 0.0)}}, "a wrong file", reference);
+  engines::check_reference(tumbling(), library_laws(), {{0.5, 0, there + Vector3d(0.0, 1e-5, 0.0)}},
+                           "a wrong file", reference);
   EXPECT_NEAR(reference.floor_m, 1e-5, 1e-12);
   EXPECT_NE(reference.what.find("a wrong file"), std::string::npos) << reference.what;
 }

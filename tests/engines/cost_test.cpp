@@ -14,17 +14,20 @@
 namespace tumble::testing {
 namespace {
 
-using engines::CostResult;
-using engines::CostReference;
 using engines::CostMethod;
+using engines::CostReference;
+using engines::CostResult;
 
 /// A box that rotates for a second, not about a principal axis, a third of a turn away from Euler's
 /// result.
 scene::Scene turning() { return free_top(Vector3d(1.0, 0.5, 2.0)); }
 
 /// A short refinement of steps or tolerances.
-std::vector<CostResult> refinement_of(const scene::Scene& scene, const CostMethod& method, const CostReference& reference) {
-  return engines::run_refinement(scene, method, reference, 10.0, {}, {1.0 / 16, 1.0 / 32, 1.0 / 64, 1.0 / 128}, {1e-4, 1e-6, 1e-8, 1e-10}, [](const CostResult&) {});
+std::vector<CostResult> refinement_of(const scene::Scene& scene, const CostMethod& method,
+                                      const CostReference& reference) {
+  return engines::run_refinement(scene, method, reference, 10.0, {},
+                                 {1.0 / 16, 1.0 / 32, 1.0 / 64, 1.0 / 128},
+                                 {1e-4, 1e-6, 1e-8, 1e-10}, [](const CostResult&) {});
 }
 
 TEST(Cost, ReferenceOfAFreeTopIsTheClosedFormToRoundOff) {
@@ -46,7 +49,9 @@ TEST(Cost, RefinementsShowTheOrderOfTheirMethod) {
     // w h is 1/30 in the middle of the refinement: the next term of the error is at most a tenth of
     // the first.
     EXPECT_NEAR(fit->order, method.order, 0.15) << word;
-    EXPECT_NE(engines::read_refinement(method, results, reference, true).find("as it should"), std::string::npos) << engines::read_refinement(method, results, reference, true);
+    EXPECT_NE(engines::read_refinement(method, results, reference, true).find("as it should"),
+              std::string::npos)
+        << engines::read_refinement(method, results, reference, true);
   }
 }
 
@@ -57,11 +62,14 @@ TEST(Cost, AWrongStageIsReported) {
   method.name = "your rk4_step";
   method.step_function = [](double) -> StepFunction {
     return [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd {
-      const VectorXd k1 = f(t, y), k2 = f(t + h / 2, y + h / 2 * k1), k3 = f(t + h / 2, y + h / 2 * k1), k4 = f(t + h, y + h * k3);   // k3 starts from k1
+      // k3 starts from k1
+      const VectorXd k1 = f(t, y), k2 = f(t + h / 2, y + h / 2 * k1),
+                     k3 = f(t + h / 2, y + h / 2 * k1), k4 = f(t + h, y + h * k3);
       return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
     };
   };
-  const std::string reading = engines::read_refinement(method, refinement_of(scene, method, reference), reference, true);
+  const std::string reading =
+      engines::read_refinement(method, refinement_of(scene, method, reference), reference, true);
   EXPECT_NE(reading.find("a stage is wrong"), std::string::npos) << reading;
 }
 
@@ -69,10 +77,13 @@ TEST(Cost, AWrongLawDoesNotConverge) {
   const scene::Scene scene = turning();
   const CostReference reference = engines::find_reference(scene, library_laws(), {});
   CostMethod method = method_of("rk4");
-  method.laws.state_derivative = [right = method.laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) -> VectorXd {
-    return 0.99 * right(state, inertia, wrench);   // one per cent slower
+  method.laws.state_derivative = [right = method.laws.state_derivative](
+                                     const RigidBodyState& state, const Inertia& inertia,
+                                     const Wrench& wrench) -> VectorXd {
+    return 0.99 * right(state, inertia, wrench);  // one per cent slower
   };
-  const std::string reading = engines::read_refinement(method, refinement_of(scene, method, reference), reference, true);
+  const std::string reading =
+      engines::read_refinement(method, refinement_of(scene, method, reference), reference, true);
   EXPECT_NE(reading.find("does not converge"), std::string::npos) << reading;
 }
 
@@ -82,7 +93,8 @@ TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
   const std::vector<CostResult> results = refinement_of(scene, method_of("dopri5"), reference);
   ASSERT_EQ(results.size(), 4u);
   EXPECT_GT(results.back().evaluations, results.front().evaluations);
-  EXPECT_LT(results.back().error_m, 1e-2 * results.front().error_m);   // the tolerances span a factor of 1e6
+  // the tolerances span a factor of 1e6
+  EXPECT_LT(results.back().error_m, 1e-2 * results.front().error_m);
 }
 
 TEST(Cost, ARefinementContinuesWhereItEnded) {
@@ -93,16 +105,20 @@ TEST(Cost, ARefinementContinuesWhereItEnded) {
   std::vector<CostResult> results;
   int progress = 0;
   const auto count = [&progress](const CostResult&) { ++progress; };
-  for (int k = 0; k < 3; ++k) engines::extend_refinement(scene, method, reference, 0.0, {}, halvings, results, count);   // no time: one run each
+  // no time: one run each
+  for (int k = 0; k < 3; ++k)
+    engines::extend_refinement(scene, method, reference, 0.0, {}, halvings, results, count);
   ASSERT_EQ(results.size(), 3u);
   EXPECT_EQ(progress, 3);
-  for (std::size_t k = 1; k < results.size(); ++k) EXPECT_DOUBLE_EQ(results[k].step_s, 0.5 * results[k - 1].step_s);
+  for (std::size_t k = 1; k < results.size(); ++k)
+    EXPECT_DOUBLE_EQ(results[k].step_s, 0.5 * results[k - 1].step_s);
   EXPECT_GT(engines::next_price(results), 0.0);
   EXPECT_FALSE(engines::refinement_is_done(scene, method, reference, results, halvings));
   engines::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);
   EXPECT_TRUE(engines::refinement_is_done(scene, method, reference, results, halvings));
   const std::size_t all = results.size();
-  engines::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);   // nothing more comes of it
+  // nothing more comes of it
+  engines::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);
   EXPECT_EQ(results.size(), all);
 }
 
@@ -111,8 +127,10 @@ TEST(Cost, ARunThatTakesTooLongIsStoppedAndSaysSo) {
   const CostReference reference = engines::find_reference(scene, library_laws(), {});
   engines::CostOptions hurried;
   hurried.most_of_run_s = 0.0;
-  const CostResult result = engines::run_at_resolution(scene, method_of("rk4"), reference, 64, kUnset, hurried);
-  EXPECT_NE(result.stopped_by.find("it would take more than"), std::string::npos) << result.stopped_by;
+  const CostResult result =
+      engines::run_at_resolution(scene, method_of("rk4"), reference, 64, kUnset, hurried);
+  EXPECT_NE(result.stopped_by.find("it would take more than"), std::string::npos)
+      << result.stopped_by;
 }
 
 TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
@@ -121,7 +139,8 @@ TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
   long evaluations = 0;
   CostMethod method = method_of("dopri5");
   method.step_function = [&](double) -> StepFunction {
-    return [&](const OdeFunction& f, double t, const VectorXd& y, double) -> VectorXd {   // a method whose steps nearly never end
+    // a method whose steps nearly never end
+    return [&](const OdeFunction& f, double t, const VectorXd& y, double) -> VectorXd {
       for (int k = 0; k < 100000; ++k, ++evaluations) f(t, y);
       return y;
     };
@@ -129,7 +148,7 @@ TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
   engines::CostOptions hurried;
   hurried.most_of_run_s = 0.0;
   EXPECT_TRUE(engines::run_at_resolution(scene, method, reference, 1, 1e-6, hurried).took_too_long);
-  EXPECT_LT(evaluations, 200);   // the clock is read every 64 evaluations
+  EXPECT_LT(evaluations, 200);  // the clock is read every 64 evaluations
 }
 
 TEST(Cost, ARefinementEndsWhereARunTakesTooLongAndContinuesThereWithMoreTime) {
@@ -142,12 +161,17 @@ TEST(Cost, ARefinementEndsWhereARunTakesTooLongAndContinuesThereWithMoreTime) {
   const auto nobody = [](const CostResult&) {};
   engines::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);
   ASSERT_TRUE(results.back().took_too_long) << results.back().stopped_by;
-  EXPECT_EQ(std::count_if(results.begin(), results.end(), [](const CostResult& result) { return result.took_too_long; }), 1);   // finer ones are not tried
+  // finer ones are not tried
+  EXPECT_EQ(std::count_if(results.begin(), results.end(),
+                          [](const CostResult& result) { return result.took_too_long; }),
+            1);
   const std::size_t all = results.size();
   const double step = results.back().step_s;
-  engines::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);   // no more time: no run
+  // no more time: no run
+  engines::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);
   EXPECT_EQ(results.size(), all);
-  engines::extend_refinement(scene, method, reference, 0.0, {}, {}, results, nobody);   // one run: the same again
+  // one run: the same again
+  engines::extend_refinement(scene, method, reference, 0.0, {}, {}, results, nobody);
   ASSERT_EQ(results.size(), all);
   EXPECT_TRUE(results.back().stopped_by.empty()) << results.back().stopped_by;
   EXPECT_EQ(results.back().step_s, step);
@@ -163,17 +187,25 @@ CostResult result_of(double step_s, double error_m, double spent_s) {
 }
 
 TEST(Cost, TheExpectedCostOfTheNextRunExcludesCostsThatDoNotComeFromSteps) {
-  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 1.0)}), 2.2);   // twice the steps, and 10 % more
-  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 1.0), result_of(0.05, 0.1, 2.0)}), 2.0 + 2.2 * 1.0);
-  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 2.0), result_of(0.05, 0.1, 2.0)}), 1.2 * 2.0);
+  // twice the steps, and 10 % more
+  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 1.0)}), 2.2);
+  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 1.0), result_of(0.05, 0.1, 2.0)}),
+                   2.0 + 2.2 * 1.0);
+  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 2.0), result_of(0.05, 0.1, 2.0)}),
+                   1.2 * 2.0);
 }
 
 TEST(Cost, WhereStepsAreNotTheCostTheNextRunIsMuchFiner) {
   const scene::Scene scene = turning();
   const CostReference reference = engines::find_reference(scene, library_laws(), {});
   const double interval = reference.duration_s / static_cast<double>(reference.intervals);
-  std::vector<CostResult> same = {result_of(interval, 0.1, 1.0), result_of(interval / 2, 0.05, 1.0)}, twice = {result_of(interval, 0.1, 1.0), result_of(interval / 2, 0.05, 2.0)};
-  for (auto* results : {&same, &twice}) engines::extend_refinement(scene, method_of("rk4"), reference, 0.0, {}, {}, *results, [](const CostResult&) {});
+  std::vector<CostResult> same = {result_of(interval, 0.1, 1.0),
+                                  result_of(interval / 2, 0.05, 1.0)},
+                          twice = {result_of(interval, 0.1, 1.0),
+                                   result_of(interval / 2, 0.05, 2.0)};
+  for (auto* results : {&same, &twice})
+    engines::extend_refinement(scene, method_of("rk4"), reference, 0.0, {}, {}, *results,
+                               [](const CostResult&) {});
   EXPECT_DOUBLE_EQ(same.back().step_s, interval / 16);
   EXPECT_DOUBLE_EQ(twice.back().step_s, interval / 4);
 }
@@ -181,7 +213,10 @@ TEST(Cost, WhereStepsAreNotTheCostTheNextRunIsMuchFiner) {
 TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
   const scene::Scene scene = turning();
   const CostReference reference = engines::find_reference(scene, library_laws(), {});
-  const CostResult coarse = engines::run_at_resolution(scene, method_of("euler"), reference, 2, kUnset, {}), fine = engines::run_at_resolution(scene, method_of("rk4"), reference, 8, kUnset, {});
+  const CostResult coarse = engines::run_at_resolution(scene, method_of("euler"), reference, 2,
+                                                       kUnset, {}),
+                   fine = engines::run_at_resolution(scene, method_of("rk4"), reference, 8, kUnset,
+                                                     {});
   ASSERT_EQ(coarse.energy_errors.size(), reference.samples.size());
   EXPECT_GT(coarse.energy_errors.back(), 1e-4);
   EXPECT_LT(fine.energy_errors.back(), 1e-6);

@@ -1,7 +1,9 @@
-// A ball that slides or rolls on a ball follows its curve, and leaves it where the normal force reaches zero.
+// A ball that slides or rolls on a ball follows its curve, and leaves it where the normal force
+// reaches zero.
 //
-// A point of mass m slides from rest at cos c0 without friction: v^2 = 2 g R (c0 - c), and N = m (g c - v^2 / R) = 0 at c = 2/3 c0.
-// A ball that rolls has 7/10 m v^2: v^2 = 10/7 g R (c0 - c), and leaves at c = 10/17 c0. R is the distance of the centres.
+// A point of mass m slides from rest at cos c0 without friction: v^2 = 2 g R (c0 - c), and N = m (g
+// c - v^2 / R) = 0 at c = 2/3 c0. A ball that rolls has 7/10 m v^2: v^2 = 10/7 g R (c0 - c), and
+// leaves at c = 10/17 c0. R is the distance of the centres.
 #include <algorithm>
 #include <cmath>
 
@@ -16,19 +18,22 @@ namespace {
 
 struct Dome {
   double radius = 1.0, ball = 0.05, friction = 0.0;
-  double start_cosine = 0.99862953475457387;   // 3 degrees off the top
+  double start_cosine = 0.99862953475457387;  // 3 degrees off the top
 };
 
 Trajectory run_dome(const Dome& dome, double step_s, const std::string& engine) {
   static const Laws laws = reference_laws();
-  const double R = dome.radius + dome.ball, sine = std::sqrt(1 - dome.start_cosine * dome.start_cosine);
+  const double R = dome.radius + dome.ball,
+               sine = std::sqrt(1 - dome.start_cosine * dome.start_cosine);
   scene::BodySpec below = ball("dome", dome.radius, 1.0, Vector3d::Zero(), Vector3d::Zero());
   below.mass_kg.reset();
   below.immovable = true;
-  scene::BodySpec rider = ball("ball", dome.ball, 1.0, R * Vector3d(sine, 0, dome.start_cosine), Vector3d::Zero());
+  scene::BodySpec rider =
+      ball("ball", dome.ball, 1.0, R * Vector3d(sine, 0, dome.start_cosine), Vector3d::Zero());
   rider.restitution = 0.0;
   below.friction = rider.friction = dome.friction;
-  scene::Scene scene = scene_of({below, rider}, 1.45 * std::sqrt(R / 1.05) * (dome.friction > 0 ? 1.2 : 1.0), kEarth);
+  scene::Scene scene = scene_of(
+      {below, rider}, 1.45 * std::sqrt(R / 1.05) * (dome.friction > 0 ? 1.2 : 1.0), kEarth);
   scene.contact = scene::ContactSpec{};
   scene.step_s = step_s;
   engines::RunOptions options;
@@ -38,22 +43,28 @@ Trajectory run_dome(const Dome& dome, double step_s, const std::string& engine) 
 }
 
 int collisions_of(const Trajectory& run) {
-  return static_cast<int>(std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kCollision; }));
+  return static_cast<int>(
+      std::count_if(run.events.begin(), run.events.end(),
+                    [](const Event& event) { return event.kind == EventKind::kCollision; }));
 }
 
 /// Of the normal at the instant at which the contact ends.
 double cosine_where_it_leaves(const Trajectory& run) {
   for (const Event& event : run.events)
-    if (event.kind == EventKind::kBreak) return event.normal_b_to_a_world.z() * (event.body_a == 1 ? 1.0 : -1.0);
+    if (event.kind == EventKind::kBreak)
+      return event.normal_b_to_a_world.z() * (event.body_a == 1 ? 1.0 : -1.0);
   return kUnset;
 }
 
 /// |v|^2 / 2 + g z is kept by what only pushes at right angles, or rolls.
 double energy_change(const Trajectory& run) {
-  const auto energy = [](const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; };
+  const auto energy = [](const Frame& frame) {
+    return frame.kinetic_energy + frame.potential_energy;
+  };
   double most = 0.0;
-  for (const Frame& frame : run.frames) most = std::max(most, std::abs(energy(frame) - energy(run.frames.front())));
-  return most / 9.81;   // of m g times a metre
+  for (const Frame& frame : run.frames)
+    most = std::max(most, std::abs(energy(frame) - energy(run.frames.front())));
+  return most / 9.81;  // of m g times a metre
 }
 
 TEST(Dome, ABallThatSlidesLeavesWhereTheForceEndsAndStrikesNothingOnItsWay) {
@@ -65,13 +76,17 @@ TEST(Dome, ABallThatSlidesLeavesWhereTheForceEndsAndStrikesNothingOnItsWay) {
       EXPECT_EQ(run.stopped_by, "") << engine;
       EXPECT_EQ(collisions_of(run), 0) << engine << " at " << step;
       const double error = std::abs(cosine_where_it_leaves(run) - truth);
-      // The step in which the force ends still has some, and one or two pass until the gap, which grows as t^3, shows: the angle goes by
-      // v h / R = 2.5 rad/s h in each, its cosine by 0.75 of that.
+      // The step in which the force ends still has some, and one or two pass until the gap, which
+      // grows as t^3, shows: the angle goes by v h / R = 2.5 rad/s h in each, its cosine by 0.75 of
+      // that.
       EXPECT_LT(error, 5.0 * step) << engine << " at " << step;
-      if (!std::isnan(before)) EXPECT_LT(error, 0.6 * before) << engine << " at " << step << ": first order at least";
+      if (!std::isnan(before))
+        EXPECT_LT(error, 0.6 * before) << engine << " at " << step << ": first order at least";
       before = error;
       EXPECT_LT(energy_change(run), 2.0 * step * step) << engine << " at " << step;
-      if (engine == "rd")   // which takes back what the path between the ends of steps dips; frames of the others within a step do not yet
+      // which takes back what the path between the ends of steps dips; frames of the others within
+      // a step do not yet
+      if (engine == "rd")
         for (const Frame& frame : run.frames) ASSERT_GE(frame.smallest_gap, 0.0) << engine;
     }
   }
@@ -92,7 +107,8 @@ TEST(Dome, SizesDoNotMatter) {
     for (const double part : {0.01, 0.3, 2.0}) {
       const Trajectory run = run_dome({size, part * size, 0.0}, std::sqrt(size) / 480, "rd");
       EXPECT_EQ(collisions_of(run), 0) << size << ", " << part;
-      EXPECT_NEAR(cosine_where_it_leaves(run), 2.0 / 3.0 * 0.99862953475457387, 0.02) << size << ", " << part;
+      EXPECT_NEAR(cosine_where_it_leaves(run), 2.0 / 3.0 * 0.99862953475457387, 0.02)
+          << size << ", " << part;
     }
 }
 

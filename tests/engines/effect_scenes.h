@@ -34,7 +34,8 @@ inline const std::map<std::string, std::vector<std::string>> kCountersOf = {
     {"sleep", {"bodies_put_to_sleep", "body_steps_asleep"}},
 };
 
-inline Trajectory run_with(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options) {
+inline Trajectory run_with(const scene::Scene& scene, const Laws& laws,
+                           const engines::RunOptions& options) {
   TrajectoryRecorder recorder;
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
@@ -44,7 +45,8 @@ using AddsEffect = void (*)(scene::Scene&);
 
 /// Two bodies that fly; each effect adds what calls for it.
 inline scene::Scene bare() {
-  auto a = ball("a", 0.1, 1.0, {0, 0, 1}, {0.1, 0, 0}), b = box("b", {0.1, 0.1, 0.1}, 1.0, {1, 0, 1}, Vector3d::Zero());
+  auto a = ball("a", 0.1, 1.0, {0, 0, 1}, {0.1, 0, 0}),
+       b = box("b", {0.1, 0.1, 0.1}, 1.0, {1, 0, 1}, Vector3d::Zero());
   scene::Scene scene = scene_of({a, b}, 0.5);
   scene.rest_speed_m_s = 1e-3;
   return scene;
@@ -52,18 +54,27 @@ inline scene::Scene bare() {
 
 inline const std::map<std::string, AddsEffect> kEffects = {
     {"gravity", [](scene::Scene& s) { effects::set_gravity(s, Vector3d(0, 0, -1)); }},
-    {"spring", [](scene::Scene& s) { s.effects.of<effects::SpringSpec>().push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
+    {"spring",
+     [](scene::Scene& s) {
+       s.effects.of<effects::SpringSpec>().push_back(
+           {"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0});
+     }},
     {"rod",
      [](scene::Scene& s) {
-       s.effects.of<effects::RodSpec>().push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
+       s.effects.of<effects::RodSpec>().push_back(
+           {"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
        s.stabilisation.emplace();
      }},
     {"joint",
      [](scene::Scene& s) {
-       s.effects.of<effects::JointSpec>().push_back({"j", effects::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
+       s.effects.of<effects::JointSpec>().push_back(
+           {"j", effects::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
        s.stabilisation.emplace();
      }},
-    {"drag", [](scene::Scene& s) { s.effects.of<effects::DragSpec>().push_back({"a", 0.1, 0.1}); }},
+    {"drag",
+     [](scene::Scene& s) {
+       s.effects.of<effects::DragSpec>().push_back({"a", 0.1, 0.1});
+     }},
     {"motor",
      [](scene::Scene& s) {
        kEffects.at("joint")(s);
@@ -89,7 +100,10 @@ inline const std::map<std::string, AddsEffect> kEffects = {
        kEffects.at("contact")(s);
        for (scene::BodySpec& body : s.bodies) body.friction = 0.5;
      }},
-    {"point force", [](scene::Scene& s) { s.effects.of<effects::PointForceSpec>().push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
+    {"point force",
+     [](scene::Scene& s) {
+       s.effects.of<effects::PointForceSpec>().push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1});
+     }},
     {"collision",
      [](scene::Scene& s) {
        s.bodies[0].velocity_m_s = {5, 0, 0};

@@ -15,14 +15,16 @@ namespace {
 
 const char* const kEventEngines[] = {"ordered", "ca", "tw"};
 
-// Rows along x in which every other ball rests and is hit from both sides at the same instant; numbers are exact in binary.
+// Rows along x in which every other ball rests and is hit from both sides at the same instant;
+// numbers are exact in binary.
 scene::Scene lattice(int nx, int ny, int nz, double duration) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < nx; ++i)
     for (int j = 0; j < ny; ++j)
       for (int k = 0; k < nz; ++k) {
         const double velocity = i % 4 == 0 ? 0.5 : i % 4 == 2 ? -0.5 : 0.0;
-        bodies.push_back(ball("ball", 0.0625, 1.0, {0.25 * i, 0.25 * j, 0.25 * k}, {velocity, 0, 0}));
+        bodies.push_back(
+            ball("ball", 0.0625, 1.0, {0.25 * i, 0.25 * j, 0.25 * k}, {velocity, 0, 0}));
         bodies.back().name += std::to_string(bodies.size());
       }
   return scene_of(std::move(bodies), duration);
@@ -31,13 +33,17 @@ scene::Scene lattice(int nx, int ny, int nz, double duration) {
 TEST(Ties, OfALatticeThatCollidesAtOnceEndTheSameInEveryOrder) {
   const scene::Scene scene = lattice(10, 10, 10, 0.8);
   const Trajectory reference = run_by("ordered", scene, {}, 5.0);
-  const auto at_once = std::count_if(reference.events.begin(), reference.events.end(), [&](const Event& event) { return event.time == reference.events.front().time; });
+  const auto at_once = std::count_if(
+      reference.events.begin(), reference.events.end(),
+      [&](const Event& event) { return event.time == reference.events.front().time; });
   ASSERT_GE(at_once, 700);
   ASSERT_EQ(difference(reference, run_by("ca", scene, {}, 5.0)), "");
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const Trajectory run = run_by("tw", scene, {seed, true, seed % 2 == 0 ? 0.1 : 0.0, 0, 0.0}, 5.0);
+    const Trajectory run =
+        run_by("tw", scene, {seed, true, seed % 2 == 0 ? 0.1 : 0.0, 0, 0.0}, 5.0);
     ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
-    EXPECT_LT((run.frames.back().momentum_world - run.frames.front().momentum_world).norm(), 1e-12);   // N s; a thousand balls of 1 kg, 0.5 m/s
+    // N s; a thousand balls of 1 kg, 0.5 m/s
+    EXPECT_LT((run.frames.back().momentum_world - run.frames.front().momentum_world).norm(), 1e-12);
   }
 }
 
@@ -52,7 +58,7 @@ TEST(Ties, OfImpactsAlongThreeAxesEndTheSameInEveryOrder) {
     }
   const Trajectory reference = run_by("ordered", scene, {}, 5.0);
   ASSERT_EQ(reference.stopped_by, "");
-  std::vector<int> blows(scene.bodies.size());   // at the first instant, by body
+  std::vector<int> blows(scene.bodies.size());  // at the first instant, by body
   for (const Event& event : reference.events)
     if (event.time == reference.events.front().time)
       for (const int body : {event.body_a, event.body_b}) ++blows[static_cast<std::size_t>(body)];
@@ -66,21 +72,26 @@ TEST(Ties, OfImpactsAlongThreeAxesEndTheSameInEveryOrder) {
     options.frame_rate_hz = 5.0;
     const Trajectory run = run_as_told(std::move(options), scene, test_laws());
     EXPECT_EQ(difference(reference, run), "") << "seed " << seed;
-    EXPECT_LT((run.frames.back().momentum_world - run.frames.front().momentum_world).norm(), 1e-12);   // N s; 216 balls of 1 kg, 0.9 m/s
+    // N s; 216 balls of 1 kg, 0.9 m/s
+    EXPECT_LT((run.frames.back().momentum_world - run.frames.front().momentum_world).norm(), 1e-12);
   }
 }
 
 TEST(Cradle, WithGapsPassesTheImpactOnInOrder) {
   for (const int n : {5, 12, 50}) {
     std::vector<scene::BodySpec> bodies;
-    for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {i * (0.2 + 1e-9), 0, 0}, Vector3d::Zero()));
+    for (int i = 0; i < n; ++i)
+      bodies.push_back(
+          ball("ball" + std::to_string(i), 0.1, 1.0, {i * (0.2 + 1e-9), 0, 0}, Vector3d::Zero()));
     bodies[0].position_m.x() = -1.0;
     bodies[0].velocity_m_s.x() = 2.0;
     for (const char* engine : kEventEngines) {
       const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
-      ASSERT_EQ(run.events.size(), static_cast<std::size_t>(n - 1)) << engine << ", " << n << " balls";
+      ASSERT_EQ(run.events.size(), static_cast<std::size_t>(n - 1))
+          << engine << ", " << n << " balls";
       for (int i = 0; i + 1 < n; ++i) EXPECT_EQ(run.events[static_cast<std::size_t>(i)].body_a, i);
-      EXPECT_NEAR(run.frames.back().poses.back().velocity_world.x(), 2.0, 1e-9);   // m/s: 50 roundings are 1e-14
+      // m/s: 50 roundings are 1e-14
+      EXPECT_NEAR(run.frames.back().poses.back().velocity_world.x(), 2.0, 1e-9);
     }
   }
 }
@@ -92,7 +103,9 @@ scene::Scene touching_row(int n, bool from_the_end) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) {
     const int place = from_the_end ? n - 1 - i : i;
-    bodies.push_back(ball("ball" + std::to_string(i), 0.125, 1.0, {place == 0 ? -1.0 : 0.25 * place, 0, 0}, {place == 0 ? 2.0 : 0.0, 0, 0}));
+    bodies.push_back(ball("ball" + std::to_string(i), 0.125, 1.0,
+                          {place == 0 ? -1.0 : 0.25 * place, 0, 0},
+                          {place == 0 ? 2.0 : 0.0, 0, 0}));
   }
   return scene_of(std::move(bodies), 1.0);
 }
@@ -104,7 +117,10 @@ void expect_the_blow_to_pass(const Trajectory& run, int n, bool from_the_end) {
     EXPECT_EQ(event.time, run.events.front().time) << "blow " << k;
     EXPECT_EQ(std::min(event.body_a, event.body_b), from_the_end ? n - 2 - k : k) << "blow " << k;
   }
-  for (int i = 0; i < n; ++i) EXPECT_EQ(run.frames.back().poses[static_cast<std::size_t>(i)].velocity_world.x(), i == (from_the_end ? 0 : n - 1) ? 2.0 : 0.0) << "ball " << i;
+  for (int i = 0; i < n; ++i)
+    EXPECT_EQ(run.frames.back().poses[static_cast<std::size_t>(i)].velocity_world.x(),
+              i == (from_the_end ? 0 : n - 1) ? 2.0 : 0.0)
+        << "ball " << i;
 }
 
 TEST(Cradle, ThatTouchesPassesTheImpactOnInOneInstantByMicrosteps) {
@@ -121,21 +137,24 @@ TEST(Cradle, ThatTouchesPassesTheImpactOnInOneInstantByMicrosteps) {
         options.engine = "tw";
         options.threads = seed % 2 == 0 ? 2 : 1;
         options.faults = {seed, true, 0.5, 0, 0.0};
-        expect_the_blow_to_pass(run_as_told(std::move(options), scene, test_laws()), n, from_the_end);
+        expect_the_blow_to_pass(run_as_told(std::move(options), scene, test_laws()), n,
+                                from_the_end);
       }
     }
 }
 
 // Bounces of a ball with e = 0.5 from 1 m end at sqrt(2 h / g) (1 + e) / (1 - e) = 1.3546 s.
 TEST(Zeno, ComesToRestInFiniteTimeAndFewEvents) {
-  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}),
+                                      ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
   bodies[1].restitution = 0.5;
   for (const char* engine : kEventEngines) {
     const Trajectory run = run_by(engine, scene_of(bodies, 3.0, Vector3d(0, 0, -9.81)));
     EXPECT_EQ(run.stopped_by, "") << engine;
     ASSERT_LT(run.events.size(), 60U) << engine;
     ASSERT_EQ(run.events.back().kind, EventKind::kRest) << engine;
-    EXPECT_NEAR(run.events.back().time, std::sqrt(2.0 / 9.81) * 3.0, 1e-3) << engine;   // s: the bounces below the restitution threshold of 1e-3 m/s would take another 4e-4
+    // s: the bounces below the restitution threshold of 1e-3 m/s would take another 4e-4
+    EXPECT_NEAR(run.events.back().time, std::sqrt(2.0 / 9.81) * 3.0, 1e-3) << engine;
     EXPECT_EQ(run.frames.back().poses[1].velocity_world.norm(), 0.0);
     EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1, 1e-12);
   }
@@ -144,10 +163,14 @@ TEST(Zeno, ComesToRestInFiniteTimeAndFewEvents) {
 // Other bodies move on while it comes to rest: global virtual time passes the instant at which its
 // bounces accumulate, and the run ends.
 TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
-  const double gathers = std::sqrt(2.0 / 9.81) * 3.0;   // s: 1.3546
-  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
+  const double gathers = std::sqrt(2.0 / 9.81) * 3.0;  // s: 1.3546
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}),
+                                      ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
   bodies[1].restitution = 0.5;
-  for (int i = 0; i < 6; ++i) bodies.push_back(ball("other" + std::to_string(i), 0.1, 1.0, {2.0 + 0.5 * (i % 3), 0.5 * (i / 3), 0.5 + 0.1 * i}, {i % 3 == 0 ? 0.3 : -0.3, 0, 0}));
+  for (int i = 0; i < 6; ++i)
+    bodies.push_back(ball("other" + std::to_string(i), 0.1, 1.0,
+                          {2.0 + 0.5 * (i % 3), 0.5 * (i / 3), 0.5 + 0.1 * i},
+                          {i % 3 == 0 ? 0.3 : -0.3, 0, 0}));
   const scene::Scene scene = scene_of(bodies, 3.0, Vector3d(0, 0, -9.81));
   const Trajectory reference = run_by("ordered", scene);
   for (const int threads : {1, 2}) {
@@ -163,10 +186,16 @@ TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
     const std::vector<Event>& events = recorder.trajectory().events;
     const auto of_ball = [](const Event& event) { return event.body_a == 1 || event.body_b == 1; };
     EXPECT_LT(std::count_if(events.begin(), events.end(), of_ball), 60) << threads << " threads";
-    const auto rest = std::find_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == EventKind::kRest && of_ball(event); });
+    const auto rest = std::find_if(events.begin(), events.end(), [&](const Event& event) {
+      return event.kind == EventKind::kRest && of_ball(event);
+    });
     ASSERT_NE(rest, events.end()) << threads << " threads";
-    EXPECT_NEAR(rest->time, gathers, 1e-3) << threads << " threads";   // s: as above
-    EXPECT_GT(std::count_if(events.begin(), events.end(), [&](const Event& event) { return !of_ball(event) && event.time > gathers; }), 10) << threads << " threads";
+    EXPECT_NEAR(rest->time, gathers, 1e-3) << threads << " threads";  // s: as above
+    EXPECT_GT(
+        std::count_if(events.begin(), events.end(),
+                      [&](const Event& event) { return !of_ball(event) && event.time > gathers; }),
+        10)
+        << threads << " threads";
     EXPECT_LT(times.moves.front().global_virtual_time_s, gathers) << threads << " threads";
     EXPECT_GT(times.moves.back().global_virtual_time_s, 2.0 * gathers) << threads << " threads";
   }
@@ -174,10 +203,13 @@ TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
 
 TEST(ZeroLookAhead, IsOrderedByMicrostepAndAnEndlessChainIsReported) {
   // A ball that fills the space between two walls bounces between them without time passing.
-  std::vector<scene::BodySpec> bodies{plane("left", {-0.125, 0, 0}, {1, 0, 0}), plane("right", {0.125, 0, 0}, {-1, 0, 0}), ball("ball", 0.125, 1.0, {0, 0, 0}, {1, 0, 0})};
+  std::vector<scene::BodySpec> bodies{plane("left", {-0.125, 0, 0}, {1, 0, 0}),
+                                      plane("right", {0.125, 0, 0}, {-1, 0, 0}),
+                                      ball("ball", 0.125, 1.0, {0, 0, 0}, {1, 0, 0})};
   for (const char* engine : kEventEngines) {
     const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
-    EXPECT_NE(run.stopped_by.find("time stands still"), std::string::npos) << engine << ": " << run.stopped_by;
+    EXPECT_NE(run.stopped_by.find("time stands still"), std::string::npos)
+        << engine << ": " << run.stopped_by;
     EXPECT_NE(run.stopped_by.find("'ball'"), std::string::npos) << engine << ": " << run.stopped_by;
   }
 }
@@ -230,7 +262,8 @@ TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
       int back = 0, fallen = 0;
       for (std::size_t k = 1; k < times.moves.size(); ++k) {
         back += times.moves[k].to_s < times.moves[k].from_s ? 1 : 0;
-        fallen += times.moves[k].global_virtual_time_s < times.moves[k - 1].global_virtual_time_s ? 1 : 0;
+        fallen +=
+            times.moves[k].global_virtual_time_s < times.moves[k - 1].global_virtual_time_s ? 1 : 0;
       }
       EXPECT_GT(back, 20) << threads << " threads, seed " << seed;
       EXPECT_EQ(fallen, 0) << threads << " threads, seed " << seed;
@@ -246,8 +279,10 @@ TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
   for (const Frame& frame : run.frames) ASSERT_NEAR(frame.kinetic_energy, energy, 1e-10 * energy);
   for (const Frame& frame : run.frames) {
     double smallest = 1.0;
-    for (std::size_t i = 6; i < frame.poses.size(); ++i)   // after the six walls
-      for (std::size_t j = i + 1; j < frame.poses.size(); ++j) smallest = std::min(smallest, (frame.poses[i].com_world - frame.poses[j].com_world).norm() - 0.2);
+    for (std::size_t i = 6; i < frame.poses.size(); ++i)  // after the six walls
+      for (std::size_t j = i + 1; j < frame.poses.size(); ++j)
+        smallest =
+            std::min(smallest, (frame.poses[i].com_world - frame.poses[j].com_world).norm() - 0.2);
     EXPECT_GE(smallest, 0.0);
     EXPECT_LE(frame.smallest_gap, smallest);
     EXPECT_GE(frame.smallest_gap, 0.0);
@@ -261,10 +296,13 @@ TEST(Engines, AgreeOverTheFirstFiveCollisionsOfEachBody) {
   std::vector<std::vector<double>> expected(by_events.bodies.size()), found = expected;
   for (const auto& [run, times] : {std::pair{&by_events, &expected}, std::pair{&by_steps, &found}})
     for (const Event& event : run->events)
-      for (const int body : {event.body_a, event.body_b}) (*times)[static_cast<std::size_t>(body)].push_back(event.time);
+      for (const int body : {event.body_a, event.body_b})
+        (*times)[static_cast<std::size_t>(body)].push_back(event.time);
   std::size_t compared = 0;
   for (std::size_t i = 6; i < expected.size(); ++i)
-    for (std::size_t k = 0; k < std::min({expected[i].size(), found[i].size(), std::size_t{5}}); ++k, ++compared) EXPECT_NEAR(expected[i][k], found[i][k], 1e-6) << "collision " << k << " of body " << i;
+    for (std::size_t k = 0; k < std::min({expected[i].size(), found[i].size(), std::size_t{5}});
+         ++k, ++compared)
+      EXPECT_NEAR(expected[i][k], found[i][k], 1e-6) << "collision " << k << " of body " << i;
   EXPECT_GT(compared, 200U);
 }
 
@@ -280,16 +318,20 @@ TEST(Engines, AgreeOnTumblingSolidsWhereRetroactiveDetectionGoesInClosedFormToo)
   const Trajectory& found = recorder.trajectory();
   ASSERT_GE(expected.events.size(), 60U);
   for (std::size_t k = 0; k < 60; ++k) {
-    EXPECT_NEAR(found.events[k].time, expected.events[k].time, 1e-9) << "event " << k;   // s: roundings, grown tenfold a collision at most
+    // s: roundings, grown tenfold a collision at most
+    EXPECT_NEAR(found.events[k].time, expected.events[k].time, 1e-9) << "event " << k;
     EXPECT_EQ(found.events[k].body_a, expected.events[k].body_a) << "event " << k;
     EXPECT_EQ(found.events[k].body_b, expected.events[k].body_b) << "event " << k;
   }
 }
 
 TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
-  std::vector<scene::BodySpec> bodies{plane("shaken", {0, 0, 0}, {0, 0, 1}), plane("still", {0, 0, -3}, {0, 0, 1})};
+  std::vector<scene::BodySpec> bodies{plane("shaken", {0, 0, 0}, {0, 0, 1}),
+                                      plane("still", {0, 0, -3}, {0, 0, 1})};
   bodies[0].motion = scene::PrescribedMotion{Vector3d::Zero(), Vector3d(0, 0, 0.02), 20.0};
-  for (int i = 0; i < 4; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.5 * i, 0, 0.4 + 0.1 * i}, Vector3d::Zero()));
+  for (int i = 0; i < 4; ++i)
+    bodies.push_back(
+        ball("ball" + std::to_string(i), 0.1, 1.0, {0.5 * i, 0, 0.4 + 0.1 * i}, Vector3d::Zero()));
   expect_the_references_trace(scene_of(bodies, 3.0, Vector3d(0, 0, -9.81)), 10);
 }
 
@@ -298,7 +340,9 @@ TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
 // A ball between two walls at 1.8 m/s with 1.8 m for its centre: a bounce each second, the first at
 // 0.5 s. In 10 s that is D = 10, and w h = 2 D h / T.
 TEST(DiscontinuitiesPerBodyAndStep, OfABallBetweenTwoWallsAreTwoForEachBounceInEveryEngine) {
-  const std::vector<scene::BodySpec> bodies{plane("left", {-1, 0, 0}, {1, 0, 0}), plane("right", {1, 0, 0}, {-1, 0, 0}), ball("ball", 0.1, 1.0, {0, 0, 0}, {1.8, 0, 0})};
+  const std::vector<scene::BodySpec> bodies{plane("left", {-1, 0, 0}, {1, 0, 0}),
+                                            plane("right", {1, 0, 0}, {-1, 0, 0}),
+                                            ball("ball", 0.1, 1.0, {0, 0, 0}, {1.8, 0, 0})};
   for (const double step : {1.0 / 30.0, 1.0 / 240.0}) {
     scene::Scene scene = scene_of(bodies, 10.0);
     scene.step_s = step;
@@ -314,28 +358,35 @@ TEST(DiscontinuitiesPerBodyAndStep, OfManyBallsAreTheSameInEveryEngine) {
   const scene::Scene scene = sized("gas", 60, 1.0);
   const Trajectory reference = run_by("ordered", scene);
   const double w_h = engines::discontinuities_a_body_and_step(reference);
-  EXPECT_DOUBLE_EQ(w_h, 2.0 * static_cast<double>(reference.events.size()) * scene.step_s / 60.0);   // only impacts, in one second
-  for (const char* engine : {"rd", "ca", "tw"}) EXPECT_DOUBLE_EQ(engines::discontinuities_a_body_and_step(run_by(engine, scene)), w_h) << engine;
+  // only impacts, in one second
+  EXPECT_DOUBLE_EQ(w_h, 2.0 * static_cast<double>(reference.events.size()) * scene.step_s / 60.0);
+  for (const char* engine : {"rd", "ca", "tw"})
+    EXPECT_DOUBLE_EQ(engines::discontinuities_a_body_and_step(run_by(engine, scene)), w_h)
+        << engine;
 }
 
 TEST(DiscontinuitiesPerBodyAndStep, CountAnImpactOnceForAnyNumberOfImpulsesAndNoContactOfTheStart) {
-  const auto event = [](double time, EventKind kind, int a, int b) { return Event{time, kind, a, b, Vector3d::Zero(), Vector3d::UnitZ(), 0.0, 0.0}; };
+  const auto event = [](double time, EventKind kind, int a, int b) {
+    return Event{time, kind, a, b, Vector3d::Zero(), Vector3d::UnitZ(), 0.0, 0.0};
+  };
   TrajectoryRecorder recorder;
   engines::DiscontinuityCount count(recorder);
   count.begin({}, {});
-  count.event(event(0.0, EventKind::kContact, 0, 1));     // in contact from the start
-  count.event(event(0.5, EventKind::kCollision, 0, 2));   // one impact on a pair of touching bodies, passed back and forth
+  count.event(event(0.0, EventKind::kContact, 0, 1));  // in contact from the start
+  // one impact on a pair of touching bodies, passed back and forth
+  count.event(event(0.5, EventKind::kCollision, 0, 2));
   count.event(event(0.5, EventKind::kCollision, 2, 3));
   count.event(event(0.5, EventKind::kCollision, 0, 2));
   count.event(event(0.5, EventKind::kCollision, 2, 3));
-  count.event(event(0.5, EventKind::kContact, 0, 2));     // no rebound: the same discontinuity
-  count.event(event(0.0, EventKind::kSlide, 0, 1));       // slides from the start
-  count.event(event(0.75, EventKind::kStick, 0, 2));      // counted separately: no engine ends a step of all bodies for it
+  count.event(event(0.5, EventKind::kContact, 0, 2));  // no rebound: the same discontinuity
+  count.event(event(0.0, EventKind::kSlide, 0, 1));    // slides from the start
+  // counted separately: no engine ends a step of all bodies for it
+  count.event(event(0.75, EventKind::kStick, 0, 2));
   count.event(event(0.75, EventKind::kBreak, 0, 2));
-  count.event(event(0.8, EventKind::kCollision, 0, 2));   // again, later
+  count.event(event(0.8, EventKind::kCollision, 0, 2));  // again, later
   count.event(event(0.9, EventKind::kSleep, 0, -1));
   count.end({}, "");
-  EXPECT_EQ(recorder.trajectory().events.size(), 11U);    // all are passed on
+  EXPECT_EQ(recorder.trajectory().events.size(), 11U);  // all are passed on
   EXPECT_EQ(recorder.trajectory().counters.counts.at("discontinuities"), 4U);
   EXPECT_EQ(recorder.trajectory().counters.counts.at("sliding_changes"), 1U);
 }
@@ -343,8 +394,13 @@ TEST(DiscontinuitiesPerBodyAndStep, CountAnImpactOnceForAnyNumberOfImpulsesAndNo
 // A point has no size from which a grid could follow; only the floor can be hit.
 TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
   for (const char* engine : kEventEngines) {
-    EXPECT_EQ(run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1})}, 0.5)).frames.size(), 31U) << engine;
-    const Trajectory run = run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("point", 0.0, 1.0, {0, 0, 1}, Vector3d::Zero())}, 1.0, Vector3d(0, 0, -9.81)));
+    EXPECT_EQ(run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1})}, 0.5)).frames.size(),
+              31U)
+        << engine;
+    const Trajectory run =
+        run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}),
+                                 ball("point", 0.0, 1.0, {0, 0, 1}, Vector3d::Zero())},
+                                1.0, Vector3d(0, 0, -9.81)));
     ASSERT_EQ(run.events.size(), 1U) << engine;
     EXPECT_NEAR(run.events[0].time, std::sqrt(2.0 / 9.81), 1e-15) << engine;
   }
@@ -353,12 +409,16 @@ TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
 // Islands with their own local virtual times have no common step at whose end they could fall
 // asleep.
 TEST(Engines, RefuseSleepAndSaySo) {
-  scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()), plane("floor", {0, 0, 0}, {0, 0, 1})}, 1.0);
+  scene::Scene scene = scene_of(
+      {ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()), plane("floor", {0, 0, 0}, {0, 0, 1})},
+      1.0);
   scene.contact = scene::ContactSpec{};
   scene.contact->sleep = true;
-  Laws laws = test_laws();   // sleep is refused before a law of contacts is needed
+  Laws laws = test_laws();  // sleep is refused before a law of contacts is needed
   laws.ends_in_contact = [](double, double, double) { return true; };
-  laws.contact_forces = [](const MatrixXd&, const VectorXd& b) { return VectorXd(VectorXd::Zero(b.size())); };
+  laws.contact_forces = [](const MatrixXd&, const VectorXd& b) {
+    return VectorXd(VectorXd::Zero(b.size()));
+  };
   for (const char* engine : kEventEngines) {
     try {
       run_by(engine, scene, {}, 60.0, laws);

@@ -20,8 +20,10 @@ inline scene::Scene pendula_and_balls(int pendula, double duration) {
   for (int i = 0; i < pendula; ++i) {
     const std::string bob = "bob" + std::to_string(i);
     bodies.push_back(ball(bob, 0.1, 1.0, {0.45 * i, 0, 0}, {0.8 - 0.2 * i, 0, 0}));
-    scene.effects.of<effects::RodSpec>().push_back({"rod" + std::to_string(i), {"", {0.45 * i, 0, 1}}, {bob, Vector3d::Zero()}, 1.0});
-    bodies.push_back(ball("ball" + std::to_string(i), 0.08, 0.5, {0.45 * i + 0.05, 0.35, 0.02 * i + 0.3}, {0.0, -1.0, 0.6}));
+    scene.effects.of<effects::RodSpec>().push_back(
+        {"rod" + std::to_string(i), {"", {0.45 * i, 0, 1}}, {bob, Vector3d::Zero()}, 1.0});
+    bodies.push_back(ball("ball" + std::to_string(i), 0.08, 0.5,
+                          {0.45 * i + 0.05, 0.35, 0.02 * i + 0.3}, {0.0, -1.0, 0.6}));
   }
   bodies.push_back(plane("wall", {0, -0.8, 0}, {0, 1, 0}));
   bodies.push_back(plane("floor", {0, 0, -0.4}, {0, 0, 1}));
@@ -32,14 +34,17 @@ inline scene::Scene pendula_and_balls(int pendula, double duration) {
   effects::set_gravity(scene, kEarth);
   scene.stabilisation = scene::StabilisationSpec{};
   scene.effects.of<effects::DragSpec>().push_back({"bob0", 0.2, 0.0});
-  scene.effects.of<effects::PointForceSpec>().push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
+  scene.effects.of<effects::PointForceSpec>().push_back(
+      {"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
   return scene;
 }
 
 /// A tower of three boxes and a ball shot at it; restitution 0 within the tower.
 inline scene::Scene tower_and_projectile(double shot_m_s) {
   std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1})};
-  for (int i = 0; i < 3; ++i) bodies.push_back(box("block" + std::to_string(i), {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1 + 0.23 * i + 0.02}, Vector3d::Zero()));
+  for (int i = 0; i < 3; ++i)
+    bodies.push_back(box("block" + std::to_string(i), {0.1, 0.1, 0.1}, 1.0,
+                         {0, 0, 0.1 + 0.23 * i + 0.02}, Vector3d::Zero()));
   bodies.push_back(ball("shot", 0.05, 0.4, {-2, 0, 0.33}, {shot_m_s, 0, 0.9}));
   for (scene::BodySpec& body : bodies) {
     body.restitution = 0.0;

@@ -12,14 +12,17 @@
 namespace tumble::testing {
 
 /// @param options  of the run; its timewarp engine may be empty
-inline Trajectory run_as_told(engines::RunOptions options, const scene::Scene& scene, const Laws& laws) {
+inline Trajectory run_as_told(engines::RunOptions options, const scene::Scene& scene,
+                              const Laws& laws) {
   TrajectoryRecorder recorder;
   options.timewarp = engines::fast_timewarp();
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
 }
 
-inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::FaultInjection& faults = {}, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
+inline Trajectory run_by(const std::string& engine, const scene::Scene& scene,
+                         const engines::FaultInjection& faults = {}, double frame_rate_hz = 60.0,
+                         const Laws& laws = test_laws()) {
   engines::RunOptions options;
   options.engine = engine;
   options.faults = faults;
@@ -30,12 +33,18 @@ inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, c
 /// Empty where two runs committed the same events and frames; else their first difference.
 inline std::string difference(const Trajectory& reference, const Trajectory& run) {
   if (const auto parted = engines::compare_traces(reference, run)) return parted->story;
-  if (reference.stopped_by != run.stopped_by) return "one stopped: '" + reference.stopped_by + "' and '" + run.stopped_by + "'";
-  if (reference.frames.size() != run.frames.size()) return "frames: " + std::to_string(reference.frames.size()) + " and " + std::to_string(run.frames.size());
+  if (reference.stopped_by != run.stopped_by)
+    return "one stopped: '" + reference.stopped_by + "' and '" + run.stopped_by + "'";
+  if (reference.frames.size() != run.frames.size())
+    return "frames: " + std::to_string(reference.frames.size()) + " and " +
+           std::to_string(run.frames.size());
   for (std::size_t k = 0; k < reference.frames.size(); ++k)
     for (std::size_t i = 0; i < reference.bodies.size(); ++i)
-      if (reference.frames[k].poses[i].com_world != run.frames[k].poses[i].com_world || reference.frames[k].poses[i].world_from_body.coeffs() != run.frames[k].poses[i].world_from_body.coeffs())
-        return "frame " + std::to_string(k) + ": body " + reference.bodies[i].name + " is elsewhere";
+      if (reference.frames[k].poses[i].com_world != run.frames[k].poses[i].com_world ||
+          reference.frames[k].poses[i].world_from_body.coeffs() !=
+              run.frames[k].poses[i].world_from_body.coeffs())
+        return "frame " + std::to_string(k) + ": body " + reference.bodies[i].name +
+               " is elsewhere";
   return "";
 }
 
@@ -45,7 +54,8 @@ inline scene::Scene sized(const std::string& name, int n, double duration) {
   return scene;
 }
 
-/// Timewarp and conservative advancement commit what the reference commits, which is more than `least` events.
+/// Timewarp and conservative advancement commit what the reference commits, which is more than
+/// `least` events.
 inline void expect_the_references_trace(const scene::Scene& scene, std::size_t least) {
   const Trajectory reference = run_by("ordered", scene);
   ASSERT_GT(reference.events.size(), least);

@@ -1,4 +1,5 @@
-// A run is the same again, whatever the order of the bodies, the place, the speed of the frame, the scale.
+// A run is the same again, whatever the order of the bodies, the place, the speed of the frame, the
+// scale.
 #include <algorithm>
 #include <cmath>
 
@@ -11,9 +12,12 @@ namespace tumble::testing {
 namespace {
 
 /// Two boxes and a ball that meet one after the other, off centre; nothing chaotic.
-scene::Scene meeting(double length = 1.0, const Vector3d& shift = Vector3d::Zero(), const Vector3d& drift = Vector3d::Zero()) {
-  std::vector<scene::BodySpec> bodies{box("long", {0.5, 0.1, 0.1}, 2.0, {0, 0, 0}, {0, 0, 0}), box("cube", {0.2, 0.2, 0.2}, 1.0, {0.3, 0.9, 0.05}, {0, -1.5, 0}),
-                                      ball("ball", 0.15, 0.5, {-1.2, 0.1, 0.02}, {1.0, 0, 0})};
+scene::Scene meeting(double length = 1.0, const Vector3d& shift = Vector3d::Zero(),
+                     const Vector3d& drift = Vector3d::Zero()) {
+  std::vector<scene::BodySpec> bodies{
+      box("long", {0.5, 0.1, 0.1}, 2.0, {0, 0, 0}, {0, 0, 0}),
+      box("cube", {0.2, 0.2, 0.2}, 1.0, {0.3, 0.9, 0.05}, {0, -1.5, 0}),
+      ball("ball", 0.15, 0.5, {-1.2, 0.1, 0.02}, {1.0, 0, 0})};
   bodies[1].omega_world_rad_s = {0.3, 0.2, 1.0};
   for (scene::BodySpec& body : bodies) {
     body.restitution = 0.7;
@@ -28,7 +32,8 @@ scene::Scene meeting(double length = 1.0, const Vector3d& shift = Vector3d::Zero
 }
 
 /// Largest difference of places at the end, after undoing shift, drift and scale. [m at scale 1]
-double farthest(const Trajectory& found, const Trajectory& expected, double length = 1.0, const Vector3d& shift = Vector3d::Zero(),
+double farthest(const Trajectory& found, const Trajectory& expected, double length = 1.0,
+                const Vector3d& shift = Vector3d::Zero(),
                 const Vector3d& drift = Vector3d::Zero()) {
   double worst = 0.0;
   for (std::size_t i = 0; i < expected.bodies.size(); ++i) {
@@ -40,11 +45,16 @@ double farthest(const Trajectory& found, const Trajectory& expected, double leng
 
 std::string bytes(const Trajectory& run) {
   std::string all;
-  const auto add = [&](const auto& value) { all.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  const auto add = [&](const auto& value) {
+    all.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
   for (const Frame& frame : run.frames) {
     add(frame.time);
     for (const BodyPose& pose : frame.poses)
-      for (const double x : {pose.com_world.x(), pose.com_world.y(), pose.com_world.z(), pose.world_from_body.w(), pose.world_from_body.x(), pose.omega_world.z()}) add(x);
+      for (const double x :
+           {pose.com_world.x(), pose.com_world.y(), pose.com_world.z(), pose.world_from_body.w(),
+            pose.world_from_body.x(), pose.omega_world.z()})
+        add(x);
     add(frame.kinetic_energy);
     add(frame.smallest_gap);
   }
@@ -56,7 +66,9 @@ std::string bytes(const Trajectory& run) {
   return all;
 }
 
-TEST(Invariance, TheSameSceneGivesTheSameBytes) { EXPECT_EQ(bytes(run(meeting())), bytes(run(meeting()))); }
+TEST(Invariance, TheSameSceneGivesTheSameBytes) {
+  EXPECT_EQ(bytes(run(meeting())), bytes(run(meeting())));
+}
 
 TEST(Invariance, TheOrderOfBodiesIsOfNoConsequence) {
   const Trajectory expected = run(meeting());
@@ -65,22 +77,30 @@ TEST(Invariance, TheOrderOfBodiesIsOfNoConsequence) {
   std::reverse(turned.bodies.begin(), turned.bodies.end());
   const Trajectory found = run(turned);
   ASSERT_EQ(collision_times(found).size(), collision_times(expected).size());
-  for (int i = 0; i < 3; ++i)  // 1e-10 m: roundings of impact points, 1e-13, grown by some collisions' arms and 2 s of turning
-    EXPECT_LT((found.frames.back().poses[2 - i].com_world - expected.frames.back().poses[i].com_world).norm(), 1e-10);
+  // 1e-10 m: roundings of impact points, 1e-13, grown by some collisions' arms and 2 s of turning
+  for (int i = 0; i < 3; ++i)
+    EXPECT_LT(
+        (found.frames.back().poses[2 - i].com_world - expected.frames.back().poses[i].com_world)
+            .norm(),
+        1e-10);
 }
 
 TEST(Invariance, ASteadilyMovingFrameSeesTheSame) {
   const Vector3d drift(3, -2, 1);
-  EXPECT_LT(farthest(run(meeting(1.0, Vector3d::Zero(), drift)), run(meeting()), 1.0, Vector3d::Zero(), drift), 1e-10);
+  EXPECT_LT(farthest(run(meeting(1.0, Vector3d::Zero(), drift)), run(meeting()), 1.0,
+                     Vector3d::Zero(), drift),
+            1e-10);
 }
 
 TEST(Invariance, LengthsOfMicrometresAndMegametresMoveAlike) {
   const Trajectory expected = run(meeting());
-  for (const double length : {1e-6, 1e6}) EXPECT_LT(farthest(run(meeting(length)), expected, length), 1e-10) << "scale " << length;
+  for (const double length : {1e-6, 1e6})
+    EXPECT_LT(farthest(run(meeting(length)), expected, length), 1e-10) << "scale " << length;
 }
 
-// Places that both scenes can hold, or they would differ from the start: a rounding of one coordinate of 1e6 m, 6e-11 m, makes 5e-8 m in
-// these 10 s, since each collision that turns an edge against an edge makes a difference some thirty times larger.
+// Places that both scenes can hold, or they would differ from the start: a rounding of one
+// coordinate of 1e6 m, 6e-11 m, makes 5e-8 m in these 10 s, since each collision that turns an edge
+// against an edge makes a difference some thirty times larger.
 scene::Scene far_meeting(const Vector3d& shift) {
   auto scene = meeting();
   scene.duration_s = 10.0;
@@ -89,13 +109,16 @@ scene::Scene far_meeting(const Vector3d& shift) {
     for (double& x : body.position_m) x = std::round(std::ldexp(x, 30)) / std::ldexp(1.0, 30);
     body.position_m += shift;
   }
-  scene.effects.of<effects::PointForceSpec>() = {{"ball", {0.1, 0, 0.05}, scene.bodies[2].position_m, 0.25, 0.5}};
+  scene.effects.of<effects::PointForceSpec>() = {
+      {"ball", {0.1, 0, 0.05}, scene.bodies[2].position_m, 0.25, 0.5}};
   return scene;
 }
 
 TEST(Invariance, AThousandKilometresAwayTheSameHappensToTheRoundingOfThePlace) {
-  constexpr double kPlace = 3e-10;   // m: a rounding of each coordinate of 1e6 m, when it is recorded
-  for (const Vector3d& shift : {Vector3d(1048576, -1048576, 524288), Vector3d(0, 1e6, 0), Vector3d(1e6 + 0.25, 0, 7)}) {
+  // m: a rounding of each coordinate of 1e6 m, when it is recorded
+  constexpr double kPlace = 3e-10;
+  for (const Vector3d& shift :
+       {Vector3d(1048576, -1048576, 524288), Vector3d(0, 1e6, 0), Vector3d(1e6 + 0.25, 0, 7)}) {
     const Trajectory far = run(far_meeting(shift)), near = run(far_meeting(Vector3d::Zero()));
     ASSERT_GE(collision_times(near).size(), 4u);
     ASSERT_EQ(far.events.size(), near.events.size());
@@ -107,32 +130,42 @@ TEST(Invariance, AThousandKilometresAwayTheSameHappensToTheRoundingOfThePlace) {
     ASSERT_EQ(far.frames.size(), near.frames.size());
     for (std::size_t k = 0; k < near.frames.size(); ++k) {
       for (std::size_t i = 0; i < near.bodies.size(); ++i)
-        ASSERT_LT((far.frames[k].poses[i].com_world - shift - near.frames[k].poses[i].com_world).norm(), kPlace) << near.frames[k].time << " s, body " << i;
+        ASSERT_LT(
+            (far.frames[k].poses[i].com_world - shift - near.frames[k].poses[i].com_world).norm(),
+            kPlace)
+            << near.frames[k].time << " s, body " << i;
       EXPECT_GE(far.frames[k].smallest_gap, 0.0);
     }
     // What is counted from the world's origin is so far off too: 3.5 kg.
     const Frame &f = far.frames.back(), &n = near.frames.back();
-    EXPECT_NEAR(f.potential_energy, n.potential_energy - 3.5 * Vector3d(0, 0.01, -0.02).dot(shift), 1e-8);
-    EXPECT_LT((f.angular_momentum_world - n.angular_momentum_world - shift.cross(n.momentum_world)).norm(), 1e-5);
+    EXPECT_NEAR(f.potential_energy, n.potential_energy - 3.5 * Vector3d(0, 0.01, -0.02).dot(shift),
+                1e-8);
+    EXPECT_LT((f.angular_momentum_world - n.angular_momentum_world - shift.cross(n.momentum_world))
+                  .norm(),
+              1e-5);
   }
 }
 
 TEST(Counters, SayThatNothingWasPaidForCollisionsWhereNoneCanHappen) {
-  auto scene = scene_of({ball("a", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), ball("b", 0.1, 1.0, {0, 50, 0}, {1, 0, 0})}, 1.0);
-  scene.step_s = 1.0 / 64;   // frames at the same instants, to the bit
+  auto scene = scene_of(
+      {ball("a", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), ball("b", 0.1, 1.0, {0, 50, 0}, {1, 0, 0})}, 1.0);
+  scene.step_s = 1.0 / 64;  // frames at the same instants, to the bit
   const auto counts = run(scene, test_laws(), 64.0).counters.counts;
-  for (const char* name : {"candidate_pairs", "root_findings", "gap_evaluations", "rollbacks", "impulses", "undone_integrations", "gravity_calls", "point_force_calls"})
+  for (const char* name : {"candidate_pairs", "root_findings", "gap_evaluations", "rollbacks",
+                           "impulses", "undone_integrations", "gravity_calls", "point_force_calls"})
     EXPECT_EQ(counts.at(name), 0u) << name;
   EXPECT_EQ(counts.at("steps"), 64u);
   EXPECT_EQ(counts.at("integrations"), 128u) << "two bodies, 64 steps, one integration each";
 }
 
 TEST(Counters, CountWhatACollisionCosts) {
-  auto scene = scene_of({ball("a", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), ball("b", 0.1, 1.0, {1, 0, 0}, {-1, 0, 0})}, 1.0);
+  auto scene = scene_of(
+      {ball("a", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), ball("b", 0.1, 1.0, {1, 0, 0}, {-1, 0, 0})}, 1.0);
   const auto counts = run(scene).counters.counts;
   EXPECT_EQ(counts.at("impulses"), 1u);
   EXPECT_EQ(counts.at("rollbacks"), 1u);
-  EXPECT_GE(counts.at("undone_integrations"), 2u) << "one step of two bodies, and what finding the time of impact asked for";
+  EXPECT_GE(counts.at("undone_integrations"), 2u)
+      << "one step of two bodies, and what finding the time of impact asked for";
   EXPECT_GT(counts.at("gap_evaluations"), 0u);
 }
 

@@ -23,8 +23,12 @@ constexpr double kPi = std::numbers::pi;
 // Places and angles of order 1 through some ten operations.
 constexpr double kRounding = 1e-14;
 
-BodyPose at(const Vector3d& place, const Quaterniond& turn = Quaterniond::Identity()) { return {place, turn, Vector3d::Zero(), Vector3d::Zero()}; }
-Quaterniond turned(double angle, const Vector3d& axis) { return Quaterniond(Eigen::AngleAxisd(angle, axis)); }
+BodyPose at(const Vector3d& place, const Quaterniond& turn = Quaterniond::Identity()) {
+  return {place, turn, Vector3d::Zero(), Vector3d::Zero()};
+}
+Quaterniond turned(double angle, const Vector3d& axis) {
+  return Quaterniond(Eigen::AngleAxisd(angle, axis));
+}
 
 /// A scene of two movable boxes and a fixed one; a run of one second at 10 frames a second, with
 /// given motions.
@@ -75,28 +79,36 @@ CheckResult judged(HandMade made, const CheckSpec& check) {
 void expect_value(const HandMade& made, CheckSpec check, double value) {
   const CheckResult result = judged(made, check);
   EXPECT_NEAR(result.value, value, kRounding) << check.kind << ": " << result.detail;
-  EXPECT_EQ(result.passed, result.at_least ? value >= result.threshold : value <= result.threshold) << check.kind;
+  EXPECT_EQ(result.passed, result.at_least ? value >= result.threshold : value <= result.threshold)
+      << check.kind;
 }
 
 TEST(Judge, ARodIsAsLongAsItsEndsAreFarApart) {
   // The second body rotates about its centre: the end of the rod moves from a distance of 1 m to 2
   // m.
-  HandMade made(stays({0, 0, 0}), [](double t) { return at({1.5, 0, 0}, turned(kPi * t, Vector3d::UnitZ())); });
-  made.scene.effects.of<effects::RodSpec>().push_back({"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
+  HandMade made(stays({0, 0, 0}), [](double t) {
+    return at({1.5, 0, 0}, turned(kPi * t, Vector3d::UnitZ()));
+  });
+  made.scene.effects.of<effects::RodSpec>().push_back(
+      {"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
   expect_value(made, check_of("rod_length", 1e-6), 1.0);
   made.run.frames.resize(1);
   expect_value(made, check_of("rod_length", 1e-6), 0.0);
   made.scene.effects.of<effects::RodSpec>().clear();
-  EXPECT_FALSE(judged(made, check_of("rod_length", 1e-6)).passed) << "nothing to judge is not right";
+  EXPECT_FALSE(judged(made, check_of("rod_length", 1e-6)).passed)
+      << "nothing to judge is not right";
 }
 
 TEST(Judge, RestitutionIsAskedOfImpactsNotOfBodiesThatTouchWithoutApproach) {
   HandMade made(stays({0, 0, 0}), stays({2, 0, 0}));
   for (scene::BodySpec& body : made.scene.bodies) body.restitution = 0.5;
-  const Event touch{0.5, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 0.0, 0.0, 0.0};
+  const Event touch{0.5, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 0.0, 0.0,
+                    0.0};
   made.run.events = {touch};
-  EXPECT_FALSE(judged(made, check_of("restitution_law", 1e-9)).passed) << "nothing to judge is not right";
-  made.run.events.push_back({0.6, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 3.0, -2.0, 1.0});
+  EXPECT_FALSE(judged(made, check_of("restitution_law", 1e-9)).passed)
+      << "nothing to judge is not right";
+  made.run.events.push_back(
+      {0.6, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 3.0, -2.0, 1.0});
   expect_value(made, check_of("restitution_law", 1e-9), 0.0);
   made.run.events.back().normal_velocity_after = 1.5;
   expect_value(made, check_of("restitution_law", 1e-9), 0.25);
@@ -118,11 +130,13 @@ TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
   made.scene.effects.of<effects::JointSpec>().push_back(hinge);
   expect_value(made, check_of("joint_gap", 1e-6), 0.02);
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.effects.of<effects::JointSpec>()[0].axis = Vector3d::UnitX();   // rotation about its own axis is free
+  // rotation about its own axis is free
+  made.scene.effects.of<effects::JointSpec>()[0].axis = Vector3d::UnitX();
   expect_value(made, check_of("joint_angle", 1e-6), 0.0);
   made.scene.effects.of<effects::JointSpec>()[0].kind = effects::JointKind::kWeld;
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.effects.of<effects::JointSpec>()[0].body_b = "";                // to the world: the first body does not move
+  // to the world: the first body does not move
+  made.scene.effects.of<effects::JointSpec>()[0].body_b = "";
   expect_value(made, check_of("joint_gap", 1e-6), 0.0);
 }
 
@@ -141,11 +155,12 @@ TEST(Judge, TheForceInALinkIsComparedRelativeToTheExpectedForce) {
   check.at_s = 0.5;
   EXPECT_FALSE(judged(made, check).passed);
   check.at_s = 0.55;
-  EXPECT_EQ(judged(made, check).value, std::numeric_limits<double>::infinity()) << "no frame is recorded then";
+  EXPECT_EQ(judged(made, check).value, std::numeric_limits<double>::infinity())
+      << "no frame is recorded then";
   check.at_s = 0.0;
   check.link = "coil";
   check.expected = {0.0};
-  expect_value(made, check, 3.0);   // N
+  expect_value(made, check, 3.0);  // N
   for (Frame& frame : made.run.frames) frame.spring_forces.clear();
   EXPECT_FALSE(judged(made, check).passed) << "a run without forces is not right";
 }
@@ -154,7 +169,8 @@ TEST(Judge, AReactionIsTheSumOverTheContactsWithOneOther) {
   HandMade made(stays({0, 0, 0}), stays({1, 0, 0}));
   Frame& last = made.run.frames.back();
   last.contacts.push_back({0, 2, {0, 0, 0}, {0, 0, 1}, {1, 0, 6}});
-  last.contacts.push_back({2, 0, {0, 0, 0}, {0, 0, -1}, {0, 0, -4}});   // on the floor, from the first
+  // on the floor, from the first
+  last.contacts.push_back({2, 0, {0, 0, 0}, {0, 0, -1}, {0, 0, -4}});
   last.contacts.push_back({0, 1, {0, 0, 0}, {0, 0, 1}, {0, 0, 100}});
   CheckSpec check = check_of("reaction", 1e-9);
   check.body = "first";
@@ -169,7 +185,11 @@ TEST(Judge, AReactionIsTheSumOverTheContactsWithOneOther) {
 }
 
 TEST(Judge, DriftAndTiltAreTheLargestSinceTheInstant) {
-  HandMade made([](double t) { return at({0.1 * t, 0, 0}, turned(0.4 * t, Vector3d::UnitY())); }, stays({3, 0, 0}));
+  HandMade made(
+      [](double t) {
+        return at({0.1 * t, 0, 0}, turned(0.4 * t, Vector3d::UnitY()));
+      },
+      stays({3, 0, 0}));
   expect_value(made, check_of("drift", 1e-3), 0.1);
   expect_value(made, check_of("tilt", 1e-3), 0.4);
   CheckSpec later = check_of("drift", 0.06);
@@ -185,10 +205,11 @@ TEST(Judge, AtRestNothingMovesOrTurns) {
   HandMade made(stays({0, 0, 0}), stays({3, 0, 0}));
   expect_value(made, check_of("at_rest", 1e-8), 0.0);
   made.run.frames.back().poses[1].velocity_world = {0, 0.2, 0};
-  expect_value(made, check_of("at_rest", 1e-8), 0.02);   // v^2 / 2
+  expect_value(made, check_of("at_rest", 1e-8), 0.02);  // v^2 / 2
   made.run.frames.back().poses[1].velocity_world.setZero();
   made.run.frames.back().poses[1].omega_world = {0, 0, 3};
-  expect_value(made, check_of("at_rest", 1e-8), 0.75);   // w^2 / 2 of a cube of edge 1 m, whose moment is m / 6
+  // w^2 / 2 of a cube of edge 1 m, whose moment is m / 6
+  expect_value(made, check_of("at_rest", 1e-8), 0.75);
   made.run.frames[5].poses[0].velocity_world = {2, 0, 0};
   CheckSpec since = check_of("at_rest", 1e-8);
   since.at_s = 0.45;
@@ -198,7 +219,7 @@ TEST(Judge, AtRestNothingMovesOrTurns) {
 }
 
 TEST(Judge, ACommonCentreOfMassIsWeighed) {
-  HandMade made([](double t) { return at({3 * t, 0, 0}); }, stays({9, 0, 0}));   // of equal masses
+  HandMade made([](double t) { return at({3 * t, 0, 0}); }, stays({9, 0, 0}));  // of equal masses
   CheckSpec centre = check_of("centre_of_mass", 0.01);
   centre.expected = {6, 0, 0};
   expect_value(made, centre, 0.0);
@@ -209,7 +230,11 @@ TEST(Judge, ACommonCentreOfMassIsWeighed) {
 }
 
 TEST(Judge, ADistanceAndAnAngleAreMeasuredFromTheStart) {
-  HandMade made([](double t) { return at({1 + 3 * t, 4 * t, 0}, turned(7.0 * t, Vector3d::UnitZ())); }, stays({9, 0, 0}));
+  HandMade made(
+      [](double t) {
+        return at({1 + 3 * t, 4 * t, 0}, turned(7.0 * t, Vector3d::UnitZ()));
+      },
+      stays({9, 0, 0}));
   CheckSpec way = check_of("distance_travelled", 0.01);
   way.body = "first";
   way.expected = {5.0};
@@ -222,14 +247,20 @@ TEST(Judge, ADistanceAndAnAngleAreMeasuredFromTheStart) {
   CheckSpec angle = check_of("angle_at", 0.01);
   angle.body = "first";
   angle.axis = Vector3d::UnitZ();
-  angle.expected = {7.0};   // more than a whole turn
+  angle.expected = {7.0};  // more than a whole turn
   expect_value(made, angle, 0.0);
   angle.axis = -Vector3d::UnitZ();
   expect_value(made, angle, 14.0);
 }
 
 TEST(Judge, WhatStandsDoesNotLeanAndWhatFallsDoes) {
-  HandMade made([](double t) { return at({0, 0, 0}, turned(1.5 * t, Vector3d::UnitX())); }, [](double t) { return at({3, 0, 0}, turned(0.1 * t, Vector3d::UnitX())); });
+  HandMade made(
+      [](double t) {
+        return at({0, 0, 0}, turned(1.5 * t, Vector3d::UnitX()));
+      },
+      [](double t) {
+        return at({3, 0, 0}, turned(0.1 * t, Vector3d::UnitX()));
+      });
   CheckSpec check = check_of("stands", 0.5);
   check.axis = Vector3d::UnitZ();
   expect_value(made, check, 1.5);
@@ -246,8 +277,13 @@ TEST(Judge, WhatStandsDoesNotLeanAndWhatFallsDoes) {
 }
 
 TEST(Judge, DominoesFallInTheirOrder) {
-  HandMade made([](double t) { return at({0, 0, 0}, turned(1.5 * t, Vector3d::UnitX())); },
-                [](double t) { return at({3, 0, 0}, turned(std::max(0.0, t - 0.4), Vector3d::UnitX())); });
+  HandMade made(
+      [](double t) {
+        return at({0, 0, 0}, turned(1.5 * t, Vector3d::UnitX()));
+      },
+      [](double t) {
+        return at({3, 0, 0}, turned(std::max(0.0, t - 0.4), Vector3d::UnitX()));
+      });
   CheckSpec check = check_of("order_of_falls", 0.0);
   check.axis = Vector3d::UnitZ();
   check.bodies = {"first", "second"};
@@ -256,7 +292,7 @@ TEST(Judge, DominoesFallInTheirOrder) {
   check.bodies = {"second", "first"};
   expect_value(made, check, 1.0);
   check.bodies = {"first", "second"};
-  check.expected = {1.0};   // the second never leans that far
+  check.expected = {1.0};  // the second never leans that far
   expect_value(made, check, 1.0);
 }
 
@@ -290,7 +326,7 @@ TEST(Judge, AGapBelowZeroByARoundingOfPlacesIsNone) {
   HandMade made = at_rest_high_up(0.0);
   made.scene.checks = {check_of("gap", 0.0)};
   EXPECT_TRUE(judge_run(made.scene, made.run)[0].passed);
-  made.run.frames[3].smallest_gap = -1e-11;   // a hundred times the rounding of positions of 100 m
+  made.run.frames[3].smallest_gap = -1e-11;  // a hundred times the rounding of positions of 100 m
   EXPECT_FALSE(judge_run(made.scene, made.run)[0].passed);
 }
 

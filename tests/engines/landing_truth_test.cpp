@@ -14,12 +14,14 @@ namespace {
 /// on the step. With an edge normal that is only rounding, runs at 1/960, 1/1920 and 1/3840 s
 /// differ by 1e-3 m permanently.
 TEST(Truth, OfALandingLastsToTheEndAndThreeRunsAgreeOnIt) {
-  const scene::Scene scene = scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a3_constraints/scenes/drop_a_box.json");
+  const scene::Scene scene =
+      scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a3_constraints/scenes/drop_a_box.json");
   std::string why;
   const auto reference = engines::try_reference(scene, reference_laws(), {}, why);
   ASSERT_TRUE(reference) << why;
   EXPECT_EQ(reference->duration_s, scene.duration_s) << reference->shortened_by;
-  EXPECT_LE(reference->floor_m, 3e-4);   // error of the finest steps: 6e-5 m where there is time for 1/7680 s
+  // error of the finest steps: 6e-5 m where there is time for 1/7680 s
+  EXPECT_LE(reference->floor_m, 3e-4);
 }
 
 TEST(CostReference, AReferenceWithImpactsIsAsAccurateAsTheRunsThatItJudges) {
@@ -38,10 +40,12 @@ TEST(CostReference, AReferenceWithImpactsIsAsAccurateAsTheRunsThatItJudges) {
   wall.position_m = Vector3d(-0.3, 0, 0);
   wall.world_from_body = Quaterniond(Eigen::AngleAxisd(1.5707963267948966, Vector3d::UnitY()));
   scene.bodies = {wall, ball};
-  scene.effects.of<effects::SpringSpec>().push_back({"spring", {"ball", Vector3d::Zero()}, {"", Vector3d(3, 0, 0)}, 50.0, 0.0, 3.0});
+  scene.effects.of<effects::SpringSpec>().push_back(
+      {"spring", {"ball", Vector3d::Zero()}, {"", Vector3d(3, 0, 0)}, 50.0, 0.0, 3.0});
   engines::CostOptions options;
   options.frame_rate_hz = 60.0;
-  const engines::CostReference reference = engines::find_reference(scene, reference_laws(), options);
+  const engines::CostReference reference =
+      engines::find_reference(scene, reference_laws(), options);
   EXPECT_EQ(reference.intervals, 90) << reference.shortened_by;
   EXPECT_LE(reference.floor_m, 1e-10) << reference.what;
 }

@@ -19,7 +19,9 @@ const Laws& laws() {
   return reference;
 }
 
-Trajectory run_with(const std::string& engine, const scene::Scene& scene) { return run_by(engine, scene, {}, 60.0, laws()); }
+Trajectory run_with(const std::string& engine, const scene::Scene& scene) {
+  return run_by(engine, scene, {}, 60.0, laws());
+}
 
 int body_named(const Trajectory& run, const std::string& name) {
   for (std::size_t i = 0; i < run.bodies.size(); ++i)
@@ -28,22 +30,29 @@ int body_named(const Trajectory& run, const std::string& name) {
 }
 
 bool touch(const Frame& frame, int a, int b) {
-  return std::any_of(frame.contacts.begin(), frame.contacts.end(), [&](const ContactPoint& point) { return std::pair(point.body_a, point.body_b) == std::pair(std::min(a, b), std::max(a, b)); });
+  return std::any_of(frame.contacts.begin(), frame.contacts.end(), [&](const ContactPoint& point) {
+    return std::pair(point.body_a, point.body_b) == std::pair(std::min(a, b), std::max(a, b));
+  });
 }
 
 double farthest_apart(const Trajectory& x, const Trajectory& y, double until) {
   double farthest = 0.0;
-  for (std::size_t k = 0; k < std::min(x.frames.size(), y.frames.size()) && x.frames[k].time <= until; ++k)
-    for (std::size_t i = 0; i < x.bodies.size(); ++i) farthest = std::max(farthest, (x.frames[k].poses[i].com_world - y.frames[k].poses[i].com_world).norm());
+  for (std::size_t k = 0;
+       k < std::min(x.frames.size(), y.frames.size()) && x.frames[k].time <= until; ++k)
+    for (std::size_t i = 0; i < x.bodies.size(); ++i)
+      farthest = std::max(farthest,
+                          (x.frames[k].poses[i].com_world - y.frames[k].poses[i].com_world).norm());
   return farthest;
 }
 
 /// @param until  duration of the comparison with a world of all bodies [s]; @param within [m]
-void expect_engines_agree(const scene::Scene& scene, std::size_t least_events, double until, double within) {
+void expect_engines_agree(const scene::Scene& scene, std::size_t least_events, double until,
+                          double within) {
   const Trajectory reference = run_with("ordered", scene);
   ASSERT_EQ(reference.stopped_by, "");
   EXPECT_GE(reference.events.size(), least_events);
-  for (const char* engine : {"tw", "ca"}) EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
+  for (const char* engine : {"tw", "ca"})
+    EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
   scene::Scene part = scene;
   part.duration_s = until;
   const Trajectory rd = run_with("rd", part);
@@ -67,7 +76,9 @@ TEST(PaperScenes, CarsAgree) { expect_engines_agree(sized("cars", 9, 1.2), 3, 0.
 TEST(PaperScenes, RobotsAgree) { expect_engines_agree(sized("robots", 1, 0.7), 2, 0.5, 1e-3); }
 
 // Until rocks have been in persistent contact for some steps.
-TEST(PaperScenes, AvalancheAgrees) { expect_engines_agree(sized("avalanche", 5, 1.5), 10, 0.5, 1e-3); }
+TEST(PaperScenes, AvalancheAgrees) {
+  expect_engines_agree(sized("avalanche", 5, 1.5), 10, 0.5, 1e-3);
+}
 
 // A perfectly inelastic domino hits the next: wherever in a step the impact is, all contacts of the
 // two take part in it, with the floor's friction. Both worlds are right to the order of the step,
@@ -81,8 +92,8 @@ TEST(PaperScenes, DominoesAgreeAsTheirStepsGoToNothing) {
     return farthest_apart(run_with("tw", fine), run_with("rd", fine), scene.duration_s);
   };
   const double coarse = apart(1), fine = apart(16);
-  EXPECT_GT(coarse, 1e-4);     // m: their steps differ, so a difference exists
-  EXPECT_LT(fine, 1e-4);       // m: a sixteenth of the 1.2 mm at the scene's own step
+  EXPECT_GT(coarse, 1e-4);  // m: their steps differ, so a difference exists
+  EXPECT_LT(fine, 1e-4);    // m: a sixteenth of the 1.2 mm at the scene's own step
   EXPECT_LT(8 * fine, coarse);
 }
 
@@ -94,28 +105,36 @@ TEST(PaperScenes, DominoesWithLocatedImpactsAgree) {
   scene.step_s /= 4;
   const Trajectory tw = run_with("tw", scene), rd = run_with("rd", scene);
   EXPECT_EQ(difference(run_with("ordered", scene), tw), "");
-  ASSERT_TRUE(std::any_of(tw.events.begin(), tw.events.end(), [&](const Event& event) { return event.kind == EventKind::kCollision && event.body_b == body_named(tw, "domino_2"); }));
-  EXPECT_LT(farthest_apart(tw, rd, scene.duration_s), 1e-9);   // m: 1e-11 from rounding, multiplied by the alternating impacts of corners
+  ASSERT_TRUE(std::any_of(tw.events.begin(), tw.events.end(), [&](const Event& event) {
+    return event.kind == EventKind::kCollision && event.body_b == body_named(tw, "domino_2");
+  }));
+  // m: 1e-11 from rounding, multiplied by the alternating impacts of corners
+  EXPECT_LT(farthest_apart(tw, rd, scene.duration_s), 1e-9);
 }
 
 // ---- The first collisions of each body, by all engines -----------------------------------------
 
-constexpr std::size_t kFirst = 5;          // per body: after so many a rounding has grown to a millionth of its path
-constexpr double kSameInstant = 1e-6;      // s
+// per body: after so many a rounding has grown to a millionth of its path
+constexpr std::size_t kFirst = 5;
+constexpr double kSameInstant = 1e-6;  // s
 
 /// Times of each body's first collisions, without pairs in persistent contact: a world of all
 /// bodies resolves their impacts within its steps and records them at the steps' ends.
-std::vector<std::vector<double>> first_collisions(const Trajectory& run, const std::set<std::pair<int, int>>& left_out) {
+std::vector<std::vector<double>> first_collisions(const Trajectory& run,
+                                                  const std::set<std::pair<int, int>>& left_out) {
   std::vector<std::vector<double>> times(run.bodies.size());
   for (const Event& event : run.events)
     for (const int body : {event.body_a, event.body_b})
-      if (event.kind == EventKind::kCollision && !left_out.contains({event.body_a, event.body_b}) && !run.bodies[static_cast<std::size_t>(body)].immovable && times[static_cast<std::size_t>(body)].size() < kFirst)
+      if (event.kind == EventKind::kCollision && !left_out.contains({event.body_a, event.body_b}) &&
+          !run.bodies[static_cast<std::size_t>(body)].immovable &&
+          times[static_cast<std::size_t>(body)].size() < kFirst)
         times[static_cast<std::size_t>(body)].push_back(event.time);
   return times;
 }
 
 void expect_the_first_collisions_agree(const scene::Scene& scene, std::size_t least) {
-  const Trajectory tw = run_with("tw", scene), ca = run_with("ca", scene), rd = run_with("rd", scene);
+  const Trajectory tw = run_with("tw", scene), ca = run_with("ca", scene),
+                   rd = run_with("rd", scene);
   std::set<std::pair<int, int>> lying;
   for (const Trajectory* run : {&tw, &ca, &rd})
     for (const Event& event : run->events)
@@ -126,15 +145,20 @@ void expect_the_first_collisions_agree(const scene::Scene& scene, std::size_t le
     ASSERT_EQ(run->stopped_by, "");
     const auto found = first_collisions(*run, lying);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      ASSERT_EQ(found[i].size(), expected[i].size()) << run->info.engine << ", " << tw.bodies[i].name;
-      for (std::size_t k = 0; k < found[i].size(); ++k, ++compared) EXPECT_NEAR(found[i][k], expected[i][k], kSameInstant) << run->info.engine << ", collision " << k << " of " << tw.bodies[i].name;
+      ASSERT_EQ(found[i].size(), expected[i].size())
+          << run->info.engine << ", " << tw.bodies[i].name;
+      for (std::size_t k = 0; k < found[i].size(); ++k, ++compared)
+        EXPECT_NEAR(found[i][k], expected[i][k], kSameInstant)
+            << run->info.engine << ", collision " << k << " of " << tw.bodies[i].name;
     }
   }
   EXPECT_GE(compared, 2 * least);
 }
 
 // Wheels roll, which is of second order in the step; pendula swing and hit each other.
-TEST(FirstCollisions, OfCarsAndPendulaAgree) { expect_the_first_collisions_agree(sized("cars", 20, 1.5), 8); }
+TEST(FirstCollisions, OfCarsAndPendulaAgree) {
+  expect_the_first_collisions_agree(sized("cars", 20, 1.5), 8);
+}
 
 // Rocks that rotate and fall, RK4 in a world of all bodies: an error of 1e-6 s at 1/240 s becomes
 // 1e-9 s at a quarter of that. From 0.7 s on rocks have been in contact, and an impact multiplies
@@ -153,14 +177,16 @@ TEST(FirstCollisions, OfARobotIsItsThrowWhichAgrees) {
   const auto thrown = [&](const Trajectory& run) {
     double time = kUnset;
     for (const Event& event : run.events)
-      if (event.kind == EventKind::kBreak && run.bodies[static_cast<std::size_t>(event.body_b)].name == "block_1_1") time = event.time;
+      if (event.kind == EventKind::kBreak &&
+          run.bodies[static_cast<std::size_t>(event.body_b)].name == "block_1_1")
+        time = event.time;
     return time;
   };
   ASSERT_GT(thrown(tw), 0.3);
   for (const char* engine : {"ca", "rd"}) {
     const Trajectory run = run_with(engine, scene);
     EXPECT_NEAR(thrown(run), thrown(tw), kSameInstant) << engine;
-    EXPECT_LT(farthest_apart(tw, run, scene.duration_s), 1e-6) << engine;   // m
+    EXPECT_LT(farthest_apart(tw, run, scene.duration_s), 1e-6) << engine;  // m
   }
 }
 
@@ -169,15 +195,18 @@ TEST(FirstCollisions, OfARobotIsItsThrowWhichAgrees) {
 // moves it by at most the error of the step.
 TEST(FirstCollisions, OfTwoRobotsAgreeAsFarAsTheirStepIsRight) {
   scene::Scene scene = sized("robots", 2, 0.35), finer = scene;
-  finer.step_s = scene.step_s / 8;   // a quarter changes nothing: contacts of links use shorter steps of their own
+  // a quarter changes nothing: contacts of links use shorter steps of their own
+  finer.step_s = scene.step_s / 8;
   const Trajectory tw = run_with("tw", scene);
   const double of_the_step = farthest_apart(tw, run_with("tw", finer), scene.duration_s);
-  EXPECT_LT(of_the_step, 1e-3);   // m
+  EXPECT_LT(of_the_step, 1e-3);  // m
   EXPECT_EQ(difference(tw, run_with("ca", scene)), "");
   EXPECT_LT(farthest_apart(tw, run_with("rd", scene), scene.duration_s), of_the_step);
 }
 
-Trajectory run_on(int threads, const scene::Scene& scene, const engines::FaultInjection& faults, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
+Trajectory run_on(int threads, const scene::Scene& scene, const engines::FaultInjection& faults,
+                  const std::vector<engines::Callback>& callbacks = {},
+                  const std::string& engine = "tw") {
   engines::RunOptions options;
   options.engine = engine;
   options.faults = faults;
@@ -194,13 +223,18 @@ TEST(PaperScenes, UndoLittleOfTheirWork) {
   delayed.delay_s = 1e-5;
   for (const int threads : {1, 2}) {
     double sum = 0.0;
-    const std::vector<scene::Scene> scenes{sized("atoms", 60, 1.0), sized("cars", 30, 1.0), sized("robots", 2, 0.7), sized("avalanche", 10, 1.0)};
+    const std::vector<scene::Scene> scenes{sized("atoms", 60, 1.0), sized("cars", 30, 1.0),
+                                           sized("robots", 2, 0.7), sized("avalanche", 10, 1.0)};
     for (const scene::Scene& scene : scenes) {
-      const Trajectory run = run_on(threads, scene, threads > 1 ? delayed : engines::FaultInjection{});
+      const Trajectory run =
+          run_on(threads, scene, threads > 1 ? delayed : engines::FaultInjection{});
       ASSERT_EQ(run.stopped_by, "") << scene.name;
-      const double undone = static_cast<double>(run.counters.counts.at("undone_integrations")), committed = static_cast<double>(run.counters.counts.at("integrations")) - undone;
+      const double undone = static_cast<double>(run.counters.counts.at("undone_integrations")),
+                   committed = static_cast<double>(run.counters.counts.at("integrations")) - undone;
       EXPECT_LE(undone, committed) << scene.name << ", " << threads << " threads";
-      EXPECT_TRUE(threads == 1 || run.counters.counts.at("least_events_of_a_thread") > 10) << scene.name;   // real threads, each with its own work
+      // real threads, each with its own work
+      EXPECT_TRUE(threads == 1 || run.counters.counts.at("least_events_of_a_thread") > 10)
+          << scene.name;
       sum += undone / committed;
     }
     EXPECT_LE(sum / static_cast<double>(scenes.size()), 0.15) << threads << " threads";
@@ -215,11 +249,15 @@ TEST(LateEvent, AtTheFirstOfARowOfDominoesRollsEachBackOnce) {
   late.late_callbacks = true;
   for (const int n : {3, 6, 12}) {
     const scene::Scene row = sized("dominoes_row", n, 0.15 * n + 0.3);
-    const std::vector<engines::Callback> hold{{0.05, {body_named(run_with("tw", sized("dominoes_row", n, 0.0)), "domino_1")}, [](int, RigidBodyState& state) {
-      state.momentum_world.setZero();
-      state.angular_momentum_world.setZero();
-    }}};
-    const Trajectory reference = run_on(1, row, {}, hold, "ordered"), run = run_on(1, row, late, hold);
+    const std::vector<engines::Callback> hold{
+        {0.05,
+         {body_named(run_with("tw", sized("dominoes_row", n, 0.0)), "domino_1")},
+         [](int, RigidBodyState& state) {
+           state.momentum_world.setZero();
+           state.angular_momentum_world.setZero();
+         }}};
+    const Trajectory reference = run_on(1, row, {}, hold, "ordered"),
+                     run = run_on(1, row, late, hold);
     EXPECT_EQ(difference(reference, run), "") << n;
     EXPECT_EQ(run.counters.counts.at("rollbacks"), static_cast<std::uint64_t>(n)) << n;
     EXPECT_GE(run.counters.counts.at("anti_messages"), static_cast<std::uint64_t>(n - 1)) << n;
@@ -233,10 +271,13 @@ TEST(LateEvent, AtTheFirstOfALongRowOfDominoesRollsEachBackOnce) {
   engines::FaultInjection late;
   late.late_callbacks = true;
   const scene::Scene row = sized("dominoes_row", kDominoes, 0.15 * kDominoes + 0.3);
-  const std::vector<engines::Callback> hold{{0.05, {body_named(run_with("tw", sized("dominoes_row", kDominoes, 0.0)), "domino_1")}, [](int, RigidBodyState& state) {
-    state.momentum_world.setZero();
-    state.angular_momentum_world.setZero();
-  }}};
+  const std::vector<engines::Callback> hold{
+      {0.05,
+       {body_named(run_with("tw", sized("dominoes_row", kDominoes, 0.0)), "domino_1")},
+       [](int, RigidBodyState& state) {
+         state.momentum_world.setZero();
+         state.angular_momentum_world.setZero();
+       }}};
   const Trajectory in_order = run_on(1, row, {}, hold), run = run_on(1, row, late, hold);
   ASSERT_EQ(in_order.stopped_by, "");
   EXPECT_EQ(difference(in_order, run), "");
@@ -248,10 +289,14 @@ TEST(LateEvent, AtTheFirstOfALongRowOfDominoesRollsEachBackOnce) {
 TEST(Robots, CarryABlockAndThrowItOverTheirShoulder) {
   const Trajectory run = run_with("tw", sized("robots", 1, 1.2));
   ASSERT_EQ(run.stopped_by, "");
-  const int block = body_named(run, "block_1_1"), hand = body_named(run, "hand_1"), shoulder = body_named(run, "arm_1_1");
+  const int block = body_named(run, "block_1_1"), hand = body_named(run, "hand_1"),
+            shoulder = body_named(run, "arm_1_1");
   ASSERT_TRUE(block >= 0 && hand >= 0 && shoulder >= 0);
-  const auto x_of = [&](const Frame& frame) { return frame.poses[static_cast<std::size_t>(block)].com_world.x() - run.frames.front().poses[static_cast<std::size_t>(shoulder)].com_world.x(); };
-  EXPECT_LT(x_of(run.frames.front()), -1.3);   // behind, at the end of the arm
+  const auto x_of = [&](const Frame& frame) {
+    return frame.poses[static_cast<std::size_t>(block)].com_world.x() -
+           run.frames.front().poses[static_cast<std::size_t>(shoulder)].com_world.x();
+  };
+  EXPECT_LT(x_of(run.frames.front()), -1.3);  // behind, at the end of the arm
   double highest = 0.0, flies = 0.0;
   for (const Frame& frame : run.frames) {
     highest = std::max(highest, frame.poses[static_cast<std::size_t>(block)].com_world.z());
@@ -259,8 +304,8 @@ TEST(Robots, CarryABlockAndThrowItOverTheirShoulder) {
     EXPECT_TRUE(!lifted || touch(frame, hand, block)) << frame.time;
     if (!touch(frame, hand, block)) flies = std::max(flies, x_of(frame));
   }
-  EXPECT_GT(highest, 1.8);   // m, from 0.9 m
-  EXPECT_GT(flies, 1.0);     // m, on the other side
+  EXPECT_GT(highest, 1.8);  // m, from 0.9 m
+  EXPECT_GT(flies, 1.0);    // m, on the other side
 }
 
 TEST(Avalanche, RocksComeDownTheMountainAndTouchIt) {
@@ -269,15 +314,23 @@ TEST(Avalanche, RocksComeDownTheMountainAndTouchIt) {
   const int mountain = body_named(run, "mountain_1");
   ASSERT_GE(mountain, 0);
   // By impacts, or by resting and rolling.
-  bool touches = std::any_of(run.events.begin(), run.events.end(), [&](const Event& event) { return event.kind == EventKind::kCollision && (event.body_a == mountain || event.body_b == mountain); });
+  bool touches = std::any_of(run.events.begin(), run.events.end(), [&](const Event& event) {
+    return event.kind == EventKind::kCollision &&
+           (event.body_a == mountain || event.body_b == mountain);
+  });
   for (const Frame& frame : run.frames)
-    touches = touches || std::any_of(frame.contacts.begin(), frame.contacts.end(), [&](const ContactPoint& point) { return point.body_a == mountain || point.body_b == mountain; });
+    touches = touches || std::any_of(frame.contacts.begin(), frame.contacts.end(),
+                                     [&](const ContactPoint& point) {
+                                       return point.body_a == mountain || point.body_b == mountain;
+                                     });
   EXPECT_TRUE(touches);
   for (std::size_t i = 0; i < run.bodies.size(); ++i) {
     if (run.bodies[i].immovable) continue;
-    const Vector3d way = run.frames.back().poses[i].com_world - run.frames.front().poses[i].com_world;
-    EXPECT_LT(way.z(), -1.5) << run.bodies[i].name;    // m; gravity alone makes them fall less than 1.3 m
-    EXPECT_GT(way.x(), 0.5) << run.bodies[i].name;     // downhill
+    const Vector3d way =
+        run.frames.back().poses[i].com_world - run.frames.front().poses[i].com_world;
+    // m; gravity alone makes them fall less than 1.3 m
+    EXPECT_LT(way.z(), -1.5) << run.bodies[i].name;
+    EXPECT_GT(way.x(), 0.5) << run.bodies[i].name;  // downhill
     EXPECT_GT(run.frames.back().poses[i].com_world.z(), 0.0) << run.bodies[i].name;
   }
 }
@@ -294,7 +347,7 @@ TEST(Robots, WithLocatedImpactsComeToTheirEnd) {
   for (const char* engine : {"rd", "tw"}) {
     const Trajectory run = run_by(engine, robot_with_located_impacts(), {}, 60.0, reference_laws());
     EXPECT_EQ(run.stopped_by, "") << engine;
-    EXPECT_GT(run.events.size(), 1U) << engine;   // the scoop begins to push
+    EXPECT_GT(run.events.size(), 1U) << engine;  // the scoop begins to push
     EXPECT_LT(run.counters.counts.at("discontinuities"), 1000U) << engine;
   }
 }
@@ -306,18 +359,23 @@ TEST(Robots, ComeToOneMotionAtEveryStep) {
   const Trajectory coarse = run_by("rd", scene, {}, 60.0, reference_laws());
   scene.step_s /= 8;
   const Trajectory fine = run_by("rd", scene, {}, 60.0, reference_laws());
-  EXPECT_LT(farthest_apart(coarse, fine, scene.duration_s), 1e-3);   // m: 3e-4 of a reach of 2 m, by a friction law of first order
+  // m: 3e-4 of a reach of 2 m, by a friction law of first order
+  EXPECT_LT(farthest_apart(coarse, fine, scene.duration_s), 1e-3);
 }
 
 // A torque held for 1/960 s that brakes an eighth of the arm's inertia by 60 N m s/rad reverses it,
 // faster each time.
 TEST(Robots, WhoseMotorsOvershootAreStoppedAtOnceAndNamed) {
   scene::Scene scene = robot_with_located_impacts();
-  for (effects::MotorSpec& motor : scene.effects.of<effects::MotorSpec>()) motor.damping_n_m_s_rad = 60.0 * motor.stiffness_n_m_rad / 6000.0;
+  for (effects::MotorSpec& motor : scene.effects.of<effects::MotorSpec>())
+    motor.damping_n_m_s_rad = 60.0 * motor.stiffness_n_m_rad / 6000.0;
   for (const char* engine : {"rd", "tw"}) {
     const Trajectory run = run_by(engine, scene, {}, 60.0, reference_laws());
-    for (const char* word : {"at t = ", "_1_", "period_s"}) EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;
-    EXPECT_LT(run.events.size(), 50000U) << engine;   // links at 1e4 rad/s collide often; an engine stops at 20,000 impacts per step, and this is the second or third step
+    for (const char* word : {"at t = ", "_1_", "period_s"})
+      EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;
+    // links at 1e4 rad/s collide often; an engine stops at 20,000 impacts per step, and this is the
+    // second or third step
+    EXPECT_LT(run.events.size(), 50000U) << engine;
   }
 }
 

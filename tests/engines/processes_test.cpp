@@ -24,10 +24,14 @@ const Laws& laws() {
   return reference;
 }
 
-Trajectory run_with(const std::string& engine, const scene::Scene& scene, const FaultInjection& faults = {}) { return run_by(engine, scene, faults, 60.0, laws()); }
+Trajectory run_with(const std::string& engine, const scene::Scene& scene,
+                    const FaultInjection& faults = {}) {
+  return run_by(engine, scene, faults, 60.0, laws());
+}
 
 scene::Scene course_scene(const std::string& name, double duration) {
-  scene::Scene scene = scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a3_constraints/scenes" / (name + ".json"));
+  scene::Scene scene = scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+                                         "assignments/a3_constraints/scenes" / (name + ".json"));
   scene.duration_s = std::min(scene.duration_s, duration);
   return scene;
 }
@@ -36,7 +40,8 @@ void expect_one_trace(const scene::Scene& scene, std::size_t least) {
   const Trajectory reference = run_with("ordered", scene);
   ASSERT_EQ(reference.stopped_by, "");
   ASSERT_GE(reference.events.size(), least);
-  for (const char* engine : {"tw", "ca"}) EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
+  for (const char* engine : {"tw", "ca"})
+    EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
 }
 
 // ---- One trace ---------------------------------------------------------------------------------
@@ -67,7 +72,8 @@ void expect_hard_orders_change_nothing(const scene::Scene& scene, int seeds) {
   const Trajectory reference = run_with("ordered", scene);
   std::uint64_t rollbacks = 0, anti_messages = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const Trajectory run = run_with("tw", scene, {static_cast<std::uint64_t>(seed), true, 0.15, 5, 0.05});
+    const Trajectory run =
+        run_with("tw", scene, {static_cast<std::uint64_t>(seed), true, 0.15, 5, 0.05});
     ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
     rollbacks += run.counters.counts.at("rollbacks");
     anti_messages += run.counters.counts.at("anti_messages");
@@ -76,11 +82,15 @@ void expect_hard_orders_change_nothing(const scene::Scene& scene, int seeds) {
   EXPECT_GT(anti_messages, static_cast<std::uint64_t>(seeds));
 }
 
-TEST(AdversarialOrderOfProcesses, LeavesLinkedBodiesTraceAsItIs) { expect_hard_orders_change_nothing(pendula_and_balls(5, 0.9), 20); }
+TEST(AdversarialOrderOfProcesses, LeavesLinkedBodiesTraceAsItIs) {
+  expect_hard_orders_change_nothing(pendula_and_balls(5, 0.9), 20);
+}
 
 // Towers fuse, are hit, come apart, and all of it is rolled back repeatedly, also to times before a
 // group formed.
-TEST(AdversarialOrderOfProcesses, LeavesGroupsInContactAsTheyAre) { expect_hard_orders_change_nothing(tower_and_projectile(5.0), 20); }
+TEST(AdversarialOrderOfProcesses, LeavesGroupsInContactAsTheyAre) {
+  expect_hard_orders_change_nothing(tower_and_projectile(5.0), 20);
+}
 
 // ---- Groups that fuse and split --------------------------------------------------------------
 
@@ -111,7 +121,8 @@ Trajectory run_on(int threads, const scene::Scene& scene) {
 TEST(ContactGroup, ThatSplitsUnderRollbackHasTheReferencesMembersAtAllTimes) {
   const scene::Scene scene = tower_and_projectile(5.0);
   const Trajectory reference = run_with("ordered", scene);
-  for (const Trajectory& run : {run_with("tw", scene, {7, true, 0.3, 4, 0.2}), run_on(2, scene), run_on(4, scene)}) {
+  for (const Trajectory& run :
+       {run_with("tw", scene, {7, true, 0.3, 4, 0.2}), run_on(2, scene), run_on(4, scene)}) {
     std::size_t most = 0, least = 100;
     for (int k = 0; k <= 1000; ++k) {
       const double t = scene.duration_s * k / 1000;
@@ -127,10 +138,14 @@ TEST(ContactGroup, ThatSplitsUnderRollbackHasTheReferencesMembersAtAllTimes) {
 }
 
 TEST(LogicalProcesses, OnSeveralThreadsCommitTheReferencesTrace) {
-  for (const auto& [scene, least] : {std::pair{pendula_and_balls(8, 0.8), 10}, {sized("avalanche", 24, 0.5), 20}, {sized("cars", 8, 0.1), 0}}) {
+  for (const auto& [scene, least] : {std::pair{pendula_and_balls(8, 0.8), 10},
+                                     {sized("avalanche", 24, 0.5), 20},
+                                     {sized("cars", 8, 0.1), 0}}) {
     const Trajectory reference = run_with("ordered", scene);
     ASSERT_GE(reference.events.size(), static_cast<std::size_t>(least)) << scene.name;
-    for (const int threads : {2, 4}) EXPECT_EQ(difference(reference, run_on(threads, scene)), "") << scene.name << ", " << threads << " threads";
+    for (const int threads : {2, 4})
+      EXPECT_EQ(difference(reference, run_on(threads, scene)), "")
+          << scene.name << ", " << threads << " threads";
   }
 }
 
@@ -147,7 +162,8 @@ TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
       options.engine = "tw";
       options.threads = threads;
       options.most_states = most_states;
-      if (threads == 1) options.faults = {3, true, 1.0, 0, 0.0};   // random order up to a second ahead of global virtual time
+      // random order up to a second ahead of global virtual time
+      if (threads == 1) options.faults = {3, true, 1.0, 0, 0.0};
       return run_as_told(std::move(options), scene, laws());
     };
     const Trajectory free = run_capped(1, 0);
@@ -158,15 +174,19 @@ TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
     for (const int threads : {1, 2}) {
       const Trajectory capped = run_capped(threads, 8);
       EXPECT_EQ(difference(reference, capped), "") << scene.name << ", " << threads << " threads";
-      EXPECT_GT(capped.counters.counts.at("held_back"), 0U) << scene.name << ", " << threads << " threads";
-      EXPECT_LE(capped.counters.counts.at("most_states_of_a_body"), 8U) << scene.name << ", " << threads << " threads";
+      EXPECT_GT(capped.counters.counts.at("held_back"), 0U)
+          << scene.name << ", " << threads << " threads";
+      EXPECT_LE(capped.counters.counts.at("most_states_of_a_body"), 8U)
+          << scene.name << ", " << threads << " threads";
     }
   }
 }
 
 // ---- Callbacks ---------------------------------------------------------------------------------
 
-Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const FaultInjection& faults = {}) {
+Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene,
+                              const std::vector<engines::Callback>& callbacks,
+                              const FaultInjection& faults = {}) {
   engines::RunOptions options;
   options.engine = engine;
   options.faults = faults;
@@ -189,7 +209,10 @@ TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasRolledBack) {
                          }});
   const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
   ASSERT_EQ(calls, 180);
-  const auto acts = [](const Trajectory& run) { return std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kControl; }); };
+  const auto acts = [](const Trajectory& run) {
+    return std::count_if(run.events.begin(), run.events.end(),
+                         [](const Event& event) { return event.kind == EventKind::kControl; });
+  };
   EXPECT_EQ(acts(reference), 180);
   EXPECT_EQ(difference(reference, run_with_callbacks("ca", scene, callbacks)), "");
   EXPECT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks)), "");
@@ -199,7 +222,7 @@ TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasRolledBack) {
     ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
     EXPECT_EQ(acts(run), 180);
   }
-  EXPECT_GT(calls, 20 * 180);   // some were rolled back
+  EXPECT_GT(calls, 20 * 180);  // some were rolled back
   // Executed last, each finds its sixty balls at the end of the run: the first alone rolls back at
   // least 50 of them.
   engines::FaultInjection late;
@@ -213,22 +236,31 @@ TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasRolledBack) {
 
 TEST(LateCallback, ChangesProcessesToo) {
   const scene::Scene scene = pendula_and_balls(4, 0.8);
-  const std::vector<engines::Callback> callbacks{{0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
+  const std::vector<engines::Callback> callbacks{
+      {0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
   const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
   EXPECT_EQ(difference(reference, run_with_callbacks("ca", scene, callbacks)), "");
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) ASSERT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 5, 0.05})), "") << "seed " << seed;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    ASSERT_EQ(difference(reference,
+                         run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 5, 0.05})),
+              "")
+        << "seed " << seed;
 }
 
 // The tower has fallen together, been hit and come apart when a callback throws its lowest block up
 // before all that.
 TEST(LateCallback, BelowAGroupsBirthDissolvesIt) {
   const scene::Scene scene = tower_and_projectile(5.0);
-  const std::vector<engines::Callback> callbacks{{0.02, {1}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(0.4, 0.0, 0.5); }}};
+  const std::vector<engines::Callback> callbacks{{0.02, {1}, [](int, RigidBodyState& state) {
+                                                    state.momentum_world = Vector3d(0.4, 0.0, 0.5);
+                                                  }}};
   engines::FaultInjection late;
   late.late_callbacks = true;
-  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks), run = run_with_callbacks("tw", scene, callbacks, late);
+  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks),
+                   run = run_with_callbacks("tw", scene, callbacks, late);
   EXPECT_EQ(difference(reference, run), "");
-  EXPECT_GE(run.counters.counts.at("rollbacks"), 3U);   // all three blocks, as messages to one segment
+  // all three blocks, as messages to one segment
+  EXPECT_GE(run.counters.counts.at("rollbacks"), 3U);
   EXPECT_GT(run.counters.counts.at("undone_integrations"), 20U);
 }
 
@@ -236,11 +268,15 @@ TEST(LateCallback, BelowAGroupsBirthDissolvesIt) {
 // the run's last instant, in their order.
 TEST(Callback, ActsAtItsInstantInEveryEngine) {
   const Vector3d start(0, 0, 5), thrown(1.0, 0, 2.0), turned(-0.5, 0.25, 3.0);
-  scene::Scene scene = scene_of({ball("ball", 0.1, 2.0, start, thrown), ball("other", 0.1, 1.0, {5, 0, 9}, Vector3d::Zero())}, 0.8, kEarth);
-  const std::vector<engines::Callback> callbacks{{0.37, {0}, [&](int, RigidBodyState& state) { state.momentum_world = 2.0 * turned; }},
-                                                 {0.8, {0}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(1, 1, 1); }},
-                                                 {0.8, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world *= 3.0; }}};
-  const Vector3d at_turn = start + 0.37 * thrown + 0.5 * 0.37 * 0.37 * kEarth, at_end = at_turn + 0.43 * turned + 0.5 * 0.43 * 0.43 * kEarth;
+  scene::Scene scene = scene_of(
+      {ball("ball", 0.1, 2.0, start, thrown), ball("other", 0.1, 1.0, {5, 0, 9}, Vector3d::Zero())},
+      0.8, kEarth);
+  const std::vector<engines::Callback> callbacks{
+      {0.37, {0}, [&](int, RigidBodyState& state) { state.momentum_world = 2.0 * turned; }},
+      {0.8, {0}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(1, 1, 1); }},
+      {0.8, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world *= 3.0; }}};
+  const Vector3d at_turn = start + 0.37 * thrown + 0.5 * 0.37 * 0.37 * kEarth,
+                 at_end = at_turn + 0.43 * turned + 0.5 * 0.43 * 0.43 * kEarth;
   for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
     const Trajectory run = run_with_callbacks(engine, scene, callbacks);
     ASSERT_EQ(run.events.size(), 4U) << engine;
@@ -255,15 +291,20 @@ TEST(Callback, ActsAtItsInstantInEveryEngine) {
     EXPECT_LT((run.events[0].point_world - at_turn).norm(), 1e-12) << engine;
     EXPECT_LT((run.frames.back().poses[0].com_world - at_end).norm(), 1e-12) << engine;
     EXPECT_EQ(run.frames.back().time, 0.8) << engine;
-    EXPECT_LT((run.frames.back().poses[0].velocity_world - Vector3d(1.5, 1.5, 1.5)).norm(), 1e-15) << engine;   // of 2 kg
-    EXPECT_EQ(run.counters.counts.at("discontinuities"), 3U) << engine;   // ball 0 once at the end, ball 1 once
+    // of 2 kg
+    EXPECT_LT((run.frames.back().poses[0].velocity_world - Vector3d(1.5, 1.5, 1.5)).norm(), 1e-15)
+        << engine;
+    // ball 0 once at the end, ball 1 once
+    EXPECT_EQ(run.counters.counts.at("discontinuities"), 3U) << engine;
   }
 }
 
 // A body at rest, in contact or asleep starts to move.
 TEST(Callback, SetsWhatLiesInMotionInTheWorldOfAllBodies) {
   const auto kick = [](int, RigidBodyState& state) { state.momentum_world.z() = 2.0; };
-  scene::Scene resting = scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero())}, 1.3, kEarth);
+  scene::Scene resting = scene_of(
+      {plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero())},
+      1.3, kEarth);
   resting.bodies[1].restitution = 0.0;
   scene::Scene lying = resting, asleep = resting;
   lying.contact = scene::ContactSpec{};
@@ -274,8 +315,10 @@ TEST(Callback, SetsWhatLiesInMotionInTheWorldOfAllBodies) {
     ASSERT_EQ(run.stopped_by, "");
     // 1.3 s is 0.3 s after the callback: 0.1 + 2 * 0.3 - 9.81 * 0.09 / 2 = 0.25855 m. The position
     // of the floor's contact is known to a contact margin.
-    EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1 + 2.0 * 0.3 - 0.5 * 9.81 * 0.09, 1e-5);
-    EXPECT_EQ(scene.contact && scene.contact->sleep, run.counters.counts.at("bodies_put_to_sleep") > 0);
+    EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1 + 2.0 * 0.3 - 0.5 * 9.81 * 0.09,
+                1e-5);
+    EXPECT_EQ(scene.contact && scene.contact->sleep,
+              run.counters.counts.at("bodies_put_to_sleep") > 0);
   }
 }
 
@@ -283,11 +326,17 @@ TEST(Callback, SetsWhatLiesInMotionInTheWorldOfAllBodies) {
 // the step.
 TEST(Callback, AgreesInEveryEngine) {
   const scene::Scene scene = pendula_and_balls(4, 0.5);
-  const std::vector<engines::Callback> callbacks{{0.1234, {0, 1, 4}, [](int body, RigidBodyState& state) { state.momentum_world += Vector3d(0.02 * body, 0.3, 0); }},
-                                                 {0.1234, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }},
-                                                 {0.25, {3, 5}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.2; }}};
+  const std::vector<engines::Callback> callbacks{
+      {0.1234,
+       {0, 1, 4},
+       [](int body, RigidBodyState& state) {
+         state.momentum_world += Vector3d(0.02 * body, 0.3, 0);
+       }},
+      {0.1234, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }},
+      {0.25, {3, 5}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.2; }}};
   const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
-  for (const char* engine : {"ca", "tw"}) EXPECT_EQ(difference(reference, run_with_callbacks(engine, scene, callbacks)), "") << engine;
+  for (const char* engine : {"ca", "tw"})
+    EXPECT_EQ(difference(reference, run_with_callbacks(engine, scene, callbacks)), "") << engine;
   const Trajectory rd = run_with_callbacks("rd", scene, callbacks);
   ASSERT_EQ(rd.events.size(), reference.events.size());
   ASSERT_GE(rd.events.size(), 10U);
@@ -295,22 +344,34 @@ TEST(Callback, AgreesInEveryEngine) {
     EXPECT_EQ(rd.events[k].kind, reference.events[k].kind) << k;
     EXPECT_EQ(rd.events[k].body_a, reference.events[k].body_a) << k;
     EXPECT_EQ(rd.events[k].body_b, reference.events[k].body_b) << k;
-    EXPECT_NEAR(rd.events[k].time, reference.events[k].time, 1e-6) << k;   // s: as without callbacks, below
+    // s: as without callbacks, below
+    EXPECT_NEAR(rd.events[k].time, reference.events[k].time, 1e-6) << k;
   }
-  for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - reference.frames.back().poses[i].com_world).norm(), 1e-5) << rd.bodies[i].name;   // m
+  // m
+  for (std::size_t i = 0; i < rd.bodies.size(); ++i)
+    EXPECT_LT(
+        (rd.frames.back().poses[i].com_world - reference.frames.back().poses[i].com_world).norm(),
+        1e-5)
+        << rd.bodies[i].name;
 }
 
 // A pull along the rod changes nothing, whatever stabilisation the rod has: as after an impact,
 // velocities are projected onto what links allow.
 TEST(Callback, LeavesLinksAsLongAsTheyAre) {
-  for (const scene::StabilisationKind kind : {scene::StabilisationKind::kNone, scene::StabilisationKind::kBaumgarte, scene::StabilisationKind::kProjection}) {
+  for (const scene::StabilisationKind kind :
+       {scene::StabilisationKind::kNone, scene::StabilisationKind::kBaumgarte,
+        scene::StabilisationKind::kProjection}) {
     scene::Scene scene = truths::straight_chain({1.0}, 1.0, -Vector3d::UnitZ(), kEarth);
     scene.stabilisation->kind = kind;
     scene.duration_s = 1.0;
     for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
-      const Trajectory run = run_with_callbacks(engine, scene, {{0.5, {0}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(0, 0, -1); }}});
+      const Trajectory run =
+          run_with_callbacks(engine, scene, {{0.5, {0}, [](int, RigidBodyState& state) {
+                                                state.momentum_world = Vector3d(0, 0, -1);
+                                              }}});
       ASSERT_EQ(run.stopped_by, "") << engine;
-      EXPECT_NEAR(run.frames.back().poses[0].com_world.z(), -1.0, 1e-12) << engine;   // m: it was at rest there
+      // m: it was at rest there
+      EXPECT_NEAR(run.frames.back().poses[0].com_world.z(), -1.0, 1e-12) << engine;
     }
   }
 }
@@ -321,23 +382,32 @@ TEST(Callback, SeesPlacesOfTheWorldAndMovesNone) {
   const Vector3d far(1e6, 0, 0);
   const scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, far, Vector3d::Zero())}, 0.2);
   for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
-    const Trajectory run = run_with_callbacks(engine, scene, {{0.1, {0}, [&](int, RigidBodyState& state) {
-                                                                 state.momentum_world = Vector3d(0, (state.com_world - far).norm() < 1e-9 ? 1.0 : -1.0, 0);
-                                                                 state.com_world.setZero();
-                                                               }}});
-    EXPECT_LT((run.frames.back().poses[0].com_world - far - Vector3d(0, 0.1, 0)).norm(), 1e-9) << engine;   // m: the spacing of doubles at 10^6 is 1e-10
+    const Trajectory run = run_with_callbacks(
+        engine, scene, {{0.1, {0}, [&](int, RigidBodyState& state) {
+                           state.momentum_world =
+                               Vector3d(0, (state.com_world - far).norm() < 1e-9 ? 1.0 : -1.0, 0);
+                           state.com_world.setZero();
+                         }}});
+    // m: the spacing of doubles at 10^6 is 1e-10
+    EXPECT_LT((run.frames.back().poses[0].com_world - far - Vector3d(0, 0.1, 0)).norm(), 1e-9)
+        << engine;
   }
 }
 
 TEST(Callback, OnWhatCannotMoveIsRefused) {
-  const scene::Scene scene = scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())}, 0.1, kEarth);
-  for (const char* engine : {"rd", "tw"}) EXPECT_THROW(run_with_callbacks(engine, scene, {{0.05, {0}, [](int, RigidBodyState&) {}}}), PreconditionError) << engine;
+  const scene::Scene scene = scene_of(
+      {plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())},
+      0.1, kEarth);
+  for (const char* engine : {"rd", "tw"})
+    EXPECT_THROW(run_with_callbacks(engine, scene, {{0.05, {0}, [](int, RigidBodyState&) {}}}),
+                 PreconditionError)
+        << engine;
 }
 
 // ---- Agreement with a world of all bodies ----------------------------------------------------
 
 // A step of fourth order that ends elsewhere: 1e-8 at 1/240 s, multiplied by some impacts.
-constexpr double kTruncation = 1e-6;   // s, m
+constexpr double kTruncation = 1e-6;  // s, m
 
 TEST(LogicalProcesses, MoveAsTheWorldOfAllBodiesDoes) {
   const scene::Scene scene = pendula_and_balls(6, 0.5);
@@ -349,7 +419,10 @@ TEST(LogicalProcesses, MoveAsTheWorldOfAllBodiesDoes) {
     EXPECT_EQ(rd.events[k].body_a, tw.events[k].body_a) << k;
     EXPECT_NEAR(rd.events[k].time, tw.events[k].time, kTruncation) << k;
   }
-  for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - tw.frames.back().poses[i].com_world).norm(), 10 * kTruncation) << rd.bodies[i].name;
+  for (std::size_t i = 0; i < rd.bodies.size(); ++i)
+    EXPECT_LT((rd.frames.back().poses[i].com_world - tw.frames.back().poses[i].com_world).norm(),
+              10 * kTruncation)
+        << rd.bodies[i].name;
 }
 
 TEST(LogicalProcesses, RecordWhatTheirLinksAndContactsPullAndPush) {
@@ -358,14 +431,16 @@ TEST(LogicalProcesses, RecordWhatTheirLinksAndContactsPullAndPush) {
   EXPECT_NEAR(run.frames.front().rod_tensions.at(0), 0.64 + 9.81, 1e-9);
   const Trajectory tower = run_with("tw", tower_and_projectile(0.1));
   double push = 0.0;
-  for (const ContactPoint& point : tower.frames.back().contacts) push += point.body_a == 0 ? -point.force_on_a_world.z() : 0.0;
-  EXPECT_NEAR(push, 3.4 * 9.81, 1e-6 * 30);   // the weight of three blocks, and of the shot that has fallen beside them
+  for (const ContactPoint& point : tower.frames.back().contacts)
+    push += point.body_a == 0 ? -point.force_on_a_world.z() : 0.0;
+  // the weight of three blocks, and of the shot that has fallen beside them
+  EXPECT_NEAR(push, 3.4 * 9.81, 1e-6 * 30);
 }
 
 TEST(SizedScenes, BeginApartAtTheirOwnSize) {
   for (const scene::SizedScene& sized_scene : scene::sized_scenes()) {
     const scene::Scene scene = sized(sized_scene.name, sized_scene.default_n, 1e-6);
-    EXPECT_NO_THROW({   // an overlap at the start is refused
+    EXPECT_NO_THROW({  // an overlap at the start is refused
       const Trajectory run = run_with("rd", scene);
       EXPECT_EQ(run.stopped_by, "") << sized_scene.name;
       EXPECT_GE(run.frames.front().smallest_gap, 0.0) << sized_scene.name;
@@ -377,9 +452,12 @@ TEST(SizedScenes, BeginApartWhereTheyAreLarge) {
   for (const scene::SizedScene& sized_scene : scene::sized_scenes()) {
     // Each rock is a shape of its own to build; an arm has ten bodies, and each pair of links is
     // found by name.
-    const int n = sized_scene.name == "avalanche" ? 1000 : sized_scene.name == "robots" ? 500 : 20'000;
+    const int n = sized_scene.name == "avalanche" ? 1000
+                  : sized_scene.name == "robots"  ? 500
+                                                  : 20'000;
     const scene::Scene scene = sized(sized_scene.name, n, 1e-6);
-    EXPECT_NO_THROW(engines::FlightWorld(scene, "tw", laws(), {})) << sized_scene.name;   // an overlap at the start is refused
+    // an overlap at the start is refused
+    EXPECT_NO_THROW(engines::FlightWorld(scene, "tw", laws(), {})) << sized_scene.name;
   }
 }
 

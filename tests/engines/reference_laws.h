@@ -14,7 +14,9 @@ inline Laws reference_laws() {
   modules::Registry registry;
   register_assignments(registry);
   const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
-  const auto load = [&](const char* id, const char* file) { return modules::load_module(registry.find(id), built / file); };
+  const auto load = [&](const char* id, const char* file) {
+    return modules::load_module(registry.find(id), built / file);
+  };
   Laws laws = library_laws();
   a1::bind(*std::static_pointer_cast<const a1::Module>(load("a1", "a1_reference.so")), laws);
   a2::bind(*std::static_pointer_cast<const a2::Module>(load("a2", "a2_reference.so")), laws);

@@ -1,4 +1,5 @@
-// What a run must not keep to itself: links that come apart, energy from nothing, bodies that turn too far; and that right runs are left in peace.
+// What a run must not keep to itself: links that come apart, energy from nothing, bodies that turn
+// too far; and that right runs are left in peace.
 #include <cmath>
 #include <numbers>
 
@@ -28,10 +29,14 @@ using engines::RunWatch;
 const Vector3d kGravity(0, 0, -9.81);
 const std::vector<std::string> kEngines = {"rd", "ca", "ordered", "tw"};
 
-scene::Scene broken_scene(const std::string& name) { return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/engines/broken_scenes" / (name + ".json")); }
+scene::Scene broken_scene(const std::string& name) {
+  return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+                           "tests/engines/broken_scenes" / (name + ".json"));
+}
 
-Trajectory run_by(const std::string& engine, scene::Scene scene, const Laws& laws = reference_laws()) {
-  if (scene.contact && engine != "rd") scene.contact->sleep = false;   // which it refuses
+Trajectory run_by(const std::string& engine, scene::Scene scene,
+                  const Laws& laws = reference_laws()) {
+  if (scene.contact && engine != "rd") scene.contact->sleep = false;  // which it refuses
   engines::RunOptions options;
   options.engine = engine;
   options.timewarp = engines::fast_timewarp();
@@ -41,12 +46,15 @@ Trajectory run_by(const std::string& engine, scene::Scene scene, const Laws& law
 }
 
 bool has_fault(const Trajectory& run, const std::string& kind) {
-  return std::any_of(run.counters.faults.begin(), run.counters.faults.end(), [&](const RunFault& fault) { return fault.kind == kind; });
+  return std::any_of(run.counters.faults.begin(), run.counters.faults.end(),
+                     [&](const RunFault& fault) { return fault.kind == kind; });
 }
 
 std::string said(const Trajectory& run) {
   std::string all = run.stopped_by;
-  for (const RunFault& fault : run.counters.faults) all += fmt::format("\n{} of {}: {:.3g} first at {:.3g} s", fault.kind, fault.subject, fault.worst, fault.first_s);
+  for (const RunFault& fault : run.counters.faults)
+    all += fmt::format("\n{} of {}: {:.3g} first at {:.3g} s", fault.kind, fault.subject,
+                       fault.worst, fault.first_s);
   for (const std::string& notice : run.counters.notices) all += "\nnote " + notice;
   return all;
 }
@@ -57,7 +65,8 @@ double energy(const Frame& frame) { return frame.kinetic_energy + frame.potentia
 double energy_rise(const Trajectory& run) {
   double least = energy(run.frames.front()), rise = 0.0;
   for (const Frame& frame : run.frames) {
-    rise = std::isfinite(energy(frame)) ? std::max(rise, energy(frame) - least) : std::numeric_limits<double>::infinity();
+    rise = std::isfinite(energy(frame)) ? std::max(rise, energy(frame) - least)
+                                        : std::numeric_limits<double>::infinity();
     least = std::min(least, energy(frame));
   }
   return rise;
@@ -70,10 +79,12 @@ double worst_rod(const scene::Scene& scene, const Trajectory& run) {
     for (const effects::RodSpec& rod : scene.effects.of<effects::RodSpec>()) {
       const auto at = [&](const scene::AnchorSpec& end) -> Vector3d {
         for (std::size_t i = 0; i < run.bodies.size(); ++i)
-          if (run.bodies[i].name == end.body) return frame.poses[i].com_world + frame.poses[i].world_from_body * end.point_m;
+          if (run.bodies[i].name == end.body)
+            return frame.poses[i].com_world + frame.poses[i].world_from_body * end.point_m;
         return end.point_m;
       };
-      worst = std::max(worst, std::abs((at(rod.a) - at(rod.b)).norm() - rod.length_m) / rod.length_m);
+      worst =
+          std::max(worst, std::abs((at(rod.a) - at(rod.b)).norm() - rod.length_m) / rod.length_m);
     }
   return worst;
 }
@@ -82,10 +93,10 @@ double worst_rod(const scene::Scene& scene, const Trajectory& run) {
 
 TEST(RunWatch, KeepsTheFirstTheWorstAndTheirNumber) {
   RunWatch watch;
-  watch.note(RunWatch::Kind::kLinkOpen, "'a'", {1e-7, 1e-6, 0.1, 0.01});   // within what is allowed
+  watch.note(RunWatch::Kind::kLinkOpen, "'a'", {1e-7, 1e-6, 0.1, 0.01});  // within what is allowed
   EXPECT_TRUE(watch.empty());
   watch.note(RunWatch::Kind::kLinkOpen, "'a'", {2e-6, 1e-6, 0.2, 0.01});
-  RunWatch other;   // a thread's
+  RunWatch other;  // a thread's
   other.note(RunWatch::Kind::kLinkOpen, "'b'", {5e-6, 1e-6, 0.15, 0.01});
   watch.add(other);
   const auto faults = watch.faults();
@@ -96,7 +107,8 @@ TEST(RunWatch, KeepsTheFirstTheWorstAndTheirNumber) {
   EXPECT_EQ(faults[0].worst_s, 0.15);
   EXPECT_EQ(faults[0].worst, 5e-6);
   EXPECT_EQ(faults[0].subject, "'b' (and 1 more)");
-  EXPECT_NE(faults[0].remedy.find("0.005 s"), std::string::npos) << faults[0].remedy;   // half of 0.01 s
+  // half of 0.01 s
+  EXPECT_NE(faults[0].remedy.find("0.005 s"), std::string::npos) << faults[0].remedy;
 }
 
 TEST(RunWatch, WhatIsNoNumberIsWorst) {
@@ -111,20 +123,28 @@ TEST(RunWatch, AFaultIsACheckThatFailed) {
   scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, Vector3d::Zero(), Vector3d::Zero())}, 0.1);
   Trajectory run = run_by("rd", scene);
   EXPECT_TRUE(engines::judge_run(scene, run).empty());
-  run.counters.faults.push_back({"link_open", "'wire'", 0.5, 1e-6, "", 0.1, 0.2, 3, "meaning", "remedy"});
+  run.counters.faults.push_back(
+      {"link_open", "'wire'", 0.5, 1e-6, "", 0.1, 0.2, 3, "meaning", "remedy"});
   const auto checks = engines::judge_run(scene, run);
   ASSERT_EQ(checks.size(), 1u);
   EXPECT_FALSE(checks[0].passed);
-  EXPECT_NE(checks[0].detail.find("first at t = 0.1 s, 3 times in all"), std::string::npos) << checks[0].detail;
+  EXPECT_NE(checks[0].detail.find("first at t = 0.1 s, 3 times in all"), std::string::npos)
+      << checks[0].detail;
 }
 
 // ---- What energy is compared with --------------------------------------------------------------
 
-/// A ball at a height that moves sideways first at one speed, then at another, and has gone `lift` up between two looks 1/60 s apart.
-std::vector<RunFault> told_of_ball(double radius, double mass, double height, double speed, double then, double lift) {
-  const World world = build_world(scene_of({ball("ball", radius, mass, {0, 0, height}, Vector3d::Zero())}, 1.0, kGravity));
-  const auto states = [&](double z, double v) { return std::vector<RigidBodyState>{{Vector3d(0, 0, z), Quaterniond::Identity(), Vector3d(mass * v, 0, 0), Vector3d::Zero()}}; };
-  engines::EnergyWatch watch(1e-5, 1.0 / 60, true);   // a rest speed far below what moves here
+/// A ball at a height that moves sideways first at one speed, then at another, and has gone `lift`
+/// up between two looks 1/60 s apart.
+std::vector<RunFault> told_of_ball(double radius, double mass, double height, double speed,
+                                   double then, double lift) {
+  const World world = build_world(
+      scene_of({ball("ball", radius, mass, {0, 0, height}, Vector3d::Zero())}, 1.0, kGravity));
+  const auto states = [&](double z, double v) {
+    return std::vector<RigidBodyState>{
+        {Vector3d(0, 0, z), Quaterniond::Identity(), Vector3d(mass * v, 0, 0), Vector3d::Zero()}};
+  };
+  engines::EnergyWatch watch(1e-5, 1.0 / 60, true);  // a rest speed far below what moves here
   EXPECT_FALSE(watch.look(0.0, world, states(height, speed)));
   EXPECT_FALSE(watch.look(1.0 / 60, world, states(height, speed)));
   EXPECT_FALSE(watch.look(2.0 / 60, world, states(height + lift, then)));
@@ -133,14 +153,16 @@ std::vector<RunFault> told_of_ball(double radius, double mass, double height, do
   return counters.watch.faults();
 }
 
-// 10 t that move with 50 J and then with 60: a thousandth of their weight over their size would be 31 J.
+// 10 t that move with 50 J and then with 60: a thousandth of their weight over their size would be
+// 31 J.
 TEST(EnergyRises, IsComparedWithWhatMovesNotWithWeight) {
   EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.1, 0.0).size(), 0u);
   ASSERT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0).size(), 1u);
   EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0)[0].kind, "energy_rises");
 }
 
-// The same wherever its heights are counted from, up to where they are rounded to more than it moves by: a million kilometres up to 1.2e-7 m.
+// The same wherever its heights are counted from, up to where they are rounded to more than it
+// moves by: a million kilometres up to 1.2e-7 m.
 TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
   EXPECT_EQ(told_of_ball(0.5, 1e4, 1e4, 0.1, 0.11, 0.0).size(), 1u);
   EXPECT_EQ(told_of_ball(1e-3, 1e-3, 1e9, 1e-3, 1e-3, std::nextafter(1e9, 2e9) - 1e9).size(), 0u);
@@ -148,48 +170,64 @@ TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
 
 // ---- Runs that cannot be trusted ---------------------------------------------------------------
 
-/// A light bob on a rod above one `ratio` times as heavy, held out sideways. Rods of 1 m. The seed draws the angles.
+/// A light bob on a rod above one `ratio` times as heavy, held out sideways. Rods of 1 m. The seed
+/// draws the angles.
 scene::Scene light_above_heavy(double ratio, unsigned seed) {
   const double upper = 0.6 + 0.05 * (seed % 9), lower = 1.1 + 0.04 * (seed % 7);
-  const Vector3d first(std::sin(upper), 0, -std::cos(upper)), second = first + Vector3d(std::sin(lower), 0, -std::cos(lower));
-  scene::Scene scene = scene_of({ball("light", 0.0, 1.0, first, Vector3d::Zero()), ball("heavy", 0.0, ratio, second, Vector3d::Zero())}, 1.0, kGravity);
+  const Vector3d first(std::sin(upper), 0, -std::cos(upper)),
+      second = first + Vector3d(std::sin(lower), 0, -std::cos(lower));
+  scene::Scene scene = scene_of({ball("light", 0.0, 1.0, first, Vector3d::Zero()),
+                                 ball("heavy", 0.0, ratio, second, Vector3d::Zero())},
+                                1.0, kGravity);
   for (scene::BodySpec& body : scene.bodies) body.collides = false;
   scene.step_s = 1.0 / 60;
   scene.stabilisation.emplace();
-  scene.effects.of<effects::RodSpec>().push_back({"upper", {"light", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
-  scene.effects.of<effects::RodSpec>().push_back({"lower", {"light", Vector3d::Zero()}, {"heavy", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"upper", {"light", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"lower", {"light", Vector3d::Zero()}, {"heavy", Vector3d::Zero()}, 1.0});
   return scene;
 }
 
-// A rod that is 1 % off is no rod. At the default step such runs go wrong; they say so, and name a step at which they do not.
+// A rod that is 1 % off is no rod. At the default step such runs go wrong; they say so, and name a
+// step at which they do not.
 TEST(RunWatch, RodsThatComeApartAreNeverKeptSilent) {
   for (const double ratio : {1e3, 1e5, 1e6})
     for (const unsigned seed : {1u, 5u}) {
       const scene::Scene scene = light_above_heavy(ratio, seed);
       for (const std::string& engine : {std::string("rd"), std::string("ca")}) {
         const Trajectory run = run_by(engine, scene);
-        if (worst_rod(scene, run) > 1e-2) EXPECT_TRUE(!run.stopped_by.empty() || has_fault(run, "link_open")) << engine << ' ' << ratio << ' ' << seed << said(run);
+        if (worst_rod(scene, run) > 1e-2)
+          EXPECT_TRUE(!run.stopped_by.empty() || has_fault(run, "link_open"))
+              << engine << ' ' << ratio << ' ' << seed << said(run);
       }
     }
 }
 
-// Explicit Euler puts energy into every swing: a pendulum of 1 m at 0.01 s gains a tenth within seconds.
+// Explicit Euler puts energy into every swing: a pendulum of 1 m at 0.01 s gains a tenth within
+// seconds.
 TEST(RunWatch, EnergyThatAMethodMakesIsAFault) {
-  scene::Scene scene = scene_of({ball("bob", 0.0, 1.0, {1, 0, 0}, Vector3d::Zero())}, 2.0, kGravity);
+  scene::Scene scene =
+      scene_of({ball("bob", 0.0, 1.0, {1, 0, 0}, Vector3d::Zero())}, 2.0, kGravity);
   scene.bodies[0].collides = false;
   scene.step_s = 0.01;
   scene.stabilisation.emplace();
-  scene.effects.of<effects::RodSpec>().push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   Laws laws = reference_laws();
   laws.integrator_source = "explicit Euler";
-  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
-  for (const std::string& engine : kEngines) EXPECT_TRUE(has_fault(run_by(engine, scene, laws), "energy_rises")) << engine;
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y,
+                           double h) -> VectorXd { return y + h * f(t, y); };
+  for (const std::string& engine : kEngines)
+    EXPECT_TRUE(has_fault(run_by(engine, scene, laws), "energy_rises")) << engine;
   for (const std::string& engine : kEngines) EXPECT_EQ(said(run_by(engine, scene)), "") << engine;
 }
 
-// A ball on a spring, pushed by a constant force: what the force brings in is no fault, what the method makes beside it is. The first step counts.
+// A ball on a spring, pushed by a constant force: what the force brings in is no fault, what the
+// method makes beside it is. The first step counts.
 TEST(RunWatch, WhatAForceBringsInIsNoFault) {
-  scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {1, 0, 0}, Vector3d::Zero())}, 1.0, Vector3d::Zero());
+  scene::Scene scene =
+      scene_of({ball("ball", 0.1, 1.0, {1, 0, 0}, Vector3d::Zero())}, 1.0, Vector3d::Zero());
   effects::SpringSpec spring;
   spring.a.body = "ball";
   spring.b.point_m = Vector3d(0, 0, 0);
@@ -200,9 +238,12 @@ TEST(RunWatch, WhatAForceBringsInIsNoFault) {
   scene.step_s = 0.01;
   EXPECT_FALSE(has_fault(run_by("rd", scene), "energy_rises"));
   Laws laws = reference_laws();
-  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
-  EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));   // (w h)^2 / 2 = 0.5 % of the swing a step
-  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd {
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y,
+                           double h) -> VectorXd { return y + h * f(t, y); };
+  // (w h)^2 / 2 = 0.5 % of the swing a step
+  EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y,
+                           double h) -> VectorXd {
     const Laws right = reference_laws();
     const VectorXd next = right.integrate_step(f, t, y, h);
     return t == 0.0 ? VectorXd(next + 2.0 * (next - y)) : next;
@@ -211,7 +252,8 @@ TEST(RunWatch, WhatAForceBringsInIsNoFault) {
   EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));
 }
 
-// A hinge's motor that overshoots spins a light body as fast as numbers go. No search for impacts follows that.
+// A hinge's motor that overshoots spins a light body as fast as numbers go. No search for impacts
+// follows that.
 TEST(RunWatch, WhatTurnsTooFarInAStepIsStoppedInTime) {
   for (const std::string& engine : {std::string("rd"), std::string("ordered")}) {
     const std::string why = run_by(engine, broken_scene("min_135_crash")).stopped_by;
@@ -219,7 +261,8 @@ TEST(RunWatch, WhatTurnsTooFarInAStepIsStoppedInTime) {
   }
 }
 
-// Eight boxes of 1 cm on ball joints, held out level: where they hang they swing too fast for 1/60 s.
+// Eight boxes of 1 cm on ball joints, held out level: where they hang they swing too fast for 1/60
+// s.
 TEST(RunWatch, AChainOfSmallBoxesIsReportedWithTheStepItNeeds) {
   const Trajectory run = run_by("rd", broken_scene("chain_0.01_1"));
   EXPECT_NE(said(run).find("between its joints"), std::string::npos) << said(run);
@@ -231,9 +274,14 @@ scene::Scene heavy_on_light_links(double ratio, int links, double angle) {
   const Vector3d along(std::sin(angle), 0, -std::cos(angle));
   scene::Scene scene = scene_of({}, 1.5, kGravity);
   for (int k = 1; k <= links + 1; ++k) {
-    scene.bodies.push_back(ball(k > links ? "ball" : fmt::format("link_{}", k), 0.0, k > links ? ratio : 1.0, 0.5 * k * along, Vector3d::Zero()));
+    scene.bodies.push_back(ball(k > links ? "ball" : fmt::format("link_{}", k), 0.0,
+                                k > links ? ratio : 1.0, 0.5 * k * along, Vector3d::Zero()));
     scene.bodies.back().collides = false;
-    scene.effects.of<effects::RodSpec>().push_back({fmt::format("rod {}", k), {k == 1 ? "" : fmt::format("link_{}", k - 1), Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 0.5});
+    scene.effects.of<effects::RodSpec>().push_back(
+        {fmt::format("rod {}", k),
+         {k == 1 ? "" : fmt::format("link_{}", k - 1), Vector3d::Zero()},
+         {scene.bodies.back().name, Vector3d::Zero()},
+         0.5});
   }
   scene.stabilisation.emplace();
   return scene;
@@ -242,12 +290,15 @@ scene::Scene heavy_on_light_links(double ratio, int links, double angle) {
 // A step that is named is one at which it runs right: rods hold, energy stays.
 TEST(NamedSteps, AreStepsAtWhichItRunsRight) {
   const Laws laws = reference_laws();
-  const std::vector<scene::Scene> scenes = {heavy_on_light_links(1e3, 4, 0.87), heavy_on_light_links(1e4, 2, 0.5), light_above_heavy(1e3, 1), light_above_heavy(1e4, 5)};
+  const std::vector<scene::Scene> scenes = {heavy_on_light_links(1e3, 4, 0.87),
+                                            heavy_on_light_links(1e4, 2, 0.5),
+                                            light_above_heavy(1e3, 1), light_above_heavy(1e4, 5)};
   for (scene::Scene scene : scenes) {
     std::vector<std::string> notices;
     scene.step_s = 1.0 / 30;
     const World world = build_world(scene);
-    const auto step = engines::report_unstable_links(world, engines::LinkForces(world), laws, {scene.step_s, scene.duration_s}, notices);
+    const auto step = engines::report_unstable_links(world, engines::LinkForces(world), laws,
+                                                     {scene.step_s, scene.duration_s}, notices);
     ASSERT_TRUE(step) << scene.bodies.back().mass_kg.value_or(0.0);
     ASSERT_EQ(notices.size(), 1u);
     scene.step_s = *step;
@@ -261,30 +312,38 @@ TEST(NamedSteps, AreStepsAtWhichItRunsRight) {
 
 // Boxes that touch along edges, one of which a medium slows: what draws them apart is no velocity.
 TEST(InStep, NoEnergyComesOfPositionCorrections) {
-  for (const char* name : {"in_step_exit0", "in_step_explodes", "min_471_runaway", "min_195_energy"}) {
+  for (const char* name :
+       {"in_step_exit0", "in_step_explodes", "min_471_runaway", "min_195_energy"}) {
     const scene::Scene scene = broken_scene(name);
     for (const std::string& engine : {std::string("rd"), std::string("ordered")}) {
       const Trajectory run = run_by(engine, scene);
-      double scale = run.frames.front().kinetic_energy, lowest = run.frames.front().potential_energy;
+      double scale = run.frames.front().kinetic_energy,
+             lowest = run.frames.front().potential_energy;
       for (const Frame& frame : run.frames) lowest = std::min(lowest, frame.potential_energy);
       scale += run.frames.front().potential_energy - lowest;
       // A tenth is what steps of 1/60 s leave of a tipping box; more is told.
-      EXPECT_TRUE(energy_rise(run) < 0.1 * scale || has_fault(run, "energy_rises") || !run.stopped_by.empty()) << name << ' ' << engine << ": " << energy_rise(run) << " J" << said(run);
+      EXPECT_TRUE(energy_rise(run) < 0.1 * scale || has_fault(run, "energy_rises") ||
+                  !run.stopped_by.empty())
+          << name << ' ' << engine << ": " << energy_rise(run) << " J" << said(run);
       EXPECT_LT(energy_rise(run), 0.1 * scale) << name << ' ' << engine << said(run);
     }
   }
 }
 
-/// Boxes of 1 m that touch along faces and edges, where a lattice drawn by lot has them, one of them slowed by a medium, one with a velocity.
+/// Boxes of 1 m that touch along faces and edges, where a lattice drawn by lot has them, one of
+/// them slowed by a medium, one with a velocity.
 scene::Scene touching_boxes(unsigned seed) {
   Random random(seed);
-  scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.0, kGravity);
+  scene::Scene scene =
+      scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.0, kGravity);
   scene.bodies[0].friction = 0.5 * (seed % 2);
   for (int x = 0; x < 2; ++x)
     for (int y = 0; y < 2; ++y)
       for (int z = 0; z < 2; ++z) {
         if (random.between(0.0, 1.0) < 0.4 && !(x == 0 && y == 1 && z == 0)) continue;
-        scene::BodySpec body = box(fmt::format("b{}{}{}", x, y, z), Vector3d::Constant(0.5), random.between(0.5, 2.0), Vector3d(x, y, z + 0.5) * (1 + 1e-12), Vector3d::Zero());
+        scene::BodySpec body =
+            box(fmt::format("b{}{}{}", x, y, z), Vector3d::Constant(0.5), random.between(0.5, 2.0),
+                Vector3d(x, y, z + 0.5) * (1 + 1e-12), Vector3d::Zero());
         body.restitution = 0.0;
         body.friction = random.between(0.0, 1.0);
         scene.bodies.push_back(body);
@@ -292,7 +351,8 @@ scene::Scene touching_boxes(unsigned seed) {
   for (double& velocity : scene.bodies.back().velocity_m_s) velocity = random.between(-0.5, 0.3);
   scene.contact.emplace();
   scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
-  scene.effects.of<effects::DragSpec>().push_back({scene.bodies[1].name, random.between(0.0, 0.2), 0.0});
+  scene.effects.of<effects::DragSpec>().push_back(
+      {scene.bodies[1].name, random.between(0.0, 0.2), 0.0});
   scene.step_s = seed % 3 == 0 ? 1.0 / 1000 : 1.0 / 60;
   return scene;
 }
@@ -303,7 +363,9 @@ TEST(InStep, BoxesThatTouchByLotGainNothing) {
     const Trajectory run = run_by("rd", scene);
     double lowest = run.frames.front().potential_energy;
     for (const Frame& frame : run.frames) lowest = std::min(lowest, frame.potential_energy);
-    const double scale = run.frames.front().kinetic_energy + run.frames.front().potential_energy - lowest + 0.1;   // J: they may settle a centimetre
+    // J: they may settle a centimetre
+    const double scale =
+        run.frames.front().kinetic_energy + run.frames.front().potential_energy - lowest + 0.1;
     EXPECT_LT(energy_rise(run), 0.1 * scale) << seed << said(run);
   }
 }
@@ -313,11 +375,14 @@ TEST(InStep, BoxesThatTouchByLotGainNothing) {
 /// Two small boxes that fall on a plate and on each other, turned by lot.
 scene::Scene falling_boxes(unsigned seed) {
   Random random(seed);
-  scene::Scene scene = scene_of({box("plate", {0.3, 0.3, 0.005}, 1.0, {0, 0, -0.005}, Vector3d::Zero())}, 0.5, kGravity);
+  scene::Scene scene = scene_of(
+      {box("plate", {0.3, 0.3, 0.005}, 1.0, {0, 0, -0.005}, Vector3d::Zero())}, 0.5, kGravity);
   scene.bodies[0].immovable = true;
   for (int k = 0; k < 3; ++k) {
     const double aside = random.between(-0.005, 0.005);
-    scene::BodySpec body = box(fmt::format("b{}", k), Vector3d::Constant(0.008), 0.01, {aside, random.between(-0.005, 0.005), 0.03 + 0.03 * k}, Vector3d::Zero());
+    scene::BodySpec body =
+        box(fmt::format("b{}", k), Vector3d::Constant(0.008), 0.01,
+            {aside, random.between(-0.005, 0.005), 0.03 + 0.03 * k}, Vector3d::Zero());
     body.restitution = k == 0 ? 0.3 : 0.0;
     for (double& part : body.world_from_body.coeffs()) part = random.between(-1.0, 1.0);
     body.world_from_body.normalize();
@@ -325,7 +390,7 @@ scene::Scene falling_boxes(unsigned seed) {
   }
   scene.contact.emplace();
   if (seed % 2 == 0) scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
-  scene.step_s = 1.0 / 30;   // every second picture lies within a step
+  scene.step_s = 1.0 / 30;  // every second picture lies within a step
   return scene;
 }
 
@@ -333,13 +398,15 @@ TEST(ShownWithinAStep, NothingOverlaps) {
   for (unsigned seed = 1; seed <= 4; ++seed)
     for (const std::string& engine : {std::string("ca"), std::string("ordered")}) {
       const Trajectory run = run_by(engine, falling_boxes(seed));
-      for (const Frame& frame : run.frames) ASSERT_GE(frame.smallest_gap, 0.0) << engine << " seed " << seed << " at " << frame.time;
+      for (const Frame& frame : run.frames)
+        ASSERT_GE(frame.smallest_gap, 0.0) << engine << " seed " << seed << " at " << frame.time;
     }
 }
 
 // ---- What lies on a body weighs on its links ---------------------------------------------------
 
-scene::BodySpec slab(const std::string& name, const Vector3d& half, double mass, const Vector3d& at, double friction = 0.0) {
+scene::BodySpec slab(const std::string& name, const Vector3d& half, double mass, const Vector3d& at,
+                     double friction = 0.0) {
   scene::BodySpec body = box(name, half, mass, at, Vector3d::Zero());
   body.restitution = 0.0;
   body.friction = friction;
@@ -354,33 +421,49 @@ scene::Scene at_rest(std::vector<scene::BodySpec> bodies) {
   return scene;
 }
 
-/// Of one newton: contacts at rest are solved to the last digits, and bodies settle over shells of 1e-10 m.
+/// Of one newton: contacts at rest are solved to the last digits, and bodies settle over shells of
+/// 1e-10 m.
 constexpr double kForce = 1e-5;
 
 TEST(LinkForces, ARodHoldsWhatLiesOnItsBlock) {
-  scene::Scene scene = at_rest({slab("block", {0.3, 0.3, 0.05}, 4.0, {0, 0, 1}), slab("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 1.15}), slab("second", {0.05, 0.05, 0.05}, 2.0, {0, 0, 1.30})});
-  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", Vector3d(0, 0, 2)}, {"block", Vector3d(0, 0, 0.05)}, 0.95});
-  for (const std::string& engine : kEngines) EXPECT_NEAR(run_by(engine, scene).frames.back().rod_tensions.at(0), 7.0 * 9.81, kForce) << engine;
+  scene::Scene scene = at_rest({slab("block", {0.3, 0.3, 0.05}, 4.0, {0, 0, 1}),
+                                slab("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 1.15}),
+                                slab("second", {0.05, 0.05, 0.05}, 2.0, {0, 0, 1.30})});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"rod", {"", Vector3d(0, 0, 2)}, {"block", Vector3d(0, 0, 0.05)}, 0.95});
+  for (const std::string& engine : kEngines)
+    EXPECT_NEAR(run_by(engine, scene).frames.back().rod_tensions.at(0), 7.0 * 9.81, kForce)
+        << engine;
   scene.bodies.pop_back();
-  for (const std::string& engine : kEngines) EXPECT_NEAR(run_by(engine, scene).frames.back().rod_tensions.at(0), 5.0 * 9.81, kForce) << engine;
+  for (const std::string& engine : kEngines)
+    EXPECT_NEAR(run_by(engine, scene).frames.back().rod_tensions.at(0), 5.0 * 9.81, kForce)
+        << engine;
 }
 
 TEST(LinkForces, AWeldHoldsABoxThatStandsOnASlope) {
   const double angle = 20 * std::numbers::pi / 180;
   const Vector3d normal(std::sin(angle), 0, std::cos(angle));
-  scene::Scene scene = at_rest({slab("shelf", {0.4, 0.4, 0.05}, 3.0, Vector3d::Zero(), 0.8), slab("box", {0.1, 0.1, 0.1}, 1.5, 0.15 * normal, 0.8)});
-  for (scene::BodySpec& body : scene.bodies) body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
-  scene.effects.of<effects::JointSpec>().push_back({"weld", effects::JointKind::kWeld, "shelf", "", Vector3d::Zero(), Vector3d::UnitZ()});
+  scene::Scene scene = at_rest({slab("shelf", {0.4, 0.4, 0.05}, 3.0, Vector3d::Zero(), 0.8),
+                                slab("box", {0.1, 0.1, 0.1}, 1.5, 0.15 * normal, 0.8)});
+  for (scene::BodySpec& body : scene.bodies)
+    body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  scene.effects.of<effects::JointSpec>().push_back(
+      {"weld", effects::JointKind::kWeld, "shelf", "", Vector3d::Zero(), Vector3d::UnitZ()});
   // Friction and the normal force add up to the box's weight.
-  for (const std::string& engine : kEngines) EXPECT_NEAR(run_by(engine, scene).frames.back().joint_forces.at(0), 4.5 * 9.81, kForce) << engine;
+  for (const std::string& engine : kEngines)
+    EXPECT_NEAR(run_by(engine, scene).frames.back().joint_forces.at(0), 4.5 * 9.81, kForce)
+        << engine;
 }
 
 // Moments about the hinge: the rod at the far end holds half of the beam and its share of the box.
 TEST(LinkForces, AHingeAndARodShareABoxByItsLever) {
   const double half = 0.5, lever = 0.8;
-  scene::Scene scene = at_rest({slab("beam", {half, 0.1, 0.02}, 2.0, {half, 0, 0}), slab("box", {0.05, 0.05, 0.05}, 1.0, {lever, 0, 0.07})});
-  scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "beam", "", Vector3d::Zero(), Vector3d::UnitY()});
-  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", Vector3d(2 * half, 0, 1)}, {"beam", Vector3d(half, 0, 0)}, 1.0});
+  scene::Scene scene = at_rest({slab("beam", {half, 0.1, 0.02}, 2.0, {half, 0, 0}),
+                                slab("box", {0.05, 0.05, 0.05}, 1.0, {lever, 0, 0.07})});
+  scene.effects.of<effects::JointSpec>().push_back(
+      {"hinge", effects::JointKind::kHinge, "beam", "", Vector3d::Zero(), Vector3d::UnitY()});
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"rod", {"", Vector3d(2 * half, 0, 1)}, {"beam", Vector3d(half, 0, 0)}, 1.0});
   for (const std::string& engine : kEngines) {
     const Frame frame = run_by(engine, scene).frames.back();
     const double rod = 9.81 * (2.0 * half + 1.0 * lever) / (2 * half);

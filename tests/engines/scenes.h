@@ -8,7 +8,8 @@
 
 namespace tumble::testing {
 
-inline scene::BodySpec ball(const std::string& name, double radius, double mass, const Vector3d& position, const Vector3d& velocity) {
+inline scene::BodySpec ball(const std::string& name, double radius, double mass,
+                            const Vector3d& position, const Vector3d& velocity) {
   scene::BodySpec body;
   body.name = name;
   body.shape = scene::SphereSpec{radius};
@@ -18,15 +19,16 @@ inline scene::BodySpec ball(const std::string& name, double radius, double mass,
   return body;
 }
 
-inline scene::BodySpec box(const std::string& name, const Vector3d& half_extents, double mass, const Vector3d& position,
-                           const Vector3d& velocity) {
+inline scene::BodySpec box(const std::string& name, const Vector3d& half_extents, double mass,
+                           const Vector3d& position, const Vector3d& velocity) {
   scene::BodySpec body = ball(name, 1.0, mass, position, velocity);
   body.shape = scene::BoxSpec{half_extents};
   return body;
 }
 
 /// An immovable half-space through `point`, solid on the side away from `normal`.
-inline scene::BodySpec plane(const std::string& name, const Vector3d& point, const Vector3d& normal) {
+inline scene::BodySpec plane(const std::string& name, const Vector3d& point,
+                             const Vector3d& normal) {
   scene::BodySpec body;
   body.name = name;
   body.shape = scene::PlaneSpec{};
@@ -36,7 +38,8 @@ inline scene::BodySpec plane(const std::string& name, const Vector3d& point, con
   return body;
 }
 
-inline scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duration, std::optional<Vector3d> gravity = std::nullopt) {
+inline scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duration,
+                             std::optional<Vector3d> gravity = std::nullopt) {
   scene::Scene scene;
   scene.name = "test";
   scene.duration_s = duration;
@@ -45,7 +48,8 @@ inline scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duratio
   return scene;
 }
 
-inline Trajectory run(const scene::Scene& scene, const Laws& laws = test_laws(), double frame_rate_hz = 60.0) {
+inline Trajectory run(const scene::Scene& scene, const Laws& laws = test_laws(),
+                      double frame_rate_hz = 60.0) {
   TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.frame_rate_hz = frame_rate_hz;

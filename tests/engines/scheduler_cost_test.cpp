@@ -8,20 +8,24 @@ namespace tumble::testing {
 namespace {
 
 /// Two runs with ten events each, in which every impact is executed once.
-engines::SchedulerCurve scheduler(std::uint64_t undone, std::uint64_t rollbacks, std::uint64_t checks, std::uint64_t states) {
+engines::SchedulerCurve scheduler(std::uint64_t undone, std::uint64_t rollbacks,
+                                  std::uint64_t checks, std::uint64_t states) {
   engines::SchedulerCurve curve{"your scheduler", false, {}, {}};
   for (const double step : {0.5, 0.05}) {
     engines::SchedulerRun run;
     run.step_s = step, run.processes = 5, run.due = run.committed = run.impacts = 10;
-    run.integrations = 30 + undone, run.undone = undone, run.rollbacks = rollbacks, run.checks = checks, run.states_kept = states;
+    run.integrations = 30 + undone, run.undone = undone, run.rollbacks = rollbacks,
+    run.checks = checks, run.states_kept = states;
     curve.by_step.push_back(run);
   }
   return curve;
 }
 
-std::string told_of(const engines::SchedulerCurve& curve, const engines::SchedulerCurve* reference) {
+std::string told_of(const engines::SchedulerCurve& curve,
+                    const engines::SchedulerCurve* reference) {
   std::string all;
-  for (const engines::SchedulerReading& reading : engines::read_scheduler(curve, reference)) all += reading.text + "\n";
+  for (const engines::SchedulerReading& reading : engines::read_scheduler(curve, reference))
+    all += reading.text + "\n";
   return all;
 }
 
@@ -35,9 +39,14 @@ TEST(SchedulerCost, WorkEqualToTheReferencesIsReported) {
 TEST(SchedulerCost, UnnecessaryRollbacksAreNamedAsTheCause) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   const std::string told = told_of(scheduler(32, 48, 100, 20), &reference);
-  EXPECT_NE(told.find("rolls back 3.2 times what the reference rolls back"), std::string::npos) << told;
-  EXPECT_NE(told.find("rolls back 4.8 bodies where 1.5 suffice: bodies that the collision did not touch"), std::string::npos) << told;
-  EXPECT_EQ(told.find("further back than to the impact"), std::string::npos) << told;   // each goes as far as in the reference
+  EXPECT_NE(told.find("rolls back 3.2 times what the reference rolls back"), std::string::npos)
+      << told;
+  EXPECT_NE(
+      told.find("rolls back 4.8 bodies where 1.5 suffice: bodies that the collision did not touch"),
+      std::string::npos)
+      << told;
+  // each goes as far as in the reference
+  EXPECT_EQ(told.find("further back than to the impact"), std::string::npos) << told;
 }
 
 TEST(SchedulerCost, GoingBackTooFarIsAnotherCause) {
@@ -59,11 +68,18 @@ TEST(SchedulerCost, AWrongRunIsReportedFirstAndNotCounted) {
   engines::SchedulerCurve wrong = scheduler(32, 48, 100, 20);
   wrong.by_step[1].committed = 4;
   wrong.by_step[1].stopped_by = "committed event 5 is not the ordered reference's";
-  EXPECT_NEAR(wrong.by_step[1].error(), 0.6, 1e-15);   // 6 of 10
-  const std::vector<engines::SchedulerReading> readings = engines::read_scheduler(wrong, &reference);
+  EXPECT_NEAR(wrong.by_step[1].error(), 0.6, 1e-15);  // 6 of 10
+  const std::vector<engines::SchedulerReading> readings =
+      engines::read_scheduler(wrong, &reference);
   EXPECT_EQ(readings.front().kind, engines::SchedulerReading::Kind::kWrong);
-  EXPECT_NE(readings.front().text.find("in 1 of 2 runs. With steps of 1/20 s it commits 4 of 10 events: committed event 5"), std::string::npos) << readings.front().text;
-  EXPECT_NE(readings.at(1).text.find("3.20 integrations per event, where 1.00"), std::string::npos) << readings.at(1).text;   // of the right run
+  EXPECT_NE(
+      readings.front().text.find(
+          "in 1 of 2 runs. With steps of 1/20 s it commits 4 of 10 events: committed event 5"),
+      std::string::npos)
+      << readings.front().text;
+  // of the right run
+  EXPECT_NE(readings.at(1).text.find("3.20 integrations per event, where 1.00"), std::string::npos)
+      << readings.at(1).text;
 }
 
 TEST(SchedulerCost, WithoutAReferenceItsOwnNumbersAreGiven) {

@@ -1,4 +1,5 @@
-// Bodies at rest fall asleep, keep their places to the last bit at no cost, and wake for whatever would move them.
+// Bodies at rest fall asleep, keep their places to the last bit at no cost, and wake for whatever
+// would move them.
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +26,8 @@ scene::BodySpec rough(scene::BodySpec body, double friction = 0.5) {
 
 scene::BodySpec floor_body() { return rough(plane("floor", Vector3d::Zero(), Vector3d::UnitZ())); }
 
-scene::Scene sleepy(std::vector<scene::BodySpec> bodies, double duration, std::optional<Vector3d> gravity = kGravity) {
+scene::Scene sleepy(std::vector<scene::BodySpec> bodies, double duration,
+                    std::optional<Vector3d> gravity = kGravity) {
   scene::Scene scene = scene_of(std::move(bodies), duration, gravity);
   scene.contact.emplace();
   scene.contact->sleep = true;
@@ -35,7 +37,9 @@ scene::Scene sleepy(std::vector<scene::BodySpec> bodies, double duration, std::o
 /// Boxes of 1 m on top of each other, and the floor as last body.
 scene::Scene stack_of(int n, double duration) {
   std::vector<scene::BodySpec> bodies;
-  for (int i = 0; i < n; ++i) bodies.push_back(rough(box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero())));
+  for (int i = 0; i < n; ++i)
+    bodies.push_back(rough(
+        box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero())));
   bodies.push_back(floor_body());
   return sleepy(bodies, duration);
 }
@@ -45,7 +49,8 @@ scene::Scene block_on_floor(double duration) { return stack_of(1, duration); }
 Trajectory run_it(const scene::Scene& scene) {
   const Trajectory result = run(scene, reference_laws());
   EXPECT_EQ(result.stopped_by, "");
-  for (const Frame& frame : result.frames) EXPECT_GE(frame.smallest_gap, 0.0) << "t = " << frame.time;
+  for (const Frame& frame : result.frames)
+    EXPECT_GE(frame.smallest_gap, 0.0) << "t = " << frame.time;
   return result;
 }
 
@@ -61,15 +66,19 @@ std::vector<double> times_of(const Trajectory& run, EventKind kind, int body) {
   return times;
 }
 
-bool falls_asleep(const Trajectory& run, int body) { return !times_of(run, EventKind::kSleep, body).empty(); }
+bool falls_asleep(const Trajectory& run, int body) {
+  return !times_of(run, EventKind::kSleep, body).empty();
+}
 
 bool same_bits(const BodyPose& a, const BodyPose& b) {
-  return a.com_world == b.com_world && a.world_from_body.coeffs() == b.world_from_body.coeffs() && a.velocity_world == b.velocity_world && a.omega_world == b.omega_world;
+  return a.com_world == b.com_world && a.world_from_body.coeffs() == b.world_from_body.coeffs() &&
+         a.velocity_world == b.velocity_world && a.omega_world == b.omega_world;
 }
 
 double farthest_apart(const Frame& a, const Frame& b) {
   double farthest = 0.0;
-  for (std::size_t i = 0; i < a.poses.size(); ++i) farthest = std::max(farthest, (a.poses[i].com_world - b.poses[i].com_world).norm());
+  for (std::size_t i = 0; i < a.poses.size(); ++i)
+    farthest = std::max(farthest, (a.poses[i].com_world - b.poses[i].com_world).norm());
   return farthest;
 }
 
@@ -80,9 +89,12 @@ TEST(Sleeping, AStackKeepsItsPositionToTheLastBitAndStillReportsItsReactions) {
   EXPECT_NEAR(asleep, 0.5, 0.1);
   const Frame& last = result.frames.back();
   for (const Frame& frame : result.frames)
-    for (int i = 0; i < 10 && frame.time > asleep + 0.02; ++i) EXPECT_TRUE(same_bits(frame.poses[i], last.poses[i])) << frame.time << ' ' << i;
-  const auto looked = std::find_if(result.frames.begin(), result.frames.end(), [&](const Frame& frame) { return std::abs(frame.time - asleep) < 1e-9; });
-  ASSERT_NE(looked, result.frames.end());   // the last frame that was looked at awake
+    for (int i = 0; i < 10 && frame.time > asleep + 0.02; ++i)
+      EXPECT_TRUE(same_bits(frame.poses[i], last.poses[i])) << frame.time << ' ' << i;
+  const auto looked =
+      std::find_if(result.frames.begin(), result.frames.end(),
+                   [&](const Frame& frame) { return std::abs(frame.time - asleep) < 1e-9; });
+  ASSERT_NE(looked, result.frames.end());  // the last frame that was looked at awake
   EXPECT_EQ(looked->smallest_gap, last.smallest_gap);
   double carried = 0.0;
   for (const ContactPoint& contact : last.contacts)
@@ -92,19 +104,26 @@ TEST(Sleeping, AStackKeepsItsPositionToTheLastBitAndStillReportsItsReactions) {
 }
 
 TEST(Sleeping, CostsNothing) {
-  const auto counts = [](double duration) { return run_it(stack_of(10, duration)).counters.counts; };
+  const auto counts = [](double duration) {
+    return run_it(stack_of(10, duration)).counters.counts;
+  };
   const auto a_while = counts(1.0), longer = counts(4.0);
-  for (const char* counter : {"integrations", "derivative_evaluations", "gravity_calls", "candidate_pairs", "gap_evaluations", "root_findings", "contact_solves", "contact_points", "nudges"})
+  for (const char* counter :
+       {"integrations", "derivative_evaluations", "gravity_calls", "candidate_pairs",
+        "gap_evaluations", "root_findings", "contact_solves", "contact_points", "nudges"})
     EXPECT_EQ(a_while.at(counter), longer.at(counter)) << counter;
-  EXPECT_EQ(longer.at("body_steps_asleep") - a_while.at("body_steps_asleep"), 10u * 180u);   // 3 s in steps of 1/60 s
+  // 3 s in steps of 1/60 s
+  EXPECT_EQ(longer.at("body_steps_asleep") - a_while.at("body_steps_asleep"), 10u * 180u);
 }
 
-/// A ball that flies along x and meets the top box of a stack of three, which slides and does not rock: what boxes that rock do depends on
-/// which corner comes down first, which no shell decides twice alike.
+/// A ball that flies along x and meets the top box of a stack of three, which slides and does not
+/// rock: what boxes that rock do depends on which corner comes down first, which no shell decides
+/// twice alike.
 scene::Scene stack_and_ball() {
   scene::Scene scene = stack_of(3, 4.0);
   scene.bodies.push_back(rough(ball("ball", 0.2, 0.2, {-2.0, 0, 2.5}, {2.0, 0, 0})));
-  scene.bodies.push_back(rough(box("shelf", {4, 1, 0.1}, 1.0, {-4.6, 0, 2.2}, Vector3d::Zero())));   // along which it rolls: slowly enough for all to sleep before
+  // along which it rolls: slowly enough for all to sleep before
+  scene.bodies.push_back(rough(box("shelf", {4, 1, 0.1}, 1.0, {-4.6, 0, 2.2}, Vector3d::Zero())));
   scene.bodies.back().immovable = true;
   scene.bodies[4].position_m.x() = -3.0;
   for (int i = 0; i < 3; ++i) scene.bodies[i].friction = 0.05;
@@ -117,19 +136,23 @@ TEST(Sleeping, ABallWakesTheWholeStackAndAllGoesOnAsIfNothingHadSlept) {
   for (int i = 0; i < 3; ++i) ASSERT_FALSE(times_of(slept, EventKind::kWake, i).empty()) << i;
   const double woken = times_of(slept, EventKind::kWake, 0).front();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(times_of(slept, EventKind::kWake, i).front(), woken) << i;
-  EXPECT_GT((awake.frames.back().poses[2].com_world - scene.bodies[2].position_m).norm(), 1e-3);   // it was hit
-  // The rest tolerance of a stack (a creep of 1e-6 m); measured 2e-9 m, what shells of 1e-10 m make of a hit.
+  // it was hit
+  EXPECT_GT((awake.frames.back().poses[2].com_world - scene.bodies[2].position_m).norm(), 1e-3);
+  // The rest tolerance of a stack (a creep of 1e-6 m); measured 2e-9 m, what shells of 1e-10 m make
+  // of a hit.
   EXPECT_LT(farthest_apart(slept.frames.back(), awake.frames.back()), 1e-6);
 }
 
 TEST(Sleeping, APassingBodyWakesNoBody) {
   scene::Scene scene = block_on_floor(3.0);
-  auto passer = ball("passer", 0.2, 1.0, {0.75, -4, 0.5}, {0, 3, 0});   // 5 cm beside the block, at t = 1.3 s
+  // 5 cm beside the block, at t = 1.3 s
+  auto passer = ball("passer", 0.2, 1.0, {0.75, -4, 0.5}, {0, 3, 0});
   passer.collides = true;
   effects::set_gravity(scene, kGravity);
   passer.position_m.z() = 0.5;
   scene.bodies.push_back(passer);
-  scene.bodies.push_back(rough(box("rail", {0.3, 6, 0.1}, 1.0, {0.85, 0, 0.2 - 1e-9}, Vector3d::Zero()), 0.0));
+  scene.bodies.push_back(
+      rough(box("rail", {0.3, 6, 0.1}, 1.0, {0.85, 0, 0.2 - 1e-9}, Vector3d::Zero()), 0.0));
   scene.bodies.back().immovable = true;
   const Trajectory result = run_it(scene);
   EXPECT_TRUE(falls_asleep(result, 0));
@@ -139,7 +162,9 @@ TEST(Sleeping, APassingBodyWakesNoBody) {
 // Gravity is so weak that the two are slow for seconds; nothing holds them.
 TEST(Sleeping, NothingSleepsAtTheTopOfItsPath) {
   std::vector<scene::BodySpec> bodies;
-  for (int i = 0; i < 2; ++i) bodies.push_back(rough(box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 5.0 + i}, {0, 0, 2e-6})));
+  for (int i = 0; i < 2; ++i)
+    bodies.push_back(rough(
+        box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 5.0 + i}, {0, 0, 2e-6})));
   bodies.push_back(floor_body());
   const Trajectory result = run_it(sleepy(bodies, 4.0, Vector3d(0, 0, -1e-6)));
   EXPECT_FALSE(falls_asleep(result, 0));
@@ -147,10 +172,13 @@ TEST(Sleeping, NothingSleepsAtTheTopOfItsPath) {
 
 scene::Scene creeping_block(double speed, double friction) {
   const double angle = 0.4;
-  const Vector3d normal(std::sin(angle), 0, std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle));
-  auto block = rough(box("block", {0.1, 0.1, 0.05}, 1.0, 0.05 * normal, speed * down), friction * std::tan(angle));
+  const Vector3d normal(std::sin(angle), 0, std::cos(angle)),
+      down(std::cos(angle), 0, -std::sin(angle));
+  auto block = rough(box("block", {0.1, 0.1, 0.05}, 1.0, 0.05 * normal, speed * down),
+                     friction * std::tan(angle));
   auto ramp = rough(plane("ramp", Vector3d::Zero(), normal), 1.0);
-  block.world_from_body = ramp.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  block.world_from_body = ramp.world_from_body =
+      Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
   return sleepy({block, ramp}, 3.0);
 }
 
@@ -162,14 +190,16 @@ TEST(Sleeping, WhatTrulySlidesIsAwakeHoweverSlow) {
 
 TEST(Sleeping, AForceThatIsSwitchedOnWakes) {
   scene::Scene scene = block_on_floor(4.0);
-  scene.effects.of<effects::PointForceSpec>().push_back({"box 0", {8, 0, 0}, {-0.5, 0, 0.5}, 1.5, 1.0});
+  scene.effects.of<effects::PointForceSpec>().push_back(
+      {"box 0", {8, 0, 0}, {-0.5, 0, 0.5}, 1.5, 1.0});
   const Trajectory result = run_it(scene);
   ASSERT_EQ(times_of(result, EventKind::kWake, 0).size(), 1u);
   EXPECT_EQ(times_of(result, EventKind::kWake, 0).front(), 1.5);
-  // a = (8 - 0.5 m g) / m for 1 s, then a' = 0.5 g until it stops; contact shells tilt nothing: 1e-9 m.
+  // a = (8 - 0.5 m g) / m for 1 s, then a' = 0.5 g until it stops; contact shells tilt nothing:
+  // 1e-9 m.
   const double a = 8 - 0.5 * kG, braking = 0.5 * kG;
   EXPECT_NEAR(result.frames.back().poses[0].com_world.x(), 0.5 * a + 0.5 * a * a / braking, 1e-9);
-  EXPECT_EQ(times_of(result, EventKind::kSleep, 0).size(), 2u);   // and sleeps again
+  EXPECT_EQ(times_of(result, EventKind::kSleep, 0).size(), 2u);  // and sleeps again
 }
 
 // A smooth block on a slope, held by a hand that lets go.
@@ -177,19 +207,23 @@ TEST(Sleeping, AForceThatIsSwitchedOffWakes) {
   scene::Scene scene = creeping_block(0.0, 0.0);
   const double angle = 0.4;
   const Vector3d up(-std::cos(angle), 0, std::sin(angle));
-  scene.effects.of<effects::PointForceSpec>().push_back({"block", kG * std::sin(angle) * up, scene.bodies[0].position_m, 0.0, 2.0});
+  scene.effects.of<effects::PointForceSpec>().push_back(
+      {"block", kG * std::sin(angle) * up, scene.bodies[0].position_m, 0.0, 2.0});
   const Trajectory result = run_it(scene);
   EXPECT_TRUE(falls_asleep(result, 0));
   EXPECT_EQ(times_of(result, EventKind::kWake, 0), std::vector<double>{2.0});
-  EXPECT_NEAR((result.frames.back().poses[0].com_world - scene.bodies[0].position_m).norm(), 0.5 * kG * std::sin(angle), 1e-9);
+  EXPECT_NEAR((result.frames.back().poses[0].com_world - scene.bodies[0].position_m).norm(),
+              0.5 * kG * std::sin(angle), 1e-9);
 }
 
 // A motor presses a bar on a stop for 2 s, then turns it away: at its largest torque all the while.
 TEST(Sleeping, AControlLawThatChangesItsMindWakes) {
-  auto bar = rough(box("bar", {0.5, 0.05, 0.05}, 1.0, {0.5, 0, 1}, Vector3d::Zero())), stop = rough(box("stop", {0.1, 0.1, 0.1}, 1.0, {0.9, 0, 0.85 - 1e-9}, Vector3d::Zero()));
+  auto bar = rough(box("bar", {0.5, 0.05, 0.05}, 1.0, {0.5, 0, 1}, Vector3d::Zero())),
+       stop = rough(box("stop", {0.1, 0.1, 0.1}, 1.0, {0.9, 0, 0.85 - 1e-9}, Vector3d::Zero()));
   stop.immovable = true;
   scene::Scene scene = sleepy({bar, stop}, 2.5, std::nullopt);
-  scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "bar", "", {0, 0, 1}, Vector3d::UnitY()});
+  scene.effects.of<effects::JointSpec>().push_back(
+      {"hinge", effects::JointKind::kHinge, "bar", "", {0, 0, 1}, Vector3d::UnitY()});
   scene.stabilisation.emplace();
   effects::MotorSpec motor;
   motor.joint = "hinge";
@@ -199,12 +233,15 @@ TEST(Sleeping, AControlLawThatChangesItsMindWakes) {
   motor.stiffness_n_m_rad = 1e3;
   motor.largest_torque_n_m = 0.5;
   scene.effects.of<effects::MotorSpec>().push_back(motor);
-  for (const double sign : {1.0, -1.0}) {   // which way a positive torque turns is not the test's business
+  // which way a positive torque turns is not the test's business
+  for (const double sign : {1.0, -1.0}) {
     scene.effects.of<effects::MotorSpec>()[0].amplitude_rad = sign * 100.0;
     const Trajectory result = run_it(scene);
     if (!falls_asleep(result, 0)) continue;
     ASSERT_EQ(times_of(result, EventKind::kWake, 0).size(), 1u);
-    EXPECT_NEAR(times_of(result, EventKind::kWake, 0).front(), 2.0 - 0.1 / (0.5 * 3.14159265), 0.011);   // the torque changes sign; it looks every 0.01 s
+    // the torque changes sign; it looks every 0.01 s
+    EXPECT_NEAR(times_of(result, EventKind::kWake, 0).front(), 2.0 - 0.1 / (0.5 * 3.14159265),
+                0.011);
     EXPECT_GT(std::abs(result.frames.back().poses[0].com_world.z() - 1.0), 0.01);
     return;
   }
@@ -220,21 +257,25 @@ TEST(Sleeping, AMovingWallWakesWhatItMeets) {
   const Trajectory result = run_it(scene);
   ASSERT_TRUE(falls_asleep(result, 0));
   ASSERT_FALSE(times_of(result, EventKind::kWake, 0).empty());
-  EXPECT_NEAR(times_of(result, EventKind::kWake, 0).front(), 2.0, 0.02);   // 0.5 m at 0.25 m/s, and a step
-  EXPECT_NEAR(result.frames.back().poses[0].com_world.x(), 0.25, 1e-3);   // pushed along
+  // 0.5 m at 0.25 m/s, and a step
+  EXPECT_NEAR(times_of(result, EventKind::kWake, 0).front(), 2.0, 0.02);
+  EXPECT_NEAR(result.frames.back().poses[0].com_world.x(), 0.25, 1e-3);  // pushed along
 }
 
 TEST(Sleeping, NoBodySleepsOnAMovingBody) {
   scene::Scene scene = block_on_floor(3.0);
-  scene.bodies[1].motion = scene::PrescribedMotion{Vector3d::Zero(), {0, 0, 1e-9}, 1.0};   // so little that it never moves fast enough to be seen
+  // so little that it never moves fast enough to be seen
+  scene.bodies[1].motion = scene::PrescribedMotion{Vector3d::Zero(), {0, 0, 1e-9}, 1.0};
   EXPECT_FALSE(falls_asleep(run_it(scene), 0));
 }
 
 TEST(Sleeping, ABodyThatHangsStillSleepsUntilItIsHit) {
-  auto bob = rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())), hammer = rough(ball("hammer", 0.1, 1.0, {-2.9, 0, 1}, {2, 0, 0}));
+  auto bob = rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())),
+       hammer = rough(ball("hammer", 0.1, 1.0, {-2.9, 0, 1}, {2, 0, 0}));
   scene::Scene scene = sleepy({bob, hammer}, 2.0, kGravity);
-  scene.bodies[1].position_m.z() = 1 + 0.5 * kG * 1.4 * 1.4 - 0.02;   // falls past it at 1.4 s
-  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.bodies[1].position_m.z() = 1 + 0.5 * kG * 1.4 * 1.4 - 0.02;  // falls past it at 1.4 s
+  scene.effects.of<effects::RodSpec>().push_back(
+      {"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
   scene.stabilisation.emplace();
   const Trajectory slept = run_it(scene), awake = run_awake(scene);
   ASSERT_TRUE(falls_asleep(slept, 0));
@@ -244,32 +285,41 @@ TEST(Sleeping, ABodyThatHangsStillSleepsUntilItIsHit) {
 
 TEST(Sleeping, WhatHangsCostsNothingAsleep) {
   const auto counts = [](double duration) {
-    scene::Scene scene = sleepy({rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()))}, duration);
-    scene.effects.of<effects::RodSpec>().push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
+    scene::Scene scene =
+        sleepy({rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()))}, duration);
+    scene.effects.of<effects::RodSpec>().push_back(
+        {"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
     scene.stabilisation.emplace();
     return run_it(scene).counters.counts;
   };
   const auto a_while = counts(1.0), longer = counts(3.0);
-  for (const char* counter : {"integrations", "derivative_evaluations", "constraint_corrections"}) EXPECT_EQ(a_while.at(counter), longer.at(counter)) << counter;
+  for (const char* counter : {"integrations", "derivative_evaluations", "constraint_corrections"})
+    EXPECT_EQ(a_while.at(counter), longer.at(counter)) << counter;
 }
 
-// With plastic impacts taken with their steps nobody looks for the instant at which the ball comes down.
+// With plastic impacts taken with their steps nobody looks for the instant at which the ball comes
+// down.
 TEST(Sleeping, WhatLandsWithinAStepWakesToo) {
   scene::Scene scene = block_on_floor(2.5);
   scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
-  scene.bodies.push_back(rough(ball("ball", 1.0, 0.5, {0, 0, 2.0 + 0.5 * kG * 0.64}, Vector3d::Zero())));   // falls for 0.8 s, and is large against its way in a step
+  // falls for 0.8 s, and is large against its way in a step
+  scene.bodies.push_back(
+      rough(ball("ball", 1.0, 0.5, {0, 0, 2.0 + 0.5 * kG * 0.64}, Vector3d::Zero())));
   const Trajectory result = run_it(scene);
   ASSERT_FALSE(times_of(result, EventKind::kWake, 0).empty());
   EXPECT_NEAR(times_of(result, EventKind::kWake, 0).front(), 0.8, 2.0 / 60);
   double carried = 0.0;
   for (const ContactPoint& contact : result.frames.back().contacts)
     if (contact.body_b == 1) carried += contact.force_on_a_world.z();
-  EXPECT_NEAR(carried, 1.5 * kG, 1e-6 * 1.5 * kG);   // the floor carries both, and what they carried asleep is told
+  // the floor carries both, and what they carried asleep is told
+  EXPECT_NEAR(carried, 1.5 * kG, 1e-6 * 1.5 * kG);
 }
 
 // A ball that rests without persistent contact is hit, too, by what moves by its own law.
 TEST(Resting, AMovingWallMeetsABallAtRest) {
-  auto wall = box("wall", {0.1, 1, 1}, 1.0, {-1.2, 0, 1.001}, Vector3d::Zero()), resting = ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero()), floor = plane("floor", Vector3d::Zero(), Vector3d::UnitZ());
+  auto wall = box("wall", {0.1, 1, 1}, 1.0, {-1.2, 0, 1.001}, Vector3d::Zero()),
+       resting = ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero()),
+       floor = plane("floor", Vector3d::Zero(), Vector3d::UnitZ());
   wall.immovable = true;
   wall.motion = scene::PrescribedMotion{{1, 0, 0}};
   resting.restitution = floor.restitution = 0.0;

@@ -14,7 +14,9 @@ inline Laws taught_laws() {
   register_assignments(registry);
   Laws laws = test_laws();
   const auto file = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
-  a4::bind(*std::static_pointer_cast<const a4::Module>(modules::load_module(registry.find("a4"), file)), laws);
+  a4::bind(
+      *std::static_pointer_cast<const a4::Module>(modules::load_module(registry.find("a4"), file)),
+      laws);
   return laws;
 }
 
@@ -27,7 +29,9 @@ inline Laws taught_reference_laws() {
 
 /// An impact after this time is found and then lost.
 inline void lose_impacts_after(double time_s, Laws& laws) {
-  laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check, time_s](const ScheduledEvent& event, CheckFinding finding, double step) {
+  laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check, time_s](
+                                           const ScheduledEvent& event, CheckFinding finding,
+                                           double step) {
     if (finding.contact && finding.contact->time > time_s) finding.contact.reset();
     return right(event, finding, step);
   };

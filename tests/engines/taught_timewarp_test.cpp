@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Trajectory run_taught(const scene::Scene& scene, const Laws& laws, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
+Trajectory run_taught(const scene::Scene& scene, const Laws& laws,
+                      const std::vector<engines::Callback>& callbacks = {},
+                      const std::string& engine = "tw") {
   TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = engine;
@@ -24,7 +26,8 @@ Trajectory run_taught(const scene::Scene& scene, const Laws& laws, const std::ve
 std::string stop_of(const Laws& laws) { return run_taught(sized("gas", 10, 1.5), laws).stopped_by; }
 
 TEST(TaughtTimewarp, CommitsTheReferencesTrace) {
-  for (const auto& [name, n, duration, least] : {std::tuple("gas", 30, 2.0, 100), {"pong", 10, 3.0, 20}, {"atoms", 15, 0.7, 10}}) {
+  for (const auto& [name, n, duration, least] :
+       {std::tuple("gas", 30, 2.0, 100), {"pong", 10, 3.0, 20}, {"atoms", 15, 0.7, 10}}) {
     const scene::Scene scene = sized(name, n, duration);
     const Trajectory reference = run_by("ordered", scene), run = run_taught(scene, taught_laws());
     ASSERT_GT(reference.events.size(), static_cast<std::size_t>(least)) << name;
@@ -34,8 +37,10 @@ TEST(TaughtTimewarp, CommitsTheReferencesTrace) {
 
 // ---- Groups and callbacks ----------------------------------------------------------------------
 
-void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least, const std::vector<engines::Callback>& callbacks = {}) {
-  const Trajectory reference = run_taught(scene, taught_reference_laws(), callbacks, "ordered"), run = run_taught(scene, taught_reference_laws(), callbacks);
+void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least,
+                                    const std::vector<engines::Callback>& callbacks = {}) {
+  const Trajectory reference = run_taught(scene, taught_reference_laws(), callbacks, "ordered"),
+                   run = run_taught(scene, taught_reference_laws(), callbacks);
   ASSERT_EQ(reference.stopped_by, "") << scene.name;
   ASSERT_GE(reference.events.size(), least) << scene.name;
   EXPECT_EQ(difference(reference, run), "") << scene.name;
@@ -57,31 +62,46 @@ TEST(TaughtTimewarp, CommitsTheReferencesTraceOfGroupsInContact) {
 }
 
 TEST(TaughtTimewarp, CommitsTheReferencesTraceWithCallbacks) {
-  const std::vector<engines::Callback> kicks{{0.21, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }},
-                                             {0.21, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }},
-                                             {0.5017, {3}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.2; }}};
+  const std::vector<engines::Callback> kicks{
+      {0.21, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }},
+      {0.21, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }},
+      {0.5017, {3}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.2; }}};
   expect_the_references_trace_of(pendula_and_balls(4, 0.8), 10, kicks);
   std::vector<int> all;
   const scene::Scene gas = sized("gas", 20, 1.0);
   for (int i = 0; i < static_cast<int>(gas.bodies.size()); ++i)
     if (!gas.bodies[static_cast<std::size_t>(i)].immovable) all.push_back(i);
-  expect_the_references_trace_of(gas, 60, {{0.31, all, [](int body, RigidBodyState& state) { state.momentum_world += Vector3d(0.1, 0.02 * (body % 5), -0.1); }}});
-  expect_the_references_trace_of(tower_and_projectile(5.0), 15, {{0.3, {2}, [](int, RigidBodyState& state) { state.momentum_world.z() += 1.0; }}});
+  expect_the_references_trace_of(gas, 60, {{0.31, all, [](int body, RigidBodyState& state) {
+                                              state.momentum_world +=
+                                                  Vector3d(0.1, 0.02 * (body % 5), -0.1);
+                                            }}});
+  expect_the_references_trace_of(
+      tower_and_projectile(5.0), 15,
+      {{0.3, {2}, [](int, RigidBodyState& state) { state.momentum_world.z() += 1.0; }}});
 }
 
 TEST(TaughtTimewarp, StopsWhereGroupsAreWrong) {
   Laws laws = taught_reference_laws();
-  laws.scheduling.contact_groups = [](const std::vector<std::int32_t>& bodies, const std::vector<GroupContact>&) { return std::vector<std::vector<std::int32_t>>{bodies}; };
-  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("contact_groups makes {"), std::string::npos);
+  laws.scheduling.contact_groups = [](const std::vector<std::int32_t>& bodies,
+                                      const std::vector<GroupContact>&) {
+    return std::vector<std::vector<std::int32_t>>{bodies};
+  };
+  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("contact_groups makes {"),
+            std::string::npos);
   laws = taught_reference_laws();
-  laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+  laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check](
+                                       const ScheduledEvent& event,
+                                       const std::vector<GroupContact>& contacts, double step) {
     GroupDecision decision = right(event, contacts, step);
     if (decision.groups.size() > 1) decision.groups.pop_back();
     return decision;
   };
-  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("on_group_check makes {"), std::string::npos);
+  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("on_group_check makes {"),
+            std::string::npos);
   laws = taught_reference_laws();
-  laws.scheduling.on_group_check = [](const ScheduledEvent& event, const std::vector<GroupContact>&, double step) {   // a group for ever
+  // a group for ever
+  laws.scheduling.on_group_check = [](const ScheduledEvent& event, const std::vector<GroupContact>&,
+                                      double step) {
     ScheduledEvent next = event;
     next.safe_time = event.stamp.time;
     next.stamp.time += step;
@@ -94,39 +114,51 @@ TEST(TaughtTimewarp, StopsWhereGroupsAreWrong) {
 TEST(TaughtTimewarp, ToleratesAnyAnswerAboutGroups) {
   scene::Scene scene = tower_and_projectile(5.0);
   scene.duration_s = 0.3;
-  const std::vector<engines::Callback> kick{{0.15, {1}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.5; }}};
+  const std::vector<engines::Callback> kick{
+      {0.15, {1}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.5; }}};
   for (const double time : {-1.0, 0.0, 0.12, 1e9, kInfinity, -kInfinity, kUnset}) {
     Laws laws = taught_reference_laws();
-    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](
+                                         const ScheduledEvent& event,
+                                         const std::vector<GroupContact>& contacts, double step) {
       GroupDecision decision = right(event, contacts, step);
       decision.next.stamp.time = decision.next.safe_time = time;
       return decision;
     };
     EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
     laws = taught_reference_laws();
-    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](
+                                         const ScheduledEvent& event,
+                                         const std::vector<GroupContact>& contacts, double step) {
       GroupDecision decision = right(event, contacts, step);
       for (Rollback& rollback : decision.rollbacks) rollback.stamp.time = time;
       return decision;
     };
     EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
     laws = taught_reference_laws();
-    laws.scheduling.on_callback = [time](const ScheduledEvent& event, const std::vector<LocalTime>&) {
-      return std::vector<Rollback>{{event.receivers.front(), {time, 0, WorkKind::kCallback, 0, -1}}, {1000, event.stamp}};
+    laws.scheduling.on_callback = [time](const ScheduledEvent& event,
+                                         const std::vector<LocalTime>&) {
+      return std::vector<Rollback>{{event.receivers.front(), {time, 0, WorkKind::kCallback, 0, -1}},
+                                   {1000, event.stamp}};
     };
     EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
   }
-  for (const std::vector<std::vector<std::int32_t>>& groups : {std::vector<std::vector<std::int32_t>>{}, {{}}, {{-7}}, {{1000, 1}}, {{1}, {1}}}) {
+  for (const std::vector<std::vector<std::int32_t>>& groups :
+       {std::vector<std::vector<std::int32_t>>{}, {{}}, {{-7}}, {{1000, 1}}, {{1}, {1}}}) {
     Laws laws = taught_reference_laws();
-    laws.scheduling.contact_groups = [groups](const std::vector<std::int32_t>&, const std::vector<GroupContact>&) { return groups; };
+    laws.scheduling.contact_groups = [groups](const std::vector<std::int32_t>&,
+                                              const std::vector<GroupContact>&) { return groups; };
     EXPECT_NE(run_taught(scene, laws).stopped_by, "");
   }
 }
 
 TEST(TaughtTimewarp, StopsWhereACallbackRollsBackNoBody) {
   Laws laws = taught_reference_laws();
-  laws.scheduling.on_callback = [](const ScheduledEvent&, const std::vector<LocalTime>&) { return std::vector<Rollback>{}; };
-  const std::vector<engines::Callback> kick{{0.213, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
+  laws.scheduling.on_callback = [](const ScheduledEvent&, const std::vector<LocalTime>&) {
+    return std::vector<Rollback>{};
+  };
+  const std::vector<engines::Callback> kick{
+      {0.213, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
   const std::string stop = run_taught(pendula_and_balls(2, 0.4), laws, kick).stopped_by;
   EXPECT_NE(stop.find("a callback acts on"), std::string::npos) << stop;
   EXPECT_NE(stop.find("was not rolled back"), std::string::npos) << stop;
@@ -141,7 +173,7 @@ TEST(TaughtTimewarp, RecordsVirtualTimes) {
   for (const VirtualTimes::Move& move : run.virtual_times.moves) {
     EXPECT_EQ(move.from_s, local[static_cast<std::size_t>(move.process)]);
     EXPECT_GE(move.global_virtual_time_s, gvt);
-    EXPECT_GE(move.to_s, gvt);   // no rollback to before global virtual time
+    EXPECT_GE(move.to_s, gvt);  // no rollback to before global virtual time
     local[static_cast<std::size_t>(move.process)] = move.to_s;
     gvt = move.global_virtual_time_s;
     back += move.to_s <= move.from_s ? 1 : 0;
@@ -159,14 +191,18 @@ TEST(TaughtTimewarp, StopsWhereAnImpactIsLost) {
 
 TEST(TaughtTimewarp, StopsWhereAnAntiMessageIsMissing) {
   Laws laws = taught_laws();
-  laws.scheduling.plan_rollback = [](const std::vector<Effect>&, const std::vector<Rollback>& first) { return first; };
-  const Trajectory run = run_taught(scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a4_timewarp/scenes/late_hit.json"), laws);
-  EXPECT_NE(run.stopped_by.find("anti-message"), std::string::npos) << "stopped by: " << run.stopped_by;
+  laws.scheduling.plan_rollback = [](const std::vector<Effect>&,
+                                     const std::vector<Rollback>& first) { return first; };
+  const Trajectory run = run_taught(
+      scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a4_timewarp/scenes/late_hit.json"), laws);
+  EXPECT_NE(run.stopped_by.find("anti-message"), std::string::npos)
+      << "stopped by: " << run.stopped_by;
 }
 
 TEST(TaughtTimewarp, StopsWhereGlobalVirtualTimeIsTooLate) {
   Laws laws = taught_laws();
-  laws.scheduling.global_virtual_time = [](const std::vector<LocalTime>& local_times, const std::vector<ScheduledEvent>&) {
+  laws.scheduling.global_virtual_time = [](const std::vector<LocalTime>& local_times,
+                                           const std::vector<ScheduledEvent>&) {
     double least = kInfinity;
     for (const LocalTime& local : local_times) least = std::min(least, local.time);
     return least;
@@ -177,7 +213,11 @@ TEST(TaughtTimewarp, StopsWhereGlobalVirtualTimeIsTooLate) {
 
 TEST(TaughtTimewarp, StopsWhereNothingBecomesCertain) {
   Laws laws = taught_laws();
-  laws.scheduling.on_collision_check = [](const ScheduledEvent& event, const CheckFinding&, double) { return CheckDecision{false, {}, event}; };   // due again at once
+  // due again at once
+  laws.scheduling.on_collision_check = [](const ScheduledEvent& event, const CheckFinding&,
+                                          double) {
+    return CheckDecision{false, {}, event};
+  };
   EXPECT_NE(stop_of(laws).find("still stands"), std::string::npos);
 }
 
@@ -186,26 +226,33 @@ TEST(TaughtTimewarp, ToleratesAnyAnswer) {
   const std::vector<double> odd{-1.0, 0.0, 0.3, 1e9, kInfinity, -kInfinity, kUnset};
   for (const double time : odd) {
     Laws laws = taught_laws();
-    laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check, time](const ScheduledEvent& event, const CheckFinding& finding, double step) {
+    laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check, time](
+                                             const ScheduledEvent& event,
+                                             const CheckFinding& finding, double step) {
       CheckDecision decision = right(event, finding, step);
       decision.next.stamp.time = decision.next.safe_time = time;
       return decision;
     };
     EXPECT_NE(stop_of(laws), "") << time;
     laws = taught_laws();
-    laws.scheduling.plan_rollback = [time](const std::vector<Effect>&, std::vector<Rollback> first) {
+    laws.scheduling.plan_rollback = [time](const std::vector<Effect>&,
+                                           std::vector<Rollback> first) {
       for (Rollback& rollback : first) rollback.stamp.time = time;
       return first;
     };
     EXPECT_NE(stop_of(laws), "") << time;
     laws = taught_laws();
-    laws.scheduling.global_virtual_time = [time](const std::vector<LocalTime>&, const std::vector<ScheduledEvent>&) { return time; };
-    if (time > 0.5 || time != time) EXPECT_NE(stop_of(laws), "") << time;
-    else stop_of(laws);
+    laws.scheduling.global_virtual_time =
+        [time](const std::vector<LocalTime>&, const std::vector<ScheduledEvent>&) { return time; };
+    if (time > 0.5 || time != time)
+      EXPECT_NE(stop_of(laws), "") << time;
+    else
+      stop_of(laws);
   }
-  for (const std::int32_t body : {-1, 0, 3, 1000}) {   // a wall, an uninvolved ball, no body
+  for (const std::int32_t body : {-1, 0, 3, 1000}) {  // a wall, an uninvolved ball, no body
     Laws laws = taught_laws();
-    laws.scheduling.plan_rollback = [body](const std::vector<Effect>&, std::vector<Rollback> first) {
+    laws.scheduling.plan_rollback = [body](const std::vector<Effect>&,
+                                           std::vector<Rollback> first) {
       for (Rollback& rollback : first) rollback.body = body;
       return first;
     };

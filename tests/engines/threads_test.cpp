@@ -21,7 +21,8 @@ struct Threads {
   int most_states = 0;
 };
 
-Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
+Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0,
+                  const Laws& laws = test_laws()) {
   engines::RunOptions options;
   options.engine = "tw";
   options.faults = threads.faults;
@@ -47,7 +48,9 @@ TEST(Threads, CommitTheReferencesTraceOfAtoms) {
   for (const int threads : {1, 2, 4, 8}) {
     const Trajectory run = run_on({threads}, scene, 5.0);
     EXPECT_EQ(difference(reference, run), "") << threads << " threads";
-    EXPECT_LE(100 * run.counters.counts.at("undone_integrations"), 15 * run.counters.counts.at("integrations")) << threads << " threads";
+    EXPECT_LE(100 * run.counters.counts.at("undone_integrations"),
+              15 * run.counters.counts.at("integrations"))
+        << threads << " threads";
   }
 }
 
@@ -60,11 +63,13 @@ TEST(Threads, WithSeveralRegionsEachCommitTheReferencesTrace) {
     ASSERT_GT(reference.events.size(), 300U) << scene;
     for (const int threads : {1, 2, 3}) {
       engines::FaultInjection faults;
-      faults.regions = 7;   // not a multiple of the threads: one has more of them
+      faults.regions = 7;  // not a multiple of the threads: one has more of them
       const Trajectory run = run_on({threads, faults}, cut, 5.0);
       EXPECT_EQ(difference(reference, run), "") << scene << ", " << threads << " threads";
       EXPECT_GE(run.counters.counts.at("rounds_of_threads"), 10U) << scene;
-      EXPECT_LE(100 * run.counters.counts.at("undone_integrations"), 15 * run.counters.counts.at("integrations")) << scene << ", " << threads << " threads";
+      EXPECT_LE(100 * run.counters.counts.at("undone_integrations"),
+                15 * run.counters.counts.at("integrations"))
+          << scene << ", " << threads << " threads";
     }
   }
 }
@@ -89,7 +94,8 @@ TEST(Threads, OneUsesSeveralRegionsByItselfForVeryManyBodies) {
   for (const int threads : {1, 2}) {
     const Trajectory run = run_on({threads}, longer, 10.0);
     EXPECT_EQ(difference(in_order, run), "") << threads << " threads";
-    EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";   // speculation across boundaries was wrong, and rolled back
+    // speculation across boundaries was wrong, and rolled back
+    EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";
   }
 }
 
@@ -105,8 +111,8 @@ TEST(Threads, InAdversarialOrderAndDelayedLeaveTheTraceAsItIs) {
     rollbacks += run.counters.counts.at("rollbacks");
     rounds += run.counters.counts.at("rounds_of_threads");
   }
-  EXPECT_GT(rollbacks, 200U * 2);   // the random choices were hard enough
-  EXPECT_GT(rounds, 200U * 3);      // and threads ran concurrently
+  EXPECT_GT(rollbacks, 200U * 2);  // the random choices were hard enough
+  EXPECT_GT(rounds, 200U * 3);     // and threads ran concurrently
 }
 
 // Counters too: a thread's view does not depend on the speed of the others.
@@ -123,7 +129,8 @@ TEST(Threads, CountTheSameHoweverTheyAreDelayed) {
 // Two bodies that hit each other repeatedly, in two regions; a ball at each far end keeps both
 // threads busy.
 scene::Scene echo() {
-  std::vector<scene::BodySpec> bodies{plane("left", {-2, 0, 0}, {1, 0, 0}), plane("right", {2, 0, 0}, {-1, 0, 0})};
+  std::vector<scene::BodySpec> bodies{plane("left", {-2, 0, 0}, {1, 0, 0}),
+                                      plane("right", {2, 0, 0}, {-1, 0, 0})};
   bodies.push_back(ball("a", 0.1, 1.0, {-0.5, 0, 0}, {1.0, 0, 0}));
   bodies.push_back(ball("b", 0.1, 1.0, {0.5, 0, 0}, {-1.0, 0, 0}));
   bodies.push_back(ball("c", 0.1, 1.0, {-1.5, 1, 0}, {0.7, 0, 0}));
@@ -135,19 +142,26 @@ TEST(Echo, OfTwoBodiesUndoesNoMoreThanItCommits) {
   const scene::Scene scene = echo();
   const Trajectory reference = run_by("ordered", scene, {}, 0.5);
   ASSERT_GT(reference.events.size(), 200U);
-  const auto of_the_two = std::count_if(reference.events.begin(), reference.events.end(), [](const Event& event) { return event.body_a == 2 && event.body_b == 3; });
+  const auto of_the_two =
+      std::count_if(reference.events.begin(), reference.events.end(),
+                    [](const Event& event) { return event.body_a == 2 && event.body_b == 3; });
   ASSERT_GT(of_the_two, 50);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Trajectory run = run_on({2, delayed(seed, 1e-4)}, scene, 0.5);
     EXPECT_EQ(difference(reference, run), "") << "seed " << seed;
-    const std::uint64_t undone = run.counters.counts.at("undone_integrations"), all = run.counters.counts.at("integrations");
+    const std::uint64_t undone = run.counters.counts.at("undone_integrations"),
+                        all = run.counters.counts.at("integrations");
     EXPECT_LE(undone, all - undone) << "seed " << seed;
     // Each thread owns one of the two bodies: most of their impacts cross regions, and both threads
     // have work in their own.
-    EXPECT_GT(2 * run.counters.counts.at("impacts_across_territories"), static_cast<std::uint64_t>(of_the_two)) << "seed " << seed;
+    EXPECT_GT(2 * run.counters.counts.at("impacts_across_territories"),
+              static_cast<std::uint64_t>(of_the_two))
+        << "seed " << seed;
     EXPECT_GT(run.counters.counts.at("least_events_of_a_thread"), 50U) << "seed " << seed;
-    EXPECT_GT(undone, 0U) << "seed " << seed;                                          // the ratio is not of zeros,
-    EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 100U) << "seed " << seed;   // and threads ran concurrently all the time
+    // the ratio is not of zeros,
+    EXPECT_GT(undone, 0U) << "seed " << seed;
+    // and threads ran concurrently all the time
+    EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 100U) << "seed " << seed;
   }
 }
 
@@ -155,23 +169,33 @@ TEST(Echo, OfTwoBodiesUndoesNoMoreThanItCommits) {
 TEST(Threads, ExecuteTiesAcrossRegionsInTheirOrder) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < 40; ++i)
-    for (int j = 0; j < 5; ++j) bodies.push_back(ball("ball" + std::to_string(5 * i + j), 0.0625, 1.0, {0.25 * i, 0.25 * j, 0}, {i % 4 == 0 ? 0.5 : i % 4 == 2 ? -0.5 : 0.0, 0, 0}));
+    for (int j = 0; j < 5; ++j)
+      bodies.push_back(ball("ball" + std::to_string(5 * i + j), 0.0625, 1.0,
+                            {0.25 * i, 0.25 * j, 0},
+                            {i % 4 == 0   ? 0.5
+                             : i % 4 == 2 ? -0.5
+                                          : 0.0,
+                             0, 0}));
   const scene::Scene scene = scene_of(std::move(bodies), 2.0);
   const Trajectory reference = run_by("ordered", scene, {}, 5.0);
   ASSERT_GT(reference.events.size(), 150U);
-  for (const int threads : {2, 3, 8}) EXPECT_EQ(difference(reference, run_on({threads}, scene, 5.0)), "") << threads << " threads";
+  for (const int threads : {2, 3, 8})
+    EXPECT_EQ(difference(reference, run_on({threads}, scene, 5.0)), "") << threads << " threads";
 }
 
 TEST(Threads, StopWhereTheReferenceStops) {
   Laws laws = test_laws();
-  laws.collision_impulse = [law = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double restitution) {
+  laws.collision_impulse = [law = laws.collision_impulse](const Contact& contact, const Body& a,
+                                                          const Body& b, double restitution) {
     const double impulse = law(contact, a, b, restitution);
-    return impulse > 2.5 ? kUnset : impulse;   // N s: the first strong impact
+    return impulse > 2.5 ? kUnset : impulse;  // N s: the first strong impact
   };
   const scene::Scene scene = sized("gas", 100, 2.0);
   const Trajectory reference = run_by("ordered", scene, {}, 60.0, laws);
   ASSERT_NE(reference.stopped_by, "");
-  for (const int threads : {1, 2, 4}) EXPECT_EQ(difference(reference, run_on({threads}, scene, 60.0, laws)), "") << threads << " threads";
+  for (const int threads : {1, 2, 4})
+    EXPECT_EQ(difference(reference, run_on({threads}, scene, 60.0, laws)), "")
+        << threads << " threads";
 }
 
 // The limit is reported once, to the calling thread: a thread that took it for a consequence of its
@@ -183,17 +207,23 @@ TEST(Threads, StopWhenTimeIsUpWhereverTheyAre) {
     for (const int last : {100, 300, 700}) {
       std::atomic<int> asked = 0;
       Laws laws = test_laws();
-      laws.relative_normal_velocity = [&asked, last, law = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+      laws.relative_normal_velocity = [&asked, last, law = laws.relative_normal_velocity](
+                                          const Contact& contact, const Body& a, const Body& b) {
         if (++asked == last) throw engines::OutOfTime("it takes more than 1 s");
         return law(contact, a, b);
       };
       engines::FaultInjection faults;
       faults.regions = 4;
       const Trajectory run = run_on({threads, faults}, scene, 30.0, laws);
-      EXPECT_EQ(run.stopped_by.find("it takes more than 1 s"), 0U) << threads << " threads, " << last << ": " << run.stopped_by;
-      EXPECT_LT(asked, last + 200) << threads << " threads";   // the other thread finishes its epoch
+      EXPECT_EQ(run.stopped_by.find("it takes more than 1 s"), 0U)
+          << threads << " threads, " << last << ": " << run.stopped_by;
+      // the other thread finishes its epoch
+      EXPECT_LT(asked, last + 200) << threads << " threads";
       ASSERT_LT(run.events.size(), reference.events.size());
-      for (std::size_t k = 0; k < run.events.size(); ++k) ASSERT_EQ(run.events[k].time, reference.events[k].time) << threads << " threads, event " << k;   // what was committed was certain
+      // what was committed was certain
+      for (std::size_t k = 0; k < run.events.size(); ++k)
+        ASSERT_EQ(run.events[k].time, reference.events[k].time)
+            << threads << " threads, event " << k;
     }
 }
 
@@ -202,13 +232,14 @@ TEST(Threads, AreRefusedInWordsWhereTheirNumberMakesNoSense) {
   EXPECT_THROW(run_on({1000}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1, {}, 3}, sized("gas", 4, 0.1)), UserError);
   engines::FaultInjection faults;
-  for (const int regions : {-1, 256, 1000}) {   // 256 in a byte is the boundary
+  for (const int regions : {-1, 256, 1000}) {  // 256 in a byte is the boundary
     faults.regions = regions;
     try {
       run_on({1, faults}, sized("gas", 4, 0.1));
       FAIL() << regions;
     } catch (const PreconditionError& error) {
-      EXPECT_NE(std::string(error.what()).find("FaultInjection::regions"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("FaultInjection::regions"), std::string::npos)
+          << error.what();
     }
   }
   faults.regions = 255;
@@ -223,7 +254,8 @@ TEST(CapOfStates, OfEightIsKeptAndChangesNothing) {
   const Trajectory reference = run_by("ordered", scene, {}, 1.0);
   engines::FaultInjection hard;
   hard.disorder_s = 10.0;
-  const Trajectory free = run_on({1, hard}, scene, 1.0), capped = run_on({1, hard, 8}, scene, 1.0), threaded = run_on({2, {}, 8}, scene, 1.0);
+  const Trajectory free = run_on({1, hard}, scene, 1.0), capped = run_on({1, hard, 8}, scene, 1.0),
+                   threaded = run_on({2, {}, 8}, scene, 1.0);
   EXPECT_EQ(difference(reference, free), "");
   EXPECT_EQ(difference(reference, capped), "");
   EXPECT_EQ(difference(reference, threaded), "");
@@ -236,9 +268,11 @@ TEST(CapOfStates, OfEightIsKeptAndChangesNothing) {
 // After 20 seconds and after 100: the largest number of states does not grow.
 TEST(Memory, OfAGasStaysFlat) {
   for (const int threads : {1, 2}) {
-    const auto kept = [&](double duration) { return run_on({threads}, sized("gas", 400, duration), 1.0).counters.counts.at("states_kept"); };
+    const auto kept = [&](double duration) {
+      return run_on({threads}, sized("gas", 400, duration), 1.0).counters.counts.at("states_kept");
+    };
     const std::uint64_t short_run = kept(20.0), long_run = kept(100.0);
-    EXPECT_LE(20 * long_run, 21 * short_run) << threads << " threads";   // 5 %
+    EXPECT_LE(20 * long_run, 21 * short_run) << threads << " threads";  // 5 %
   }
 }
 
@@ -249,10 +283,14 @@ TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
   constexpr int kBodies = 12'600;
   for (const double duration : {0.5, 1.0}) {
     scene::Scene scene = sized("gas", kBodies, duration);
-    std::erase_if(scene.bodies, [](const scene::BodySpec& body) { return body.immovable || !body.name.starts_with("ball_"); });   // without walls
+    // without walls
+    std::erase_if(scene.bodies, [](const scene::BodySpec& body) {
+      return body.immovable || !body.name.starts_with("ball_");
+    });
     for (scene::BodySpec& body : scene.bodies) body.velocity_m_s *= 1e-3;
     for (const double x : {-0.7, 0.7}) {
-      scene.bodies.push_back(box(x < 0 ? "left" : "right", {0.5, 1, 1}, 1.0, {x, 500, 500}, Vector3d::Zero()));
+      scene.bodies.push_back(
+          box(x < 0 ? "left" : "right", {0.5, 1, 1}, 1.0, {x, 500, 500}, Vector3d::Zero()));
       scene.bodies.back().immovable = true;
       scene.bodies.back().mass_kg.reset();
     }
@@ -261,7 +299,8 @@ TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
     ASSERT_EQ(run.events.size(), static_cast<std::size_t>(10'000 * duration));
     EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 10U);
     EXPECT_LE(run.counters.counts.at("most_states_of_a_body"), 300U) << duration << " s";
-    EXPECT_LE(run.counters.counts.at("states_kept"), kBodies + 300U) << duration << " s";   // otherwise: a quarter of the events of the run
+    // otherwise: a quarter of the events of the run
+    EXPECT_LE(run.counters.counts.at("states_kept"), kBodies + 300U) << duration << " s";
     engines::FaultInjection one_region;
     one_region.regions = 1;
     EXPECT_EQ(difference(run_on({1, one_region}, scene, 1.0), run), "") << duration << " s";
@@ -274,13 +313,16 @@ TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
 // turns the first back before it began. All of it is rolled back.
 Trajectory taken_back_row(int n, double duration = kUnset) {
   std::vector<scene::BodySpec> bodies;
-  for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
+  for (int i = 0; i < n; ++i)
+    bodies.push_back(
+        ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
   bodies[0].velocity_m_s.x() = 1.0;
   engines::RunOptions options;
   options.engine = "tw";
   options.faults.late_callbacks = true;
   options.frame_rate_hz = 1e-6;
-  options.callbacks = {{0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
+  options.callbacks = {
+      {0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
   if (std::isnan(duration)) duration = 0.05 * n + 0.1;
   if (duration < options.callbacks.front().time) options.callbacks.clear();
   return run_as_told(std::move(options), scene_of(std::move(bodies), duration), test_laws());
@@ -295,7 +337,8 @@ TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
     EXPECT_EQ(run.events[0].kind, EventKind::kControl) << n;
     EXPECT_EQ(run.counters.counts.at("rollbacks"), static_cast<std::uint64_t>(n)) << n;
     EXPECT_GE(run.counters.counts.at("anti_messages"), static_cast<std::uint64_t>(n - 1)) << n;
-    for (const char* what : {"integrations", "undone_integrations", "pair_checks"}) work[n] += static_cast<double>(run.counters.counts.at(what));
+    for (const char* what : {"integrations", "undone_integrations", "pair_checks"})
+      work[n] += static_cast<double>(run.counters.counts.at(what));
   }
   EXPECT_NEAR(std::log10(work[1000] / work[100]), 1.0, 0.1);
   EXPECT_NEAR(0.5 * std::log10(work[100'000] / work[1000]), 1.0, 0.1);
@@ -335,14 +378,19 @@ TEST(LateEvent, AtTheFirstOfARowTakesCpuTimeLinearInTheirNumber) {
 
 TEST(RunawayEnergy, StopsEveryEventEngineAndNamesBodyTimeAndLaws) {
   Laws laws = test_laws();
-  laws.collision_impulse = [law = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double restitution) { return 1.6 * law(contact, a, b, restitution); };
+  laws.collision_impulse = [law = laws.collision_impulse](const Contact& contact, const Body& a,
+                                                          const Body& b, double restitution) {
+    return 1.6 * law(contact, a, b, restitution);
+  };
   const scene::Scene scene = sized("gas", 30, 20.0);
   for (const char* engine : {"ordered", "ca", "tw"}) {
     const Trajectory run = run_by(engine, scene, {}, 10.0, laws);
-    for (const char* word : {"at t = ", "body 'ball_", "runaway energy", "comes from collision (collision_impulse"}) EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;
+    for (const char* word :
+         {"at t = ", "body 'ball_", "runaway energy", "comes from collision (collision_impulse"})
+      EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;
     ASSERT_GT(run.frames.size(), 1U) << engine;
     EXPECT_LT(run.frames.back().time, 20.0) << engine;
-    EXPECT_GT(run.events.size(), 10U) << engine;   // the recording is kept
+    EXPECT_GT(run.events.size(), 10U) << engine;  // the recording is kept
   }
   EXPECT_EQ(run_by("tw", sized("gas", 30, 2.0), {}, 10.0).stopped_by, "");
 }

@@ -12,14 +12,17 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kRounding = 1e-12;   // a sum of eight shares
+constexpr double kRounding = 1e-12;  // a sum of eight shares
 
 // A renamed function would silently count as scheduling.
 TEST(TimeParts, AreNamesOfFunctions) {
-  const Laws laws = reference_laws();   // their functions are among the parts
+  const Laws laws = reference_laws();  // their functions are among the parts
   for (const StackSamples::Part& part : engines::time_parts())
-    for (const std::string& name : part.functions) EXPECT_TRUE(StackSamples::is_known(name)) << part.name << ": no function begins with " << name;
-  for (const std::string& name : engines::set_up_functions()) EXPECT_TRUE(StackSamples::is_known(name)) << name;
+    for (const std::string& name : part.functions)
+      EXPECT_TRUE(StackSamples::is_known(name))
+          << part.name << ": no function begins with " << name;
+  for (const std::string& name : engines::set_up_functions())
+    EXPECT_TRUE(StackSamples::is_known(name)) << name;
 }
 
 // The cost of a robot's arm is its rods, joints and the block in its scoop, and no decision of an

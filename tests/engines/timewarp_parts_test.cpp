@@ -31,10 +31,16 @@ Flight flight_at(double begin, std::uint32_t version, Random& random) {
 
 // Every number of a flight, bit for bit, without padding.
 bool same_bytes(const Flight& x, const Flight& y) {
-  const auto same = [](const auto& u, const auto& v) { return std::memcmp(u.data(), v.data(), sizeof(double) * static_cast<std::size_t>(u.size())) == 0; };
-  return std::memcmp(&x.begin, &y.begin, sizeof x.begin) == 0 && same(x.com_world, y.com_world) && same(x.velocity_world, y.velocity_world) &&
-         same(x.world_from_body.coeffs(), y.world_from_body.coeffs()) && same(x.omega_body, y.omega_body) && x.partner == y.partner && x.partner_version == y.partner_version &&
-         x.microstep == y.microstep && x.version == y.version && x.is_resting == y.is_resting;
+  const auto same = [](const auto& u, const auto& v) {
+    return std::memcmp(u.data(), v.data(), sizeof(double) * static_cast<std::size_t>(u.size())) ==
+           0;
+  };
+  return std::memcmp(&x.begin, &y.begin, sizeof x.begin) == 0 && same(x.com_world, y.com_world) &&
+         same(x.velocity_world, y.velocity_world) &&
+         same(x.world_from_body.coeffs(), y.world_from_body.coeffs()) &&
+         same(x.omega_body, y.omega_body) && x.partner == y.partner &&
+         x.partner_version == y.partner_version && x.microstep == y.microstep &&
+         x.version == y.version && x.is_resting == y.is_resting;
 }
 
 TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
@@ -49,12 +55,14 @@ TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
       histories.push(1, expected.back());
       t += random.unit();
     }
-    for (int k = 0; k < steps; ++k) histories.push(1, flight_at(t += random.unit(), version++, random));
+    for (int k = 0; k < steps; ++k)
+      histories.push(1, flight_at(t += random.unit(), version++, random));
     for (int k = 0; k < steps; ++k) histories.pop(1);
-    const double gvt = expected[3].begin + 1e-9;   // what ended before is not needed any more
+    const double gvt = expected[3].begin + 1e-9;  // what ended before is not needed any more
     histories.purge(1, gvt);
     ASSERT_EQ(histories[1].size(), 4U);
-    for (std::size_t k = 0; k < 4; ++k) EXPECT_TRUE(same_bytes(histories[1][k], expected[k + 3])) << steps << " steps, flight " << k;
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_TRUE(same_bytes(histories[1][k], expected[k + 3])) << steps << " steps, flight " << k;
     EXPECT_EQ(histories[1].at(gvt), 0U);
     EXPECT_EQ(histories[1].find(expected[5].version), 2U);
     EXPECT_EQ(histories[1].find(expected[1].version), histories[1].size());
@@ -71,7 +79,8 @@ TEST(FlightHistories, GiveBackTheMemoryOfFlightsThatAreGone) {
   double t = 0.0;
   const auto push = [&](int flights) {
     for (int k = 0; k < flights; ++k) {
-      expected.push_back(flight_at(t += 0.1 + random.unit(), static_cast<std::uint32_t>(k), random));
+      expected.push_back(
+          flight_at(t += 0.1 + random.unit(), static_cast<std::uint32_t>(k), random));
       histories.push(0, expected.back());
     }
   };
@@ -79,7 +88,8 @@ TEST(FlightHistories, GiveBackTheMemoryOfFlightsThatAreGone) {
     while (expected.size() > flights) expected.pop_front();
     histories.purge(0, expected.front().begin + 1e-9);
     ASSERT_EQ(histories[0].size(), flights);
-    for (std::size_t k = 0; k < flights; ++k) EXPECT_TRUE(same_bytes(histories[0][k], expected[k])) << "of " << flights << ", flight " << k;
+    for (std::size_t k = 0; k < flights; ++k)
+      EXPECT_TRUE(same_bytes(histories[0][k], expected[k])) << "of " << flights << ", flight " << k;
   };
   const std::size_t first = histories[0].held();
   push(1000);
@@ -120,16 +130,23 @@ TEST(EventQueue, GivesKeysInTheirOrderWhateverTheOrderTheyCameIn) {
     Random random(5);
     engines::EventQueue<Item> queue(width);
     std::multiset<std::tuple<double, std::uint32_t, int, int>> expected;
-    const auto content = [](const Item& item) { return std::tuple(item.key.time, item.key.microstep, item.key.body_a, item.key.body_b); };
+    const auto content = [](const Item& item) {
+      return std::tuple(item.key.time, item.key.microstep, item.key.body_a, item.key.body_b);
+    };
     double now = 0.0;
     for (int k = 0; k < 6000; ++k) {
       if (k < 4000) {
         const int a = static_cast<int>(random.below(50));
-        const double time = random.below(3) == 0 ? now : now + 0.25 * static_cast<double>(random.below(40)) * (random.below(9) == 0 ? 100.0 : 1.0);
-        const Item item{{time, static_cast<std::uint32_t>(random.below(3)), engines::StampKind::kCollision, a, a + 1 + static_cast<int>(random.below(50))}};
+        const double time = random.below(3) == 0
+                                ? now
+                                : now + 0.25 * static_cast<double>(random.below(40)) *
+                                            (random.below(9) == 0 ? 100.0 : 1.0);
+        const Item item{{time, static_cast<std::uint32_t>(random.below(3)),
+                         engines::StampKind::kCollision, a,
+                         a + 1 + static_cast<int>(random.below(50))}};
         queue.push(item);
         expected.insert(content(item));
-        if (random.below(20) == 0) {   // a rollback: earlier than what was popped last
+        if (random.below(20) == 0) {  // a rollback: earlier than what was popped last
           const Item early{{0.5 * now, 0, engines::StampKind::kCollision, 1, 2}};
           queue.push(early);
           expected.insert(content(early));
@@ -147,7 +164,8 @@ TEST(EventQueue, GivesKeysInTheirOrderWhateverTheOrderTheyCameIn) {
 
 TEST(EventStamp, PutsCauseBeforeEffectWhereNoTimePasses) {
   // Body 5 is hit at t and, at t, hits body 1: the effect has the lower bodies.
-  const engines::EventStamp cause{1.0, 0, engines::StampKind::kCollision, 5, 9}, effect{1.0, 1, engines::StampKind::kCollision, 1, 5};
+  const engines::EventStamp cause{1.0, 0, engines::StampKind::kCollision, 5, 9},
+      effect{1.0, 1, engines::StampKind::kCollision, 1, 5};
   EXPECT_LT(cause, effect);
   EXPECT_FALSE(effect < cause);
 }
@@ -157,7 +175,8 @@ TEST(ActivePairs, AreThePairsOfOverlappingBoxesEachReportedOnce) {
   constexpr int kBodies = 150;
   engines::ActivePairs pairs(kBodies, 0.7);
   const auto random_box = [&](int body) {
-    const double size = body % 40 == 0 ? 30.0 : random.between(0.1, body % 7 == 0 ? 3.0 : 0.8);   // some are wide
+    // some are wide
+    const double size = body % 40 == 0 ? 30.0 : random.between(0.1, body % 7 == 0 ? 3.0 : 0.8);
     const Vector3d middle(random.between(-5, 5), random.between(-5, 5), random.between(-5, 5));
     return Box{middle - Vector3d::Constant(0.5 * size), middle + Vector3d::Constant(0.5 * size)};
   };
@@ -188,18 +207,24 @@ TEST(ActivePairs, OfGridsThatShareBodiesKeepToTheirOwn) {
   for (int round = 0; round < 20; ++round) {
     for (int body = 0; body < kBodies; ++body) {
       const std::size_t next = random.below(kGrids);
-      for (engines::ActivePairs& grid : grids) grid.remove(body);   // no effect on the two grids that do not hold it
+      // no effect on the two grids that do not hold it
+      for (engines::ActivePairs& grid : grids) grid.remove(body);
       ASSERT_FALSE(grids[home[static_cast<std::size_t>(body)]].holds(body));
-      const Vector3d middle(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)), half = Vector3d::Constant(body % 20 == 0 ? 15.0 : 0.5);   // some are wide
+      // some are wide
+      const Vector3d middle(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)),
+          half = Vector3d::Constant(body % 20 == 0 ? 15.0 : 0.5);
       grids[next].set_box(body, {middle - half, middle + half});
       home[static_cast<std::size_t>(body)] = next;
     }
     for (int body = 0; body < kBodies; ++body)
       for (std::size_t k = 0; k < kGrids; ++k) {
         std::multiset<int> found, expected;
-        grids[k].for_each_in(grids[home[static_cast<std::size_t>(body)]].box(body), [&](int other) { found.insert(other); });
+        grids[k].for_each_in(grids[home[static_cast<std::size_t>(body)]].box(body),
+                             [&](int other) { found.insert(other); });
         for (int other = 0; other < kBodies; ++other)
-          if (home[static_cast<std::size_t>(other)] == k && grids[k].box(body).overlaps(grids[k].box(other))) expected.insert(other);
+          if (home[static_cast<std::size_t>(other)] == k &&
+              grids[k].box(body).overlaps(grids[k].box(other)))
+            expected.insert(other);
         ASSERT_EQ(found, expected) << "body " << body << ", grid " << k << ", round " << round;
         ASSERT_EQ(grids[k].holds(body), home[static_cast<std::size_t>(body)] == k);
       }
@@ -224,17 +249,21 @@ TEST_F(TraceJudge, NamesAnImpulseThatIsOffByOneBit) {
   const auto parted = engines::compare_traces(reference, run);
   ASSERT_TRUE(parted.has_value());
   EXPECT_EQ(parted->index, 7U);
-  EXPECT_NE(parted->story.find("event 8 of the committed trace"), std::string::npos) << parted->story;
-  EXPECT_NE(parted->story.find("a state that had been rolled back"), std::string::npos) << parted->story;
+  EXPECT_NE(parted->story.find("event 8 of the committed trace"), std::string::npos)
+      << parted->story;
+  EXPECT_NE(parted->story.find("a state that had been rolled back"), std::string::npos)
+      << parted->story;
   EXPECT_NE(engines::trace_hash(reference), engines::trace_hash(run));
 }
 
 TEST_F(TraceJudge, DistinguishesALostEventFromAnExtraOne) {
   run.events.pop_back();
-  EXPECT_NE(engines::compare_traces(reference, run)->story.find("an event was lost"), std::string::npos);
+  EXPECT_NE(engines::compare_traces(reference, run)->story.find("an event was lost"),
+            std::string::npos);
   run = reference;
   run.events.insert(run.events.begin() + 4, run.events[9]);
-  EXPECT_NE(engines::compare_traces(reference, run)->story.find("an event was not rolled back"), std::string::npos);
+  EXPECT_NE(engines::compare_traces(reference, run)->story.find("an event was not rolled back"),
+            std::string::npos);
 }
 
 }  // namespace

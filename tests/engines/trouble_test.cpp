@@ -16,14 +16,20 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 scene::Scene head_on() {
-  return scene_of({ball("left ball", 0.1, 1.0, {-1, 0, 0}, {1, 0, 0}), ball("right ball", 0.1, 1.0, {1, 0, 0}, {-1, 0, 0})}, 3.0);
+  return scene_of({ball("left ball", 0.1, 1.0, {-1, 0, 0}, {1, 0, 0}),
+                   ball("right ball", 0.1, 1.0, {1, 0, 0}, {-1, 0, 0})},
+                  3.0);
 }
 
-void expect_stopped(const Trajectory& result, std::initializer_list<const char*> words, std::size_t frames_kept) {
-  for (const char* word : words) EXPECT_NE(result.stopped_by.find(word), std::string::npos) << "no \"" << word << "\" in: " << result.stopped_by;
+void expect_stopped(const Trajectory& result, std::initializer_list<const char*> words,
+                    std::size_t frames_kept) {
+  for (const char* word : words)
+    EXPECT_NE(result.stopped_by.find(word), std::string::npos)
+        << "no \"" << word << "\" in: " << result.stopped_by;
   EXPECT_GE(result.frames.size(), frames_kept);
   for (const Frame& frame : result.frames)
-    for (const BodyPose& pose : frame.poses) EXPECT_TRUE(pose.com_world.allFinite() && pose.velocity_world.allFinite()) << frame.time;
+    for (const BodyPose& pose : frame.poses)
+      EXPECT_TRUE(pose.com_world.allFinite() && pose.velocity_world.allFinite()) << frame.time;
 }
 
 // Every engine's record, from which pages, pictures and files are made.
@@ -58,19 +64,25 @@ TEST(Trouble, AnImpulseThatIsNotANumberIsNamed) {
 
 TEST(Trouble, ALawThatThrowsIsNamed) {
   Laws laws = test_laws();
-  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double { throw std::runtime_error("I divided by zero"); };
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double {
+    throw std::runtime_error("I divided by zero");
+  };
   expect_stopped(run(head_on(), laws), {"left ball", "0.9", "impulse", "I divided by zero"}, 54);
 }
 
 TEST(Trouble, AnUnwrittenLawIsNotAttemptedRatherThanStopped) {
   Laws laws = test_laws();
-  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double { throw NotImplemented("collision_impulse", "handouts/a1_impulse.md"); };
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double {
+    throw NotImplemented("collision_impulse", "handouts/a1_impulse.md");
+  };
   EXPECT_THROW(run(head_on(), laws), NotImplemented);
 }
 
 TEST(Trouble, AVelocityAfterAnImpulseThatIsNotANumberIsNamed) {
   Laws laws = test_laws();
-  laws.apply_impulse = [](const Body&, const Vector3d&, const Vector3d&) { return Velocity{Vector3d::Constant(kNaN), Vector3d::Zero()}; };
+  laws.apply_impulse = [](const Body&, const Vector3d&, const Vector3d&) {
+    return Velocity{Vector3d::Constant(kNaN), Vector3d::Zero()};
+  };
   expect_stopped(run(head_on(), laws), {"left ball", "0.9", "impulse"}, 54);
 }
 
@@ -86,7 +98,8 @@ TEST(Trouble, AnIntegrationThatIsNotANumberIsNamed) {
 TEST(Trouble, AnIntegrationThatThrowsIsNamed) {
   Laws laws = test_laws();
   const auto good = laws.integrate_step;
-  laws.integrate_step = [good](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd {
+  laws.integrate_step = [good](const OdeFunction& f, double t, const VectorXd& y,
+                               double h) -> VectorXd {
     if (t > 0.5) throw std::out_of_range("y has no element 13");
     return good(f, t, y, h);
   };
@@ -117,7 +130,8 @@ TEST(Trouble, AnImpulseOfNothingIsAStallWithNames) {
 TEST(Trouble, ARootFinderOfNonsenseChangesNothing) {
   for (const double nonsense : {kNaN, -1.0, 1e9}) {
     Laws laws = test_laws();
-    laws.find_impact_time = [nonsense](const ScalarFunction&, const ScalarFunction&, double, double, double) {
+    laws.find_impact_time = [nonsense](const ScalarFunction&, const ScalarFunction&, double, double,
+                                       double) {
       RootResult root{};
       root.time = nonsense;
       return root;
@@ -151,8 +165,12 @@ TEST(Trouble, ABodyThatTurnsTooOftenAStepForItsCollisionsIsNamed) {
       TrajectoryRecorder recorder;
       engines::run_scene(scene, test_laws(), options, recorder);
       const std::string& stopped = recorder.trajectory().stopped_by;
-      if (rate > 1e5) EXPECT_TRUE(stopped.find("'top' turns 1e+07 rad a step") != std::string::npos && stopped.find("step_s") != std::string::npos) << engine << ": " << stopped;
-      else EXPECT_EQ(stopped, "") << engine;
+      if (rate > 1e5)
+        EXPECT_TRUE(stopped.find("'top' turns 1e+07 rad a step") != std::string::npos &&
+                    stopped.find("step_s") != std::string::npos)
+            << engine << ": " << stopped;
+      else
+        EXPECT_EQ(stopped, "") << engine;
     }
   }
 }

@@ -12,8 +12,8 @@ namespace tumble::fuzz {
 using Json = nlohmann::ordered_json;
 
 struct DrawOptions {
-  bool quick = false;      // at most four bodies and 60 steps: for the sample of the regular tests
-  bool all_engines = false; // without entries that an engine refuses: no sleep
+  bool quick = false;  // at most four bodies and 60 steps: for the sample of the regular tests
+  bool all_engines = false;  // without entries that an engine refuses: no sleep
 };
 
 /// The same number gives the same scene on every machine.

@@ -44,7 +44,9 @@ struct Judge {
   World world;
   std::vector<Fault> faults;
 
-  const BodyPose& pose(const Frame& frame, int body) const { return frame.poses[static_cast<std::size_t>(body)]; }
+  const BodyPose& pose(const Frame& frame, int body) const {
+    return frame.poses[static_cast<std::size_t>(body)];
+  }
   Vector3d place(const Frame& frame, const Anchor& anchor) const {
     if (anchor.body < 0) return anchor.point_body;
     const BodyPose& at = pose(frame, anchor.body);
@@ -52,7 +54,9 @@ struct Judge {
   }
 
   /// Whether a frame at this time is interpolated between the ends of a step.
-  bool is_between_steps(double time) const { return std::abs(time / run.info.step_s - std::round(time / run.info.step_s)) > 1e-6; }
+  bool is_between_steps(double time) const {
+    return std::abs(time / run.info.step_s - std::round(time / run.info.step_s)) > 1e-6;
+  }
 
   bool is_finite();
   void check_end();
@@ -65,8 +69,12 @@ bool Judge::is_finite() {
   for (const Frame& frame : run.frames)
     for (std::size_t i = 0; i < frame.poses.size(); ++i) {
       const BodyPose& at = frame.poses[i];
-      if (at.com_world.allFinite() && at.world_from_body.coeffs().allFinite() && at.velocity_world.allFinite() && at.omega_world.allFinite() && std::abs(at.world_from_body.norm() - 1.0) < 1e-9) continue;
-      faults.push_back({"number", fmt::format("body '{}' is not anywhere at t = {:.6g} s", run.bodies[i].name, frame.time)});
+      if (at.com_world.allFinite() && at.world_from_body.coeffs().allFinite() &&
+          at.velocity_world.allFinite() && at.omega_world.allFinite() &&
+          std::abs(at.world_from_body.norm() - 1.0) < 1e-9)
+        continue;
+      faults.push_back({"number", fmt::format("body '{}' is not anywhere at t = {:.6g} s",
+                                              run.bodies[i].name, frame.time)});
       return false;
     }
   return true;
@@ -74,7 +82,9 @@ bool Judge::is_finite() {
 
 void Judge::check_end() {
   const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
-  if (run.frames.empty() || end < scene.duration_s - 1.0 / 60.0 - 1e-9) faults.push_back({"short", fmt::format("the last frame is at {:.6g} s of {:.6g} s", end, scene.duration_s)});
+  if (run.frames.empty() || end < scene.duration_s - 1.0 / 60.0 - 1e-9)
+    faults.push_back(
+        {"short", fmt::format("the last frame is at {:.6g} s of {:.6g} s", end, scene.duration_s)});
 }
 
 /// Energy of a frame, and the size of the sums from which it was computed.
@@ -96,10 +106,12 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
     const Vector3d omega_body = at.world_from_body.conjugate() * at.omega_world;
     add(energy.kinetic, 0.5 * body.inertia.mass * at.velocity_world.squaredNorm());
     add(energy.kinetic, 0.5 * omega_body.dot(body.inertia.inertia_body * omega_body));
-    if (world.gravity_world) add(energy.potential, -body.inertia.mass * world.gravity_world->dot(at.com_world));
+    if (world.gravity_world)
+      add(energy.potential, -body.inertia.mass * world.gravity_world->dot(at.com_world));
   }
   for (const effects::SpringLink& spring : world.effects.of<effects::SpringLink>()) {
-    const double stretch = (judge.place(frame, spring.a) - judge.place(frame, spring.b)).norm() - spring.spring.rest_length;
+    const double stretch = (judge.place(frame, spring.a) - judge.place(frame, spring.b)).norm() -
+                           spring.spring.rest_length;
     add(energy.potential, 0.5 * spring.spring.stiffness * stretch * stretch);
     energy.in_springs += 0.5 * spring.spring.stiffness * stretch * stretch;
   }
@@ -112,9 +124,13 @@ double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& 
   double work = 0.0;
   for (const effects::PointForce& force : judge.world.effects.of<effects::PointForce>()) {
     if (!(to.time <= force.end + 1e-9 && from.time >= force.start - 1e-9)) continue;
-    const BodyPose &start = judge.pose(judge.run.frames.front(), force.body), &a = judge.pose(from, force.body), &b = judge.pose(to, force.body);
-    const Vector3d point_body = start.world_from_body.conjugate() * (force.point_world - start.com_world);   // all begin at 0
-    work += force.force_world.dot(b.com_world + b.world_from_body * point_body - a.com_world - a.world_from_body * point_body);
+    const BodyPose &start = judge.pose(judge.run.frames.front(), force.body),
+                   &a = judge.pose(from, force.body), &b = judge.pose(to, force.body);
+    // all begin at 0
+    const Vector3d point_body =
+        start.world_from_body.conjugate() * (force.point_world - start.com_world);
+    work += force.force_world.dot(b.com_world + b.world_from_body * point_body - a.com_world -
+                                  a.world_from_body * point_body);
   }
   return work;
 }
@@ -130,45 +146,59 @@ double work_of_motors(const Judge& judge, const Frame& from, const Frame& to) {
       if (joint.b.body >= 0) omega -= judge.pose(frame, joint.b.body).omega_world;
       return omega.norm();
     };
-    work += 2.0 * motor.law.largest_torque_n_m * std::max(rate(from), rate(to)) * (to.time - from.time);
+    work +=
+        2.0 * motor.law.largest_torque_n_m * std::max(rate(from), rate(to)) * (to.time - from.time);
   }
   return work;
 }
 
 void Judge::check_energy() {
-  for (const WorldBody& body : world.bodies)   // a driven body does work that frames do not show
-    if (body.immovable() && body.collides && (!body.motion.velocity_m_s.isZero(0) || !body.motion.amplitude_m.isZero(0))) return;
-  double stir = 0.0;   // energy that position correction may add
+  for (const WorldBody& body : world.bodies)  // a driven body does work that frames do not show
+    if (body.immovable() && body.collides &&
+        (!body.motion.velocity_m_s.isZero(0) || !body.motion.amplitude_m.isZero(0)))
+      return;
+  double stir = 0.0;  // energy that position correction may add
   for (const WorldBody& body : world.bodies)
-    if (!body.immovable()) stir += 8.0 * body.inertia.mass * scene.rest_speed_m_s * scene.rest_speed_m_s;   // a perfectly inelastic body separates at this speed, a box at each of its corners
+    // a perfectly inelastic body separates at this speed, a box at each of its corners
+    if (!body.immovable())
+      stir += 8.0 * body.inertia.mass * scene.rest_speed_m_s * scene.rest_speed_m_s;
   double largest = 0.0;
   for (const WorldBody& body : world.bodies)
     if (!body.immovable()) largest = std::max(largest, bounding_radius(body.shape));
   for (const WorldBody& body : world.bodies)
-    if (!body.immovable() && world.gravity_world) stir += body.inertia.mass * world.gravity_world->norm() * (kStir * bounding_radius(body.shape) + kOverlap * largest);
+    if (!body.immovable() && world.gravity_world)
+      stir += body.inertia.mass * world.gravity_world->norm() *
+              (kStir * bounding_radius(body.shape) + kOverlap * largest);
   const Energy first = energy_of(*this, run.frames.front());
   std::vector<Energy> energies{first};
   std::vector<double> work{0.0};
   double given = 0.0, fall = 0.0;
   for (std::size_t k = 1; k < run.frames.size(); ++k) {
     const Frame &before = run.frames[k - 1], &frame = run.frames[k];
-    const double done = work_of_point_forces(*this, before, frame), motors = work_of_motors(*this, before, frame);
+    const double done = work_of_point_forces(*this, before, frame),
+                 motors = work_of_motors(*this, before, frame);
     work.push_back(work.back() + done + motors);
     given += std::abs(done) + motors;
     energies.push_back(energy_of(*this, frame));
     fall = std::max(fall, first.potential - energies.back().potential);
   }
-  const double scale = first.kinetic + first.in_springs + fall + given;   // all energy that the run has available
+  // all energy that the run has available
+  const double scale = first.kinetic + first.in_springs + fall + given;
   double least = first.kinetic + first.potential;
   for (std::size_t k = 1; k < run.frames.size(); ++k) {
-    if (is_between_steps(run.frames[k].time)) continue;   // a body that rotates by a radian per step has less energy on the interpolation between its ends
+    // a body that rotates by a radian per step has less energy on the interpolation between its
+    // ends
+    if (is_between_steps(run.frames[k].time)) continue;
     const double total = energies[k].kinetic + energies[k].potential - work[k];
     // Sums of terms of this size, rounded once per frame, and once per step by the engine.
-    const double rounding = 16.0 * kEps * energies[k].terms * (1.0 + run.frames[k].time / scene.step_s);
+    const double rounding =
+        16.0 * kEps * energies[k].terms * (1.0 + run.frames[k].time / scene.step_s);
     const double gained = total - least - stir - rounding;
     least = std::min(least, total);
     if (gained > kEnergyGrowth * scale) {
-      faults.push_back({"energy", fmt::format("{:.4g} J more than before at t = {:.6g} s, where {:.4g} J are at work ({:.3g} of them)", gained, run.frames[k].time, scale, gained / scale)});
+      faults.push_back({"energy", fmt::format("{:.4g} J more than before at t = {:.6g} s, where "
+                                              "{:.4g} J are at work ({:.3g} of them)",
+                                              gained, run.frames[k].time, scale, gained / scale)});
       return;
     }
   }
@@ -179,23 +209,36 @@ void Judge::check_gaps() {
   for (const WorldBody& body : world.bodies) shapes.emplace_back(body.shape);
   double worst = 0.0;
   std::string words;
-  const bool has_links = !world.effects.of<effects::RodLink>().empty() || !world.effects.of<effects::JointLink>().empty();
+  const bool has_links = !world.effects.of<effects::RodLink>().empty() ||
+                         !world.effects.of<effects::JointLink>().empty();
   for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i)
     for (int j = i + 1; j < static_cast<int>(world.bodies.size()); ++j) {
-      const WorldBody &a = world.bodies[static_cast<std::size_t>(i)], &b = world.bodies[static_cast<std::size_t>(j)];
-      if ((a.immovable() && b.immovable()) || !a.collides || !b.collides || (a.passes_movable && b.passes_movable)) continue;
+      const WorldBody &a = world.bodies[static_cast<std::size_t>(i)],
+                      &b = world.bodies[static_cast<std::size_t>(j)];
+      if ((a.immovable() && b.immovable()) || !a.collides || !b.collides ||
+          (a.passes_movable && b.passes_movable))
+        continue;
       if (std::binary_search(world.apart.begin(), world.apart.end(), std::pair(i, j))) continue;
-      const collision::CollisionShape &shape_a = shapes[static_cast<std::size_t>(i)], &shape_b = shapes[static_cast<std::size_t>(j)];
-      const double size = std::min(shape_a.is_half_space() ? kInfinity : shape_a.bounding_radius(), shape_b.is_half_space() ? kInfinity : shape_b.bounding_radius());
+      const collision::CollisionShape &shape_a = shapes[static_cast<std::size_t>(i)],
+                                      &shape_b = shapes[static_cast<std::size_t>(j)];
+      const double size = std::min(shape_a.is_half_space() ? kInfinity : shape_a.bounding_radius(),
+                                   shape_b.is_half_space() ? kInfinity : shape_b.bounding_radius());
       for (const Frame& frame : run.frames) {
-        const collision::Pose at_a{pose(frame, i).com_world, pose(frame, i).world_from_body}, at_b{pose(frame, j).com_world, pose(frame, j).world_from_body};
+        const collision::Pose at_a{pose(frame, i).com_world, pose(frame, i).world_from_body},
+            at_b{pose(frame, j).com_world, pose(frame, j).world_from_body};
         if (collision::least_gap(shape_a, at_a, shape_b, at_b) > 0) continue;
         const double gap = collision::compute_gap(shape_a, at_a, shape_b, at_b).distance;
-        const bool is_on_a_curve = has_links && is_between_steps(frame.time);   // linked bodies are on a cubic there, as joints are
-        const double allowed = (is_on_a_curve ? kOpenBetween : kOverlap) * size + 16.0 * kEps * (collision::gap_scale(shape_a, at_a, shape_b, at_b) + at_a.com_world.norm() + at_b.com_world.norm());
+        // linked bodies are on a cubic there, as joints are
+        const bool is_on_a_curve = has_links && is_between_steps(frame.time);
+        const double allowed = (is_on_a_curve ? kOpenBetween : kOverlap) * size +
+                               16.0 * kEps *
+                                   (collision::gap_scale(shape_a, at_a, shape_b, at_b) +
+                                    at_a.com_world.norm() + at_b.com_world.norm());
         if (gap >= -allowed || gap / size >= worst) continue;
         worst = gap / size;
-        words = fmt::format("'{}' and '{}' overlap by {:.3g} m at t = {:.6g} s, {:.3g} of the smaller one", a.name, b.name, -gap, frame.time, -worst);
+        words = fmt::format(
+            "'{}' and '{}' overlap by {:.3g} m at t = {:.6g} s, {:.3g} of the smaller one", a.name,
+            b.name, -gap, frame.time, -worst);
       }
     }
   if (!words.empty()) faults.push_back({"overlap", words});
@@ -203,24 +246,36 @@ void Judge::check_gaps() {
 
 void Judge::check_links() {
   // Without stabilisation, and with Baumgarte's, links drift by design, and the scene states it.
-  if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kProjection) return;
-  double worst = 1.0;   // relative to the tolerance
+  if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kProjection)
+    return;
+  double worst = 1.0;  // relative to the tolerance
   std::string words;
   const auto look = [&](const std::string& name, double open, double arm, double far, double time) {
-    const double part = (open - 64.0 * kEps * far) / arm, allowed = is_between_steps(time) ? kOpenBetween : kOpen;
+    const double part = (open - 64.0 * kEps * far) / arm,
+                 allowed = is_between_steps(time) ? kOpenBetween : kOpen;
     if (!(part / allowed > worst)) return;
     worst = part / allowed;
-    words = fmt::format("'{}' is open by {:.3g} m at t = {:.6g} s, {:.3g} of its arms", name, open, time, part);
+    words = fmt::format("'{}' is open by {:.3g} m at t = {:.6g} s, {:.3g} of its arms", name, open,
+                        time, part);
   };
-  const auto arm_of = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : anchor.point_body.norm() + std::min(1e300, bounding_radius(world.bodies[static_cast<std::size_t>(anchor.body)].shape)); };
+  const auto arm_of = [&](const Anchor& anchor) {
+    return anchor.body < 0
+               ? 0.0
+               : anchor.point_body.norm() +
+                     std::min(1e300,
+                              bounding_radius(
+                                  world.bodies[static_cast<std::size_t>(anchor.body)].shape));
+  };
   for (const Frame& frame : run.frames) {
     for (const effects::RodLink& rod : world.effects.of<effects::RodLink>()) {
       const Vector3d a = place(frame, rod.a), b = place(frame, rod.b);
-      look(rod.name, std::abs((a - b).norm() - rod.length), rod.length, a.norm() + b.norm(), frame.time);
+      look(rod.name, std::abs((a - b).norm() - rod.length), rod.length, a.norm() + b.norm(),
+           frame.time);
     }
     for (const effects::JointLink& joint : world.effects.of<effects::JointLink>()) {
       const Vector3d a = place(frame, joint.a), b = place(frame, joint.b);
-      look(joint.name, (a - b).norm(), arm_of(joint.a) + arm_of(joint.b), a.norm() + b.norm(), frame.time);
+      look(joint.name, (a - b).norm(), arm_of(joint.a) + arm_of(joint.b), a.norm() + b.norm(),
+           frame.time);
     }
   }
   if (!words.empty()) faults.push_back({"open", words});

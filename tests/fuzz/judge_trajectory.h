@@ -13,8 +13,8 @@ namespace tumble::fuzz {
 
 /// One impossible result.
 struct Fault {
-  std::string kind;    // one word: "energy", "overlap", "open", "number", "short"
-  std::string words;   // value, place and time, with units
+  std::string kind;   // one word: "energy", "overlap", "open", "number", "short"
+  std::string words;  // value, place and time, with units
 };
 
 /// The worst fault of each kind; empty for a run without faults.

@@ -16,6 +16,7 @@ std::filesystem::path progress_of(const std::filesystem::path& record);
 
 /// Writes the result as JSON to `out`, the recorded run to `record`, messages to stderr.
 /// @return the exit code of the program
-int run_here(const std::filesystem::path& scene_file, const std::string& engine, const std::filesystem::path& record);
+int run_here(const std::filesystem::path& scene_file, const std::string& engine,
+             const std::filesystem::path& record);
 
 }  // namespace tumble::fuzz

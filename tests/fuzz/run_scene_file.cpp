@@ -33,9 +33,12 @@ std::string contents_of(const fs::path& file) {
 /// User and system time of a running process, from /proc. [s]
 double cpu_of(pid_t process) {
   const std::string text = contents_of(fmt::format("/proc/{}/stat", process));
-  const std::size_t end = text.rfind(')');   // of the name, which may contain anything
+  const std::size_t end = text.rfind(')');  // of the name, which may contain anything
   unsigned long user = 0, system = 0;
-  if (end == std::string::npos || std::sscanf(text.c_str() + end + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system) != 2) return 0.0;
+  if (end == std::string::npos ||
+      std::sscanf(text.c_str() + end + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu",
+                  &user, &system) != 2)
+    return 0.0;
   return static_cast<double>(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
@@ -43,7 +46,8 @@ double cpu_of(pid_t process) {
 std::uintmax_t words_of_progress(const fs::path& err) {
   std::ifstream in(err);
   std::uintmax_t lines = 0;
-  for (std::string line; std::getline(in, line);) lines += line.find("no frame has come") == std::string::npos;
+  for (std::string line; std::getline(in, line);)
+    lines += line.find("no frame has come") == std::string::npos;
   return lines;
 }
 
@@ -53,11 +57,15 @@ struct Ended {
   double cpu_s = 0.0;
 };
 
-[[noreturn]] void run_in_child(const fs::path& scene_file, const fs::path& record, const fs::path& out, const fs::path& err, const RunWish& wish) {
-  const int to_out = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), to_err = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+[[noreturn]] void run_in_child(const fs::path& scene_file, const fs::path& record,
+                               const fs::path& out, const fs::path& err, const RunWish& wish) {
+  const int to_out = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644),
+            to_err = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   ::dup2(to_out, 1);
   ::dup2(to_err, 2);
-  const rlimit no_core{0, 0}, memory{8UL << 30, 8UL << 30};   // a run that uses too much memory ends with a message or a signal, and does not affect the machine
+  // a run that uses too much memory ends with a message or a signal, and does not affect the
+  // machine
+  const rlimit no_core{0, 0}, memory{8UL << 30, 8UL << 30};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_AS, &memory);
   if (wish.program.empty()) {
@@ -65,7 +73,9 @@ struct Ended {
     std::fflush(nullptr);
     ::_exit(code);
   }
-  const std::vector<std::string> words{wish.program, "run", scene_file, "--modules", "reference", "--engine", wish.engine, "--json", "--trajectory", record};
+  const std::vector<std::string> words{wish.program,   "run",      scene_file,  "--modules",
+                                       "reference",    "--engine", wish.engine, "--json",
+                                       "--trajectory", record};
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -74,19 +84,22 @@ struct Ended {
 }
 
 /// Waits for the end, and ends a process without output for too long.
-Ended run_and_watch(const fs::path& scene_file, const fs::path& record, const fs::path& out, const fs::path& err, const RunWish& wish) {
+Ended run_and_watch(const fs::path& scene_file, const fs::path& record, const fs::path& out,
+                    const fs::path& err, const RunWish& wish) {
   if (wish.program.empty()) load_laws();
   std::fflush(nullptr);
   const pid_t child = ::fork();
   if (child < 0) throw UserError("fork", "no process can be started", "Close other programs.");
   if (child == 0) run_in_child(scene_file, record, out, err, wish);
   Ended ended;
-  double heard_at = 0.0;        // CPU time at the last output
-  std::uintmax_t heard = 0;     // bytes
+  double heard_at = 0.0;     // CPU time at the last output
+  std::uintmax_t heard = 0;  // bytes
   for (useconds_t pause = 1000;; pause = std::min<useconds_t>(pause * 2, 100000)) {
     rusage usage{};
     if (::wait4(child, &ended.status, WNOHANG, &usage) == child) {
-      const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+      const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+      };
       ended.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
       return ended;
     }
@@ -110,19 +123,27 @@ std::string skeleton(std::string words) {
   return words.substr(0, 90);
 }
 
-std::string without_place(const std::string& words) {   // "tumble: FILE:LINE: /pointer: problem"
+std::string without_place(const std::string& words) {  // "tumble: FILE:LINE: /pointer: problem"
   static const std::regex place("^.*\\.json(:[0-9]+)?: (/[^ :]*: )?");
   return std::regex_replace(words, place, "");
 }
 
-Verdict verdict_of_end(const Ended& ended, const fs::path& scene_file, const fs::path& record, const std::string& out, const std::string& err) {
-  const auto verdict = [&](Outcome outcome, const std::string& kind, const std::string& words) { return Verdict{outcome, word_of(outcome) + (kind.empty() ? "" : " " + kind), words, ended.cpu_s}; };
+Verdict verdict_of_end(const Ended& ended, const fs::path& scene_file, const fs::path& record,
+                       const std::string& out, const std::string& err) {
+  const auto verdict = [&](Outcome outcome, const std::string& kind, const std::string& words) {
+    return Verdict{outcome, word_of(outcome) + (kind.empty() ? "" : " " + kind), words,
+                   ended.cpu_s};
+  };
   if (ended.hung) return verdict(Outcome::kHang, "", "no word of progress");
   if (ended.slow) return verdict(Outcome::kSlow, "", "words of progress, and no end");
-  if (WIFSIGNALED(ended.status)) return verdict(Outcome::kCrash, fmt::format("signal {}", WTERMSIG(ended.status)), err);
+  if (WIFSIGNALED(ended.status))
+    return verdict(Outcome::kCrash, fmt::format("signal {}", WTERMSIG(ended.status)), err);
   const int code = WEXITSTATUS(ended.status);
-  if (code == 3 || code > 4) return verdict(Outcome::kCrash, fmt::format("exit {} {}", code, skeleton(err)), err);
-  if (code == 2 || code == 4) return err.empty() ? verdict(Outcome::kMute, fmt::format("exit {}", code), "") : verdict(Outcome::kRefused, skeleton(without_place(err)), err);
+  if (code == 3 || code > 4)
+    return verdict(Outcome::kCrash, fmt::format("exit {} {}", code, skeleton(err)), err);
+  if (code == 2 || code == 4)
+    return err.empty() ? verdict(Outcome::kMute, fmt::format("exit {}", code), "")
+                       : verdict(Outcome::kRefused, skeleton(without_place(err)), err);
 
   const auto page = nlohmann::json::parse(out, nullptr, false);
   if (page.is_discarded()) return verdict(Outcome::kMute, "no result", out.substr(0, 200));
@@ -130,18 +151,22 @@ Verdict verdict_of_end(const Ended& ended, const fs::path& scene_file, const fs:
   if (code == 1) {
     if (!stopped.empty()) return verdict(Outcome::kStopped, skeleton(stopped), stopped);
     for (const auto& check : page["checks"])
-      if (!check.value("passed", true)) return verdict(Outcome::kStopped, "check " + check.value("kind", ""), check.dump());
-    for (const auto& notice : page["notices"]) return verdict(Outcome::kStopped, skeleton(notice), notice);
+      if (!check.value("passed", true))
+        return verdict(Outcome::kStopped, "check " + check.value("kind", ""), check.dump());
+    for (const auto& notice : page["notices"])
+      return verdict(Outcome::kStopped, skeleton(notice), notice);
     return verdict(Outcome::kMute, "exit 1", "");
   }
-  const std::vector<Fault> faults = faults_of(scene::load_scene(scene_file), read_trajectory(record));
+  const std::vector<Fault> faults =
+      faults_of(scene::load_scene(scene_file), read_trajectory(record));
   if (faults.empty()) return verdict(Outcome::kRight, "", "");
   std::string kinds, words;
   for (const Fault& fault : faults) {
     kinds += (kinds.empty() ? "" : ", ") + fault.kind;
     words += (words.empty() ? "" : "; ") + fault.words;
   }
-  for (const std::string notice : page["notices"]) {   // a notice about the start says nothing about the result
+  // a notice about the start says nothing about the result
+  for (const std::string notice : page["notices"]) {
     if (notice.find("the start ") != std::string::npos) continue;
     return verdict(Outcome::kNoted, kinds, words + "; the note: " + notice);
   }
@@ -166,7 +191,8 @@ std::string word_of(Outcome outcome) {
 }
 
 Verdict run_scene_file(const fs::path& scene_file, const RunWish& wish) {
-  const fs::path record = wish.folder / "run.tumble", out = wish.folder / "out", err = wish.folder / "err";
+  const fs::path record = wish.folder / "run.tumble", out = wish.folder / "out",
+                 err = wish.folder / "err";
   fs::remove(record);
   fs::remove(progress_of(record));
   const Ended ended = run_and_watch(scene_file, record, out, err, wish);

@@ -19,13 +19,15 @@ Json without_body(Json scene, std::size_t index) {
   const std::string name = scene["bodies"][index]["name"];
   scene["bodies"].erase(index);
   std::vector<std::string> gone{name};
-  for (const char* list : {"springs", "rods", "joints", "drag", "point_forces", "apart", "motors"}) {
+  for (const char* list :
+       {"springs", "rods", "joints", "drag", "point_forces", "apart", "motors"}) {
     if (!scene.contains(list)) continue;
     for (std::size_t i = scene[list].size(); i-- > 0;) {
       bool is_about = false;
       for (const std::string& one : gone) is_about = is_about || names(scene[list][i], one);
       if (!is_about) continue;
-      if (scene[list][i].contains("name")) gone.push_back(scene[list][i]["name"]);   // with a joint its motor is removed
+      // with a joint its motor is removed
+      if (scene[list][i].contains("name")) gone.push_back(scene[list][i]["name"]);
       scene[list].erase(i);
     }
     if (scene[list].empty()) scene.erase(list);
@@ -53,7 +55,7 @@ std::vector<Json> smaller(const Json& scene) {
     if (scene.contains(key)) {
       found.push_back(scene);
       found.back().erase(key);
-      if (std::string(key) == "contact")   // friction is removed with it
+      if (std::string(key) == "contact")  // friction is removed with it
         for (auto& body : found.back()["bodies"]) body.erase("friction");
     }
   for (const char* list : {"motors", "springs", "rods", "joints", "drag", "point_forces"})
@@ -69,14 +71,16 @@ std::vector<Json> smaller(const Json& scene) {
         found.back()["contact"].erase(key);
       }
   for (std::size_t i = 0; i < scene["bodies"].size(); ++i)
-    for (const char* key : {"velocity_m_s", "angular_velocity_rad_s", "orientation", "friction", "restitution", "motion"})
+    for (const char* key : {"velocity_m_s", "angular_velocity_rad_s", "orientation", "friction",
+                            "restitution", "motion"})
       if (scene["bodies"][i].contains(key)) {
         found.push_back(scene);
         found.back()["bodies"][i].erase(key);
       }
   for (const double part : {0.25, 0.5, 0.8}) {
     found.push_back(scene);
-    found.back()["duration_s"] = std::max(1.0, std::floor(part * 60.0 * scene["duration_s"].get<double>())) / 60.0;
+    found.back()["duration_s"] =
+        std::max(1.0, std::floor(part * 60.0 * scene["duration_s"].get<double>())) / 60.0;
     if (found.back() == scene) found.pop_back();
   }
   for (const int digits : {2, 4})
@@ -90,7 +94,8 @@ std::vector<Json> smaller(const Json& scene) {
 
 }  // namespace
 
-Json shrink_scene(Json scene, const std::function<bool(const Json&)>& still_fails, int most_trials) {
+Json shrink_scene(Json scene, const std::function<bool(const Json&)>& still_fails,
+                  int most_trials) {
   for (bool is_smaller = true; is_smaller && most_trials > 0;) {
     is_smaller = false;
     for (Json& candidate : smaller(scene)) {

@@ -26,7 +26,9 @@ inline std::string matrix_chunk(const Eigen::Affine3d& world_from_mesh) {
 }
 
 /// A track of one key at frame 0.
-inline std::string track(std::uint16_t id, const std::string& value) { return chunk(id, u16(0) + u32(0) + u32(0) + u32(1) + u32(0) + u16(0) + value); }
+inline std::string track(std::uint16_t id, const std::string& value) {
+  return chunk(id, u16(0) + u32(0) + u32(0) + u32(1) + u32(0) + u16(0) + value);
+}
 
 struct Node {
   std::string name;
@@ -38,8 +40,11 @@ struct Node {
 
 inline std::string node_chunk(const Node& n) {
   const auto three = [](const Vector3d& v) { return numbers({v.x(), v.y(), v.z()}); };
-  return chunk(0xB002, chunk(0xB030, u16(n.number)) + chunk(0xB010, n.name + '\0' + u16(0x4000) + u16(0) + u16(n.parent)) + chunk(0xB013, three(n.pivot)) +
-                           track(0xB020, three(n.position)) + track(0xB021, f32(n.angle) + three(n.axis)) + track(0xB022, numbers({1, 1, 1})));
+  return chunk(0xB002, chunk(0xB030, u16(n.number)) +
+                           chunk(0xB010, n.name + '\0' + u16(0x4000) + u16(0) + u16(n.parent)) +
+                           chunk(0xB013, three(n.pivot)) + track(0xB020, three(n.position)) +
+                           track(0xB021, f32(n.angle) + three(n.axis)) +
+                           track(0xB022, numbers({1, 1, 1})));
 }
 
 inline std::string keyframer(const std::string& nodes) { return chunk(0xB000, nodes); }

@@ -8,7 +8,8 @@
 namespace tumble::testing {
 namespace {
 
-scene::BodySpec body_of(const std::string& file, const std::string& object = "", double metres_per_unit = 1.0) {
+scene::BodySpec body_of(const std::string& file, const std::string& object = "",
+                        double metres_per_unit = 1.0) {
   scene::BodySpec body;
   body.name = "thing";
   body.shape = scene::ModelSpec{file, object, metres_per_unit};
@@ -16,17 +17,22 @@ scene::BodySpec body_of(const std::string& file, const std::string& object = "",
   return body;
 }
 
-const std::filesystem::path kScene = std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/scenes/any.json";
+const std::filesystem::path kScene =
+    std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/scenes/any.json";
 
 TEST(ModelBody, CubeHasTheMassAndInertiaOfACube) {
   const scene::Solid solid = scene::build_solid(body_of("box.3ds"), kScene, TUMBLE_SOURCE_DIR);
   EXPECT_NEAR(solid.mass_kg, 500.0, 1e-10);
-  EXPECT_LE((solid.inertia_body_kg_m2 - Matrix3d(Matrix3d::Identity() * 500.0 / 6.0)).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LE((solid.inertia_body_kg_m2 - Matrix3d(Matrix3d::Identity() * 500.0 / 6.0))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-10);
   EXPECT_TRUE(std::get<MeshSolid>(solid.shape).is_convex);
 }
 
 TEST(ModelBody, MassScalesWithTheThirdPower) {
-  EXPECT_NEAR(scene::build_solid(body_of("box.3ds", "", 0.5), kScene, TUMBLE_SOURCE_DIR).mass_kg, 62.5, 1e-10);
+  EXPECT_NEAR(scene::build_solid(body_of("box.3ds", "", 0.5), kScene, TUMBLE_SOURCE_DIR).mass_kg,
+              62.5, 1e-10);
 }
 
 TEST(ModelBody, GivenMassOverridesTheDensity) {
@@ -35,8 +41,10 @@ TEST(ModelBody, GivenMassOverridesTheDensity) {
   body.mass_kg = 6.0;
   const scene::Solid solid = scene::build_solid(body, kScene, TUMBLE_SOURCE_DIR);
   EXPECT_EQ(solid.mass_kg, 6.0);
-  // Three unit cubes of 2 kg each, by the parallel axis theorem: centres at (1/2, 1/2), (3/2, 1/2), (1/2, 3/2), their mean (5/6, 5/6).
-  EXPECT_NEAR(solid.inertia_body_kg_m2(2, 2), 3 * 2.0 / 6.0 + 2.0 * (2.0 / 9.0 + 5.0 / 9.0 + 5.0 / 9.0), 1e-10);
+  // Three unit cubes of 2 kg each, by the parallel axis theorem: centres at (1/2, 1/2), (3/2, 1/2),
+  // (1/2, 3/2), their mean (5/6, 5/6).
+  EXPECT_NEAR(solid.inertia_body_kg_m2(2, 2),
+              3 * 2.0 / 6.0 + 2.0 * (2.0 / 9.0 + 5.0 / 9.0 + 5.0 / 9.0), 1e-10);
 }
 
 TEST(ModelBody, ModelIsFoundFromTheScenesFolderWithoutTheProjectsRoot) {
@@ -44,11 +52,15 @@ TEST(ModelBody, ModelIsFoundFromTheScenesFolderWithoutTheProjectsRoot) {
 }
 
 TEST(ModelBody, ObjectIsChosenByName) {
-  EXPECT_NEAR(scene::build_solid(body_of("two_objects.3ds", "box"), kScene, TUMBLE_SOURCE_DIR).mass_kg, 500.0, 1e-10);
+  EXPECT_NEAR(
+      scene::build_solid(body_of("two_objects.3ds", "box"), kScene, TUMBLE_SOURCE_DIR).mass_kg,
+      500.0, 1e-10);
 }
 
 TEST(ModelBody, RefusalNamesTheBodyTheFileAndTheRemedy) {
-  for (const auto& [file, words] : {std::pair{"none.3ds", "no such file"}, {"broken/lampshade.3ds", "lampshade"}, {"two_objects.3ds", "holds 2 objects"}}) {
+  for (const auto& [file, words] : {std::pair{"none.3ds", "no such file"},
+                                    {"broken/lampshade.3ds", "lampshade"},
+                                    {"two_objects.3ds", "holds 2 objects"}}) {
     try {
       scene::build_solid(body_of(file), kScene, TUMBLE_SOURCE_DIR);
       ADD_FAILURE() << file << " was accepted";

@@ -44,14 +44,16 @@ TEST(Models, EveryFileIsGenerated) {
   for (const models::Model& model : all_models()) made.insert(model.file);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels)) {
     if (entry.path().extension() != ".3ds") continue;
-    EXPECT_TRUE(made.contains(entry.path().lexically_relative(kModels).string())) << entry.path() << " is not generated: add it to catalogue.cpp";
+    EXPECT_TRUE(made.contains(entry.path().lexically_relative(kModels).string()))
+        << entry.path() << " is not generated: add it to catalogue.cpp";
   }
 }
 
 TEST(Models, EveryFileIsInTheReadme) {
   const std::string readme = bytes_of(kModels / "README.md");
   for (const models::Model& model : all_models()) {
-    EXPECT_NE(readme.find("`" + model.file + "`"), std::string::npos) << model.file << " is not in models/README.md";
+    EXPECT_NE(readme.find("`" + model.file + "`"), std::string::npos)
+        << model.file << " is not in models/README.md";
   }
 }
 
@@ -87,7 +89,8 @@ TEST(Models, HaveTheVolumesOfTheirShapes) {
 }
 
 TEST(Models, HandleHasThreeDistinctPrincipalMoments) {
-  const MassProperties mass = compute_mass_properties(load_3ds(kModels / "t_handle.3ds").objects.front().report.mesh);
+  const MassProperties mass =
+      compute_mass_properties(load_3ds(kModels / "t_handle.3ds").objects.front().report.mesh);
   EXPECT_GT(mass.principal_moments[1], 1.3 * mass.principal_moments[0]);
   EXPECT_GT(mass.principal_moments[2], 1.3 * mass.principal_moments[1]);
 }
@@ -111,7 +114,8 @@ TEST(Models, FileWithTwoObjectsNeedsAName) {
     load_solid(kModels / "two_objects.3ds");
     FAIL() << "chose an object without a name";
   } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("holds 2 objects: 'box', 'ball'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("holds 2 objects: 'box', 'ball'"), std::string::npos)
+        << error.what();
   }
   EXPECT_THROW(load_solid(kModels / "two_objects.3ds", "cone"), UserError);
 }

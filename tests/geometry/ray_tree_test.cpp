@@ -32,14 +32,17 @@ Vector3d on_sphere(Random& random, double radius) {
 
 /// Moeller and Trumbore's test on every face (J. Graphics Tools 2(1), 1997): another method,
 /// without a tree.
-std::optional<double> nearest_by_trying_all(const TriangleMesh& mesh, const Vector3d& origin, const Vector3d& direction) {
+std::optional<double> nearest_by_trying_all(const TriangleMesh& mesh, const Vector3d& origin,
+                                            const Vector3d& direction) {
   std::optional<double> best;
   for (const auto& [i, j, k] : mesh.faces) {
-    const Vector3d u = mesh.vertices[j] - mesh.vertices[i], v = mesh.vertices[k] - mesh.vertices[i], s = origin - mesh.vertices[i];
+    const Vector3d u = mesh.vertices[j] - mesh.vertices[i], v = mesh.vertices[k] - mesh.vertices[i],
+                   s = origin - mesh.vertices[i];
     const Vector3d p = direction.cross(v);
     const double det = u.dot(p);
     if (det == 0.0) continue;
-    const double a = s.dot(p) / det, b = direction.dot(s.cross(u)) / det, t = v.dot(s.cross(u)) / det;
+    const double a = s.dot(p) / det, b = direction.dot(s.cross(u)) / det,
+                 t = v.dot(s.cross(u)) / det;
     if (a >= 0 && b >= 0 && a + b <= 1 && t >= 0 && (!best || t < *best)) best = t;
   }
   return best;
@@ -75,7 +78,9 @@ TEST(RayTree, HitLiesOnItsFaceAndOnItsRay) {
     const auto hit = tree.nearest(origin, direction);
     if (!hit) continue;
     const auto& [a, b, c] = tree.mesh().faces[hit->face];
-    const Vector3d on_face = hit->barycentric[0] * tree.mesh().vertices[a] + hit->barycentric[1] * tree.mesh().vertices[b] + hit->barycentric[2] * tree.mesh().vertices[c];
+    const Vector3d on_face = hit->barycentric[0] * tree.mesh().vertices[a] +
+                             hit->barycentric[1] * tree.mesh().vertices[b] +
+                             hit->barycentric[2] * tree.mesh().vertices[c];
     EXPECT_LE((on_face - (origin + hit->t * direction)).norm(), 1e3 * kEps);
     EXPECT_GE(hit->barycentric.minCoeff(), 0.0);
     EXPECT_NEAR(hit->barycentric.sum(), 1.0, 4 * kEps);
@@ -94,16 +99,23 @@ int misses_from_inside(const TriangleMesh& mesh, const Vector3d& inside, int ori
       for (int corner = 0; corner < 3; ++corner) {
         const Vector3d& a = mesh.vertices[face[corner]];
         const Vector3d& b = mesh.vertices[face[(corner + 1) % 3]];
-        for (double s : {0.0, 0.5, random.unit()}) misses += tree.nearest(origin, a + s * (b - a) - origin) ? 0 : 1;
+        for (double s : {0.0, 0.5, random.unit()})
+          misses += tree.nearest(origin, a + s * (b - a) - origin) ? 0 : 1;
       }
     }
   }
   return misses;
 }
 
-TEST(RayTree, NoRayLeavesABoxThroughItsEdgesAndCorners) { EXPECT_EQ(misses_from_inside(model("box"), {0, 0, 0}, 300), 0); }
-TEST(RayTree, NoRayLeavesABallThroughItsEdgesAndCorners) { EXPECT_EQ(misses_from_inside(model("sphere"), {0.1, 0, 0}, 5), 0); }
-TEST(RayTree, NoRayLeavesAPawnThroughItsEdgesAndCorners) { EXPECT_EQ(misses_from_inside(model("chess_pawn"), {0, 0, 0.8}, 5), 0); }
+TEST(RayTree, NoRayLeavesABoxThroughItsEdgesAndCorners) {
+  EXPECT_EQ(misses_from_inside(model("box"), {0, 0, 0}, 300), 0);
+}
+TEST(RayTree, NoRayLeavesABallThroughItsEdgesAndCorners) {
+  EXPECT_EQ(misses_from_inside(model("sphere"), {0.1, 0, 0}, 5), 0);
+}
+TEST(RayTree, NoRayLeavesAPawnThroughItsEdgesAndCorners) {
+  EXPECT_EQ(misses_from_inside(model("chess_pawn"), {0, 0, 0.8}, 5), 0);
+}
 
 TEST(RayTree, NoRayLeavesARockFarFromTheOrigin) {
   // At 1e6 m coordinates are 1e-10 m apart: shears and boxes are rounded by that much, and no gap
@@ -136,7 +148,8 @@ TEST(RayTree, RaysAlongTheAxesAtCornersOfABoxHit) {
 
 TEST(RayTree, RayBesideABoxMisses) {
   const RayTree tree(models::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
-  constexpr double kBeside = 0.5 + 1e-12;  // more than the widening of the boxes (16 eps * 5 m = 2e-14 m)
+  // more than the widening of the boxes (16 eps * 5 m = 2e-14 m)
+  constexpr double kBeside = 0.5 + 1e-12;
   EXPECT_FALSE(tree.nearest({kBeside, 0, -2}, {0, 0, 1}));
   EXPECT_FALSE(tree.nearest({0, 0, -2}, {0, 0, -1})) << "behind the ray";
   EXPECT_FALSE(tree.nearest({0, 0, -2}, {0, 0, 1}, 1.4)) << "beyond t_most";
@@ -144,7 +157,8 @@ TEST(RayTree, RayBesideABoxMisses) {
 
 TEST(RayTree, LengthOfTheDirectionOnlyScalesT) {
   const RayTree tree(model("rock_2"));
-  const auto one = tree.nearest({2, 1, 1}, {-2, -1, -1}), four = tree.nearest({2, 1, 1}, {-8, -4, -4});
+  const auto one = tree.nearest({2, 1, 1}, {-2, -1, -1}),
+             four = tree.nearest({2, 1, 1}, {-8, -4, -4});
   ASSERT_TRUE(one && four);
   EXPECT_EQ(one->face, four->face);
   EXPECT_EQ(one->t, 4.0 * four->t);

@@ -15,15 +15,21 @@ namespace {
 
 std::filesystem::path real(const std::string& file) {
   const char* folder = std::getenv("TUMBLE_REAL_MODELS");
-  return (folder != nullptr ? std::filesystem::path(folder) : std::filesystem::path(TUMBLE_SOURCE_DIR).parent_path() / "shared/models_real") / file;
+  return (folder != nullptr
+              ? std::filesystem::path(folder)
+              : std::filesystem::path(TUMBLE_SOURCE_DIR).parent_path() / "shared/models_real") /
+         file;
 }
 
-#define SKIP_WITHOUT(file)                                                                                                            \
-  if (!std::filesystem::exists(real(file))) GTEST_SKIP() << real(file).string() << " does not exist: set TUMBLE_REAL_MODELS to a folder that has " << file
+#define SKIP_WITHOUT(file)                  \
+  if (!std::filesystem::exists(real(file))) \
+  GTEST_SKIP() << real(file).string()       \
+               << " does not exist: set TUMBLE_REAL_MODELS to a folder that has " << file
 
 void expect_all_closed(const LoadedFile& file) {
   for (const LoadedObject& object : file.objects) {
-    EXPECT_TRUE(object.report.is_closed()) << file.where << ": " << object.name << ": " << object.report.defects.front().problem;
+    EXPECT_TRUE(object.report.is_closed())
+        << file.where << ": " << object.name << ": " << object.report.defects.front().problem;
   }
 }
 
@@ -42,7 +48,8 @@ TEST(RealModels, NineBoxesSplitBySmoothingGroupsAreClosedAfterTheWeld) {
   const LoadedFile file = load_3ds(real("test1.3ds"));
   ASSERT_EQ(file.objects.size(), 9u);
   expect_all_closed(file);
-  for (const LoadedObject& object : file.objects) EXPECT_EQ(object.report.mesh.vertices.size(), 8u) << object.name;
+  for (const LoadedObject& object : file.objects)
+    EXPECT_EQ(object.report.mesh.vertices.size(), 8u) << object.name;
   EXPECT_EQ(file.objects[0].name, "Box01");
 }
 
@@ -52,7 +59,8 @@ TEST(RealModels, NodesKeepBoxesAtTheirModelledPlaces) {
   SKIP_WITHOUT("test1.3ds");
   const Bounds found = bounds_of(load_3ds(real("test1.3ds")).objects[0].report.mesh);
   constexpr double kFloat = 1e-4;  // m: coordinates of 10, through a matrix of 0.1 and its inverse
-  EXPECT_LE((found.low - Vector3d(-10.3385, -0.1942, -10.1436)).norm(), kFloat);  // read off the file's vertex list
+  // read off the file's vertex list
+  EXPECT_LE((found.low - Vector3d(-10.3385, -0.1942, -10.1436)).norm(), kFloat);
   EXPECT_LE((found.high - Vector3d(9.8509, 0.0019, 10.2417)).norm(), kFloat);
 }
 
@@ -63,7 +71,9 @@ TEST(RealModels, FiveCubesHaveTheVolumesOfTheirSides) {
   for (int i = 0; i < 5; ++i) {
     const double side = 1.0 + i;  // m
     ASSERT_TRUE(file.objects[i].report.is_closed());
-    EXPECT_NEAR(signed_volume(file.objects[i].report.mesh), side * side * side, 1e-5 * side * side * side) << file.objects[i].name;
+    EXPECT_NEAR(signed_volume(file.objects[i].report.mesh), side * side * side,
+                1e-5 * side * side * side)
+        << file.objects[i].name;
   }
 }
 

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path& scratch() {
-  static const PrivateFolder folder;   // removed at the end of the program
+  static const PrivateFolder folder;  // removed at the end of the program
   static const fs::path path = folder.path();
   return path;
 }
@@ -36,7 +36,8 @@ WorkerOptions options_for(const fs::path& object) {
 
 }  // namespace
 
-Compiled compile_source(const std::string& text, const fs::path& object, const CompileLimits& limits) {
+Compiled compile_source(const std::string& text, const fs::path& object,
+                        const CompileLimits& limits) {
   CompileJob job;
   job.root = TUMBLE_SOURCE_DIR;
   job.header = "tests/modules/waist.h";
@@ -53,7 +54,10 @@ fs::path attack_object(const std::string& file, const std::string& defines) {
   fs::path& object = built[file + defines];
   if (!object.empty()) return object;
   object = scratch() / ("attack" + std::to_string(built.size()) + ".so");
-  const Compiled compiled = compile_source(defines + "\n#line 1\n" + text_of(fs::path(TUMBLE_SOURCE_DIR) / "tests/grading/attacks" / file), object);
+  const Compiled compiled =
+      compile_source(defines + "\n#line 1\n" +
+                         text_of(fs::path(TUMBLE_SOURCE_DIR) / "tests/grading/attacks" / file),
+                     object);
   EXPECT_EQ(compiled.outcome, Compiled::Outcome::kBuilt) << compiled.said;
   return object;
 }
@@ -65,13 +69,15 @@ int descendants_left() {
     if (gone == 0 && waited_ms > 1000) break;
     if (gone == 0) ::usleep(10000);
   }
-  std::istringstream children(text_of("/proc/self/task/" + std::to_string(::getpid()) + "/children"));
+  std::istringstream children(
+      text_of("/proc/self/task/" + std::to_string(::getpid()) + "/children"));
   int count = 0;
   for (pid_t child; children >> child;) ++count;
   return count;
 }
 
-Victim::Victim(const fs::path& object) : connection_(options_for(object)), module_(modules::make_proxy<waist::Module>(connection_)) {
+Victim::Victim(const fs::path& object)
+    : connection_(options_for(object)), module_(modules::make_proxy<waist::Module>(connection_)) {
   call_log() = CallLog{};
 }
 
@@ -88,9 +94,11 @@ std::string Victim::attack(const std::string& what) {
 
 void Attack::SetUp() {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  static const int told = std::printf("sandbox: %s\n", protection_in_words(chosen_sandbox()).c_str());
+  static const int told =
+      std::printf("sandbox: %s\n", protection_in_words(chosen_sandbox()).c_str());
   (void)told;
-  if (const auto why = why_no_sandbox(chosen_sandbox())) GTEST_SKIP() << "no sandbox on this machine: " << *why;
+  if (const auto why = why_no_sandbox(chosen_sandbox()))
+    GTEST_SKIP() << "no sandbox on this machine: " << *why;
 }
 
 }  // namespace tumble::grading

@@ -15,8 +15,10 @@
 
 namespace tumble::grading {
 
-/// A source compiled in the sandbox against the test module's header. One that does not compile fails the test.
-Compiled compile_source(const std::string& text, const std::filesystem::path& object, const CompileLimits& limits = {});
+/// A source compiled in the sandbox against the test module's header. One that does not compile
+/// fails the test.
+Compiled compile_source(const std::string& text, const std::filesystem::path& object,
+                        const CompileLimits& limits = {});
 /// A file of attacks/, with `defines` before its text; compiled once per program.
 std::filesystem::path attack_object(const std::string& file, const std::string& defines = "");
 /// Number of descendants of this process, after a second in which ending ones may end.

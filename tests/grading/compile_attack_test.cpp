@@ -22,7 +22,9 @@ class CompileAttack : public Attack {
     fs::remove(object_);
     EXPECT_EQ(descendants_left(), 0);
   }
-  Compiled compile(const std::string& text, const CompileLimits& limits = {}) { return compile_source(text, object_, limits); }
+  Compiled compile(const std::string& text, const CompileLimits& limits = {}) {
+    return compile_source(text, object_, limits);
+  }
   fs::path object_;
 };
 
@@ -46,31 +48,44 @@ TEST_F(CompileAttack, ErrorsNameTheStudentsFileAndLine) {
 }
 
 TEST_F(CompileAttack, MissingFunctionsAreNamed) {
-  const Compiled compiled = compile("#include \"tests/modules/waist.h\"\ndouble tumble::waist::twice(double x) { return x; }\n");
+  const Compiled compiled = compile(
+      "#include \"tests/modules/waist.h\"\ndouble tumble::waist::twice(double x) { return x; }\n");
   EXPECT_EQ(compiled.outcome, Outcome::kRefused);
   EXPECT_NE(compiled.said.find("tumble::waist::echo"), std::string::npos) << compiled.said;
 }
 
 TEST_F(CompileAttack, PrivateFilesCannotBeIncluded) {
-  if (chosen_sandbox() == SandboxKind::kBare) GTEST_SKIP() << "bare does not protect the compiler: so it is not official";
+  if (chosen_sandbox() == SandboxKind::kBare)
+    GTEST_SKIP() << "bare does not protect the compiler: so it is not official";
   const std::string root = TUMBLE_SOURCE_DIR;
-  for (const std::string& path : {root + "/solutions_private/a1_impulse/a1_impulse.cpp", std::string("solutions_private/a1_impulse/a1_impulse.cpp"),
-                                  std::string("framework/../solutions_private/a1_impulse/a1_impulse.cpp"), root + "/README.md",
-                                  std::string("../../../../../../..") + root + "/README.md", std::string("/etc/passwd"),
-                                  std::string("assignments/a1_impulse/a1_impulse.cpp"), std::string("tests/modules/waist.cpp")}) {
+  for (const std::string& path :
+       {root + "/solutions_private/a1_impulse/a1_impulse.cpp",
+        std::string("solutions_private/a1_impulse/a1_impulse.cpp"),
+        std::string("framework/../solutions_private/a1_impulse/a1_impulse.cpp"),
+        root + "/README.md", std::string("../../../../../../..") + root + "/README.md",
+        std::string("/etc/passwd"), std::string("assignments/a1_impulse/a1_impulse.cpp"),
+        std::string("tests/modules/waist.cpp")}) {
     const Compiled compiled = compile("#include \"" + path + "\"\n" + kModule);
     EXPECT_EQ(compiled.outcome, Outcome::kRefused) << path;
-    const bool is_refused = compiled.said.find("No such file or directory") != std::string::npos || compiled.said.find("Permission denied") != std::string::npos;
+    const bool is_refused = compiled.said.find("No such file or directory") != std::string::npos ||
+                            compiled.said.find("Permission denied") != std::string::npos;
     EXPECT_TRUE(is_refused) << compiled.said;
   }
 }
 
 TEST_F(CompileAttack, PrivateFilesCannotBeSeenOrEmbedded) {
-  if (chosen_sandbox() == SandboxKind::kBare) GTEST_SKIP() << "bare does not protect the compiler: so it is not official";
+  if (chosen_sandbox() == SandboxKind::kBare)
+    GTEST_SKIP() << "bare does not protect the compiler: so it is not official";
   const std::string root = TUMBLE_SOURCE_DIR;
   // Landlock refuses to open a file and does not hide it: then the file is refused by name.
-  const Compiled seen = compile("#if __has_include(\"" + root + "/README.md\") || __has_include(\"solutions_private/CMakeLists.txt\")\n#error seen\n#endif\n" + kModule);
-  EXPECT_EQ(seen.outcome, traits_of(chosen_sandbox()).hides_names ? Outcome::kBuilt : Outcome::kRefused) << seen.said;
+  const Compiled seen =
+      compile("#if __has_include(\"" + root +
+              "/README.md\") || __has_include(\"solutions_private/CMakeLists.txt\")\n#error "
+              "seen\n#endif\n" +
+              kModule);
+  EXPECT_EQ(seen.outcome,
+            traits_of(chosen_sandbox()).hides_names ? Outcome::kBuilt : Outcome::kRefused)
+      << seen.said;
   const Compiled embedded = compile(kModule + "asm(\".incbin \\\"" + root + "/README.md\\\"\");\n");
   EXPECT_EQ(embedded.outcome, Outcome::kRefused) << embedded.said;
   const Compiled environment = compile(kModule + "asm(\".incbin \\\"/proc/1/environ\\\"\");\n");
@@ -78,9 +93,11 @@ TEST_F(CompileAttack, PrivateFilesCannotBeSeenOrEmbedded) {
 }
 
 TEST_F(CompileAttack, LinkAsASourceIsRefused) {
-  const fs::path link = fs::temp_directory_path() / ("tumble-link-" + std::to_string(::getpid()) + ".cpp");
+  const fs::path link =
+      fs::temp_directory_path() / ("tumble-link-" + std::to_string(::getpid()) + ".cpp");
   fs::create_symlink(fs::path(TUMBLE_SOURCE_DIR) / "tests/modules/waist.cpp", link);
-  const Compiled compiled = compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", link, object_, {}, "waist"});
+  const Compiled compiled =
+      compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", link, object_, {}, "waist"});
   fs::remove(link);
   EXPECT_EQ(compiled.outcome, Outcome::kRefused);
   EXPECT_NE(compiled.said.find("is a link"), std::string::npos) << compiled.said;
@@ -88,14 +105,19 @@ TEST_F(CompileAttack, LinkAsASourceIsRefused) {
 
 TEST_F(CompileAttack, SourcesThatAreNotFilesAreRefused) {
   for (const char* path : {"/dev/zero", "/tmp", "/nowhere.cpp"})
-    EXPECT_EQ(compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", path, object_, {}, "waist"}).outcome, Outcome::kRefused) << path;
+    EXPECT_EQ(
+        compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", path, object_, {}, "waist"})
+            .outcome,
+        Outcome::kRefused)
+        << path;
 }
 
 TEST_F(CompileAttack, NamesThatLookLikeOptionsAreTreatedAsNames) {
   for (const char* name : {"-o.cpp", "@x.cpp", "a b;c'$(id).cpp"}) {
     const fs::path file = fs::temp_directory_path() / name;
     std::ofstream(file) << kModule;
-    const Compiled compiled = compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", file, object_, {}, "waist"});
+    const Compiled compiled = compile_submission(
+        {TUMBLE_SOURCE_DIR, "tests/modules/waist.h", file, object_, {}, "waist"});
     fs::remove(file);
     EXPECT_EQ(compiled.outcome, Outcome::kBuilt) << name << ": " << compiled.said;
   }
@@ -107,15 +129,23 @@ TEST_F(CompileAttack, BombsAreStoppedByTheirLimits) {
   limits.wall_s = 12.0;
   limits.memory_bytes = 600ull << 20;
   const char* const bombs[] = {
-      "#include \"/dev/zero\"\n",                                                            // memory
-      "asm(\".fill 4000000000\");\n",                                                        // file size
-      "template <int N> struct T { T<N * 2 + 1> a; T<N * 2 + 2> b; }; T<0> t;\n#pragma GCC diagnostic ignored \"-Wfatal-errors\"\n",  // depth
-      "constexpr int f(long n) { int s = 0; for (long i = 0; i < n; ++i) s ^= static_cast<int>(i); return s; }\n"
-      "static_assert(f(1000000000000) == 0);\n",                                             // evaluation
+      // memory
+      "#include \"/dev/zero\"\n",
+      // file size
+      "asm(\".fill 4000000000\");\n",
+      // depth
+      "template <int N> struct T { T<N * 2 + 1> a; T<N * 2 + 2> b; }; T<0> t;\n#pragma GCC "
+      "diagnostic ignored \"-Wfatal-errors\"\n",
+      "constexpr int f(long n) { int s = 0; for (long i = 0; i < n; ++i) s ^= static_cast<int>(i); "
+      "return s; }\n"
+      // evaluation
+      "static_assert(f(1000000000000) == 0);\n",
   };
   for (const char* bomb : bombs) {
     const Compiled compiled = compile(std::string(bomb) + kModule, limits);
-    EXPECT_TRUE(compiled.outcome == Outcome::kRefused || compiled.outcome == Outcome::kOutOfResources) << bomb << compiled.said;
+    EXPECT_TRUE(compiled.outcome == Outcome::kRefused ||
+                compiled.outcome == Outcome::kOutOfResources)
+        << bomb << compiled.said;
     EXPECT_FALSE(fs::exists(object_));
   }
 }
@@ -125,7 +155,9 @@ TEST_F(CompileAttack, CpuTimeIsALimitAndWallTimeAloneIsABusyMachine) {
   limits.cpu_s = 1;
   // 2^30 lines: more than a second on any machine.
   std::string text = "#define A0 int;\n";
-  for (int i = 1; i <= 30; ++i) text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" + std::to_string(i - 1) + "\n";
+  for (int i = 1; i <= 30; ++i)
+    text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" +
+            std::to_string(i - 1) + "\n";
   const Compiled compiled = compile(text + "A30\n", limits);
   EXPECT_EQ(compiled.outcome, Outcome::kOutOfResources) << compiled.said;
   // Wall time alone is not the file's fault: it is to be compiled again.
@@ -139,8 +171,10 @@ TEST_F(CompileAttack, CpuTimeIsALimitAndWallTimeAloneIsABusyMachine) {
 TEST_F(CompileAttack, CompilerThatWaitsForeverIsOutOfTime) {
   CompileLimits limits;
   limits.stall_s = 2.0;
-  const Compiled compiled = compile(std::string("#include \"/dev/stdout\"\n") + kModule, limits);   // a pipe that the compiler itself keeps open
-  EXPECT_TRUE(compiled.outcome == Outcome::kRefused || compiled.outcome == Outcome::kOutOfResources) << compiled.said;
+  // a pipe that the compiler itself keeps open
+  const Compiled compiled = compile(std::string("#include \"/dev/stdout\"\n") + kModule, limits);
+  EXPECT_TRUE(compiled.outcome == Outcome::kRefused || compiled.outcome == Outcome::kOutOfResources)
+      << compiled.said;
 }
 
 TEST_F(CompileAttack, BytesThatAreNotTextAreNamedWithARemedy) {

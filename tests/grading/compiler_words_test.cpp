@@ -43,41 +43,65 @@ TEST_F(CompilerWords, ErrorInsideALibraryBeginsWithTheStudentsLine) {
             "mine.cpp:3:12: error: required from here\n"
             "    3 |   return a + b;\n"
             "      |            ^\n"
-            "      Eigen/src/Core/CwiseBinaryOp.h:115:7: static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES\n");
+            "      Eigen/src/Core/CwiseBinaryOp.h:115:7: static assertion failed: "
+            "YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES\n");
 }
 
 TEST_F(CompilerWords, MissingFunctionIsNamedWithItsDeclaration) {
-  const fs::path header = write("a9.h", "namespace tumble::a9 {\n/// What it does.\ndouble speed(double way,\n             double time);\n}\n");
+  const fs::path header = write("a9.h",
+                                "namespace tumble::a9 {\n/// What it does.\ndouble speed(double "
+                                "way,\n             double time);\n}\n");
   const fs::path mine = write("mine.cpp", "#include \"a9.h\"\n");
-  for (const char* said : {"mold: error: undefined symbol: tumble::a9::speed(double, double)\n>>> referenced by check.cpp\n",
-                           "/usr/bin/ld: /tmp/x.o: in function `m':\nx.cpp:(.text+0x1): undefined reference to `tumble::a9::speed(double, double)'\n"})
+  for (const char* said : {"mold: error: undefined symbol: tumble::a9::speed(double, double)\n>>> "
+                           "referenced by check.cpp\n",
+                           "/usr/bin/ld: /tmp/x.o: in function `m':\nx.cpp:(.text+0x1): undefined "
+                           "reference to `tumble::a9::speed(double, double)'\n"})
     EXPECT_EQ(compiler_story(said, mine, header),
-              "mine.cpp: error: speed is missing: the file does not define it\n  expected: double speed(double way, double time)\n  declared in a9.h:3\n");
+              "mine.cpp: error: speed is missing: the file does not define it\n  expected: double "
+              "speed(double way, double time)\n  declared in a9.h:3\n");
 }
 
 TEST_F(CompilerWords, FunctionWithOtherArgumentsIsShownBesideItsDeclaration) {
-  const fs::path header = write("a9.h", "namespace tumble::a9 {\ndouble speed(double way, double time);\n}\n");
-  const fs::path mine = write("mine.cpp", "namespace tumble::a9 {\n\ndouble speed(double way) {\n  return way;\n}\n}\n");
-  const std::string story = compiler_story("mold: error: undefined symbol: tumble::a9::speed(double, double)\n", mine, header);
-  EXPECT_EQ(story.find("mine.cpp:3: error: speed is written here, but not as the header declares it\n  here:     double speed(double way)\n  expected: double speed(double way, double time)\n"), 0u) << story;
+  const fs::path header =
+      write("a9.h", "namespace tumble::a9 {\ndouble speed(double way, double time);\n}\n");
+  const fs::path mine = write(
+      "mine.cpp", "namespace tumble::a9 {\n\ndouble speed(double way) {\n  return way;\n}\n}\n");
+  const std::string story = compiler_story(
+      "mold: error: undefined symbol: tumble::a9::speed(double, double)\n", mine, header);
+  EXPECT_EQ(
+      story.find(
+          "mine.cpp:3: error: speed is written here, but not as the header declares it\n  here:    "
+          " double speed(double way)\n  expected: double speed(double way, double time)\n"),
+      0u)
+      << story;
 }
 
 TEST_F(CompilerWords, OnlyWarningsOfTheStudentsFileAreShown) {
   const fs::path mine = write("mine.cpp", "");
-  const std::string said = "mine.cpp: In function 'double f(double)':\n"
-                           "mine.cpp:3:78: warning: control reaches end of non-void function [-Wreturn-type]\n    3 | double f(double a) {}\n      |      ^\n"
-                           "/usr/include/eigen3/Eigen/x.h:3:78: warning: something of a library [-Wextra]\n"
-                           "mine.cpp:9:7: warning: unused parameter 'b' [-Wunused-parameter]\n";
-  EXPECT_EQ(compiler_warnings(said, mine), "mine.cpp:3:78: warning: control reaches end of non-void function [-Wreturn-type]\n    3 | double f(double a) {}\n      |      ^\n");
+  const std::string said =
+      "mine.cpp: In function 'double f(double)':\n"
+      "mine.cpp:3:78: warning: control reaches end of non-void function [-Wreturn-type]\n    3 | "
+      "double f(double a) {}\n      |      ^\n"
+      "/usr/include/eigen3/Eigen/x.h:3:78: warning: something of a library [-Wextra]\n"
+      "mine.cpp:9:7: warning: unused parameter 'b' [-Wunused-parameter]\n";
+  EXPECT_EQ(compiler_warnings(said, mine),
+            "mine.cpp:3:78: warning: control reaches end of non-void function [-Wreturn-type]\n    "
+            "3 | double f(double a) {}\n      |      ^\n");
   EXPECT_EQ(compiler_warnings("", mine), "");
 }
 
 // A hostile file causes very long lines: they are cut, because a regex would recurse too deep.
 TEST_F(CompilerWords, LinesOfAMegabyteDoNoHarm) {
   const std::string longest(1u << 20, 'a');
-  const fs::path header = write("a9.h", "double speed(double way);\n"), mine = write("mine.cpp", "double " + longest + "speed(" + longest + "\n");
-  EXPECT_NE(compiler_story("mine.cpp:1:1: error: " + longest + "\n    1 | " + longest + "\n", mine).find("mine.cpp:1:1: error: aaa"), std::string::npos);
-  EXPECT_NE(compiler_story("mold: error: undefined symbol: tumble::a9::speed(double)" + longest, mine, header).find("speed"), std::string::npos);
+  const fs::path header = write("a9.h", "double speed(double way);\n"),
+                 mine = write("mine.cpp", "double " + longest + "speed(" + longest + "\n");
+  EXPECT_NE(compiler_story("mine.cpp:1:1: error: " + longest + "\n    1 | " + longest + "\n", mine)
+                .find("mine.cpp:1:1: error: aaa"),
+            std::string::npos);
+  EXPECT_NE(compiler_story("mold: error: undefined symbol: tumble::a9::speed(double)" + longest,
+                           mine, header)
+                .find("speed"),
+            std::string::npos);
   EXPECT_LT(compiler_warnings("mine.cpp:1:1: warning: " + longest + "\n", mine).size(), 1000u);
 }
 

@@ -1,5 +1,5 @@
-// What a submission cannot do, one system call at a time, in every kind of sandbox. Each is tried on
-// something that exists and that this process may use, so that only the sandbox can refuse it.
+// What a submission cannot do, one system call at a time, in every kind of sandbox. Each is tried
+// on something that exists and that this process may use, so that only the sandbox can refuse it.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/msg.h>
@@ -49,16 +49,22 @@ class Confinement : public Attack {
 };
 
 constexpr const char* kDenied = "Operation not permitted";
-bool is_refused(const std::string& answer) { return answer == kDenied || answer == "Permission denied" || answer == "No such file or directory" || answer == "No such process"; }
+bool is_refused(const std::string& answer) {
+  return answer == kDenied || answer == "Permission denied" ||
+         answer == "No such file or directory" || answer == "No such process";
+}
 
 TEST_F(Confinement, SignalsReachNobodyElse) {
-  struct sigaction count {}, before {};
+  struct sigaction count {
+  }, before{};
   count.sa_handler = [](int) { ++signals_seen; };
   ::sigaction(SIGUSR1, &count, &before);
   signals_seen = 0;
   const pid_t judge = ::getpid();
-  for (const std::string& answer : {call(SYS_kill, judge, SIGUSR1), call(SYS_tkill, judge, SIGUSR1), call(SYS_tgkill, judge, judge, SIGUSR1),
-                                    call(SYS_rt_sigqueueinfo, judge, SIGUSR1, "@"), call(SYS_kill, -1, SIGUSR1), call(SYS_kill, -::getpgrp(), SIGUSR1)})
+  for (const std::string& answer :
+       {call(SYS_kill, judge, SIGUSR1), call(SYS_tkill, judge, SIGUSR1),
+        call(SYS_tgkill, judge, judge, SIGUSR1), call(SYS_rt_sigqueueinfo, judge, SIGUSR1, "@"),
+        call(SYS_kill, -1, SIGUSR1), call(SYS_kill, -::getpgrp(), SIGUSR1)})
     EXPECT_TRUE(is_refused(answer)) << answer;
   ::usleep(50'000);
   EXPECT_EQ(signals_seen, 0);
@@ -66,9 +72,10 @@ TEST_F(Confinement, SignalsReachNobodyElse) {
 }
 
 TEST_F(Confinement, SignalsReachNobodyByADescriptorsOwner) {
-  // The kernel sends a signal of one's choice to the owner of a socket: with the judge as its owner,
-  // a worker would end the judge.
-  if (chosen_sandbox() == SandboxKind::kNamespaces) GTEST_SKIP() << "the judge has no process id inside";
+  // The kernel sends a signal of one's choice to the owner of a socket: with the judge as its
+  // owner, a worker would end the judge.
+  if (chosen_sandbox() == SandboxKind::kNamespaces)
+    GTEST_SKIP() << "the judge has no process id inside";
   EXPECT_EQ(call(SYS_fcntl, 3, F_SETOWN, ::getpid()), kDenied);
   EXPECT_EQ(call(SYS_fcntl, 3, F_SETSIG, SIGKILL), kDenied);
   // The kernel reads the lower half of the command.
@@ -79,14 +86,16 @@ TEST_F(Confinement, SignalsReachNobodyByADescriptorsOwner) {
 TEST_F(Confinement, LocksOfFilesAreRefused) {
   // They would tell a parallel run something.
   EXPECT_EQ(call(SYS_fcntl, 3, F_SETLK, "@"), kDenied);
-  EXPECT_EQ(call(SYS_fcntl, 3, F_SETLK + (1l << 32), "@"), kDenied) << "the kernel reads the lower half of the command";
+  EXPECT_EQ(call(SYS_fcntl, 3, F_SETLK + (1l << 32), "@"), kDenied)
+      << "the kernel reads the lower half of the command";
   EXPECT_EQ(call(SYS_flock, 3, 2), kDenied);
 }
 
 TEST_F(Confinement, OtherProcessesCannotBeReadOrTraced) {
   const pid_t judge = ::getpid();
   for (const char* file : {"environ", "mem", "maps", "cmdline", "fd"})
-    EXPECT_TRUE(is_refused(call(SYS_open, "/proc/" + std::to_string(judge) + "/" + file, O_RDONLY))) << file;
+    EXPECT_TRUE(is_refused(call(SYS_open, "/proc/" + std::to_string(judge) + "/" + file, O_RDONLY)))
+        << file;
   EXPECT_TRUE(is_refused(call(SYS_ptrace, 16, judge, 0, 0)));
   EXPECT_TRUE(is_refused(call(SYS_process_vm_readv, judge, "@", 1, "@", 1, 0)));
   EXPECT_TRUE(is_refused(call(SYS_process_vm_writev, judge, "@", 1, "@", 1, 0)));
@@ -94,24 +103,29 @@ TEST_F(Confinement, OtherProcessesCannotBeReadOrTraced) {
 }
 
 TEST_F(Confinement, NoProcessOrThreadCanBeMade) {
-  for (const std::string& answer : {call(SYS_fork), call(SYS_vfork), call(SYS_clone, SIGCHLD, 0)}) EXPECT_EQ(answer, "Resource temporarily unavailable");
+  for (const std::string& answer : {call(SYS_fork), call(SYS_vfork), call(SYS_clone, SIGCHLD, 0)})
+    EXPECT_EQ(answer, "Resource temporarily unavailable");
   EXPECT_EQ(call(SYS_clone3, "@", 88), "Function not implemented");
 }
 
 TEST_F(Confinement, NoNetworkAndNoSockets) {
   for (const int family : {AF_INET, AF_INET6, AF_UNIX, AF_NETLINK, AF_VSOCK, AF_PACKET})
-    for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_RAW}) EXPECT_EQ(call(SYS_socket, family, type, 0), kDenied) << family << ' ' << type;
+    for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_RAW})
+      EXPECT_EQ(call(SYS_socket, family, type, 0), kDenied) << family << ' ' << type;
   EXPECT_EQ(call(SYS_socketpair, AF_UNIX, SOCK_STREAM, 0, "@"), kDenied);
 }
 
 TEST_F(Confinement, ObjectsOfOthersAreOutOfReach) {
   // Each is open to every user of the machine.
-  const int memory = ::shmget(IPC_PRIVATE, 4096, IPC_CREAT | 0666), queue = ::msgget(IPC_PRIVATE, IPC_CREAT | 0666), semaphore = ::semget(IPC_PRIVATE, 1, IPC_CREAT | 0666);
+  const int memory = ::shmget(IPC_PRIVATE, 4096, IPC_CREAT | 0666),
+            queue = ::msgget(IPC_PRIVATE, IPC_CREAT | 0666),
+            semaphore = ::semget(IPC_PRIVATE, 1, IPC_CREAT | 0666);
   EXPECT_EQ(call(SYS_shmat, memory, 0, 0), kDenied);
   EXPECT_EQ(call(SYS_msgsnd, queue, "@", 8, IPC_NOWAIT), kDenied);
   EXPECT_EQ(call(SYS_msgrcv, queue, "@", 8, 0, IPC_NOWAIT), kDenied);
   EXPECT_EQ(call(SYS_semctl, semaphore, 0, IPC_RMID), kDenied);
-  for (const long get : {SYS_shmget, SYS_msgget, SYS_semget}) EXPECT_EQ(call(get, 0, 4096, IPC_CREAT | 0666), kDenied) << get;
+  for (const long get : {SYS_shmget, SYS_msgget, SYS_semget})
+    EXPECT_EQ(call(get, 0, 4096, IPC_CREAT | 0666), kDenied) << get;
   EXPECT_EQ(call(SYS_mq_open, "queue", O_CREAT | O_RDWR, 0666, 0), kDenied);
   ::shmctl(memory, IPC_RMID, nullptr);
   ::msgctl(queue, IPC_RMID, nullptr);
@@ -124,8 +138,10 @@ TEST_F(Confinement, KeyringsIoUringAndTheRestOfTheKernelAreRefused) {
   EXPECT_EQ(call(SYS_request_key, "user", "name", 0, 0), kDenied);
   EXPECT_EQ(call(SYS_io_uring_setup, 8, "@"), kDenied);
   EXPECT_EQ(call(SYS_io_uring_enter, 3, 1, 0, 0, 0, 0), kDenied);
-  for (const long number : {SYS_bpf, SYS_userfaultfd, SYS_perf_event_open, SYS_unshare, SYS_setns, SYS_mount, SYS_pivot_root, SYS_chroot, SYS_memfd_create,
-                            SYS_inotify_init1, SYS_fanotify_init, SYS_personality, SYS_sched_setaffinity, SYS_setpriority, SYS_flock, SYS_mknod})
+  for (const long number :
+       {SYS_bpf, SYS_userfaultfd, SYS_perf_event_open, SYS_unshare, SYS_setns, SYS_mount,
+        SYS_pivot_root, SYS_chroot, SYS_memfd_create, SYS_inotify_init1, SYS_fanotify_init,
+        SYS_personality, SYS_sched_setaffinity, SYS_setpriority, SYS_flock, SYS_mknod})
     EXPECT_EQ(call(number, 0, 0, 0, 0, 0), kDenied) << number;
 }
 
@@ -134,10 +150,15 @@ TEST_F(Confinement, AttributesOfFilesCannotBeChanged) {
   const fs::path file = "/tmp/tumble-confinement-" + std::to_string(::getpid());
   std::ofstream(file) << "graded";
   ::chmod(file.c_str(), 0666);
-  for (const std::string& answer : {call(SYS_chmod, file.string(), 0), call(SYS_truncate, file.string(), 0), call(SYS_unlink, file.string()),
-                                    call(SYS_rename, file.string(), file.string() + "x"), call(SYS_link, file.string(), "/tmp/x"), call(SYS_utimensat, -100, file.string(), 0, 0),
-                                    call(SYS_setxattr, file.string(), "user.mark", "text", 4, 0), call(SYS_open, file.string(), O_WRONLY | O_TRUNC),
-                                    call(SYS_chown, file.string(), ::getuid(), ::getgid()), call(SYS_mkdir, "/tmp/tumble-made-here", 0777), call(SYS_mkdir, "/dev/shm/tumble-made-here", 0777)})
+  for (const std::string& answer :
+       {call(SYS_chmod, file.string(), 0), call(SYS_truncate, file.string(), 0),
+        call(SYS_unlink, file.string()), call(SYS_rename, file.string(), file.string() + "x"),
+        call(SYS_link, file.string(), "/tmp/x"), call(SYS_utimensat, -100, file.string(), 0, 0),
+        call(SYS_setxattr, file.string(), "user.mark", "text", 4, 0),
+        call(SYS_open, file.string(), O_WRONLY | O_TRUNC),
+        call(SYS_chown, file.string(), ::getuid(), ::getgid()),
+        call(SYS_mkdir, "/tmp/tumble-made-here", 0777),
+        call(SYS_mkdir, "/dev/shm/tumble-made-here", 0777)})
     EXPECT_TRUE(is_refused(answer) || answer == "Read-only file system") << answer;
   EXPECT_EQ(text_of(file), "graded");
   fs::remove(file);
@@ -146,7 +167,8 @@ TEST_F(Confinement, AttributesOfFilesCannotBeChanged) {
 TEST_F(Confinement, LimitsCannotBeRaisedNorTheDeathWithTheKeeperUndone) {
   EXPECT_NE(call(SYS_setrlimit, 7, "@"), "") << "this worker still answers";
   EXPECT_EQ(call(SYS_prlimit64, 1, 7, 0, "@"), kDenied);
-  if (chosen_sandbox() == SandboxKind::kNamespaces) return;   // there the kernel ends the namespace with its keeper
+  // there the kernel ends the namespace with its keeper
+  if (chosen_sandbox() == SandboxKind::kNamespaces) return;
   EXPECT_EQ(call(SYS_prctl, 1, 0), kDenied);
 }
 
@@ -154,8 +176,10 @@ TEST_F(Confinement, StartingAnotherProgramGainsNothing) {
   // Where a program of the system can be started, it is confined as its worker was. The worker is
   // gone, so the call has no answer.
   const std::string answer = call(SYS_execve, "/usr/bin/true", 0, 0);
-  if (chosen_sandbox() == SandboxKind::kBare) EXPECT_TRUE(answer == kDenied || answer == "Function not implemented") << answer;
-  else EXPECT_STREQ(words(victim_->verdict()), "crashed");
+  if (chosen_sandbox() == SandboxKind::kBare)
+    EXPECT_TRUE(answer == kDenied || answer == "Function not implemented") << answer;
+  else
+    EXPECT_STREQ(words(victim_->verdict()), "crashed");
 }
 
 }  // namespace

@@ -28,7 +28,10 @@ class CostInAReport : public ::testing::Test {
     std::string text{std::istreambuf_iterator<char>(in), {}};
     if (!function.empty()) {
       const auto begin = text.find("VectorXd " + function + "("), end = text.find("\n}\n", begin);
-      text.replace(begin, end + 3 - begin, "VectorXd " + function + "(const OdeFunction& f, double t, const VectorXd& y, double h) {\n" + body + "\n}\n");
+      text.replace(begin, end + 3 - begin,
+                   "VectorXd " + function +
+                       "(const OdeFunction& f, double t, const VectorXd& y, double h) {\n" + body +
+                       "\n}\n");
     }
     const fs::path source = folder_ / "a2_integration.cpp", object = folder_ / "a2.so";
     std::ofstream(source) << text;
@@ -45,7 +48,7 @@ class CostInAReport : public ::testing::Test {
 
 TEST_F(CostInAReport, StubIsReportedAndNotJudged) {
   const CostSection section = of_stub();
-  ASSERT_EQ(section.lines.size(), 3u);   // Euler, RK4, the module as a whole
+  ASSERT_EQ(section.lines.size(), 3u);  // Euler, RK4, the module as a whole
   for (const CostLine& line : section.lines) {
     EXPECT_FALSE(line.is_attempted) << line.reading;
     EXPECT_NE(line.reading.find("not written yet"), std::string::npos) << line.reading;
@@ -54,49 +57,69 @@ TEST_F(CostInAReport, StubIsReportedAndNotJudged) {
 
 TEST_F(CostInAReport, ModuleThatHangsLosesOnlyItsCurveAndTakesLittleTime) {
   const auto begun = std::chrono::steady_clock::now();
-  const CostSection section = of_stub("rk4_step", "for (volatile int k = 0; k < 1;) {}\n  return y + h * f(t, y);");
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const CostSection section =
+      of_stub("rk4_step", "for (volatile int k = 0; k < 1;) {}\n  return y + h * f(t, y);");
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   ASSERT_EQ(section.lines.size(), 3u);
-  EXPECT_NE(section.lines[1].reading.find("no answer within"), std::string::npos) << section.lines[1].reading;
+  EXPECT_NE(section.lines[1].reading.find("no answer within"), std::string::npos)
+      << section.lines[1].reading;
   EXPECT_FALSE(section.lines[1].is_right);
-  EXPECT_FALSE(section.lines[0].is_attempted) << section.lines[0].reading;   // earlier curves are kept
-  EXPECT_LT(seconds, 60.0);   // two curves of 3 s, the compiler and the reference; without a limit it would not end
+  // earlier curves are kept
+  EXPECT_FALSE(section.lines[0].is_attempted) << section.lines[0].reading;
+  // two curves of 3 s, the compiler and the reference; without a limit it would not end
+  EXPECT_LT(seconds, 60.0);
 }
 
 TEST_F(CostInAReport, StubOfASchedulerIsReportedAndNotJudged) {
-  if (!fs::exists(fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so")) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
+  if (!fs::exists(fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so"))
+    GTEST_SKIP() << "measured beside the reference, which this tree does not have";
   const fs::path stub = folder_ / "a4.so";
-  const BuiltSubmission built = build_submission(course_, "a4", fs::path(TUMBLE_SOURCE_DIR) / "assignments/a4_timewarp/a4_timewarp.cpp", stub);
+  const BuiltSubmission built = build_submission(
+      course_, "a4", fs::path(TUMBLE_SOURCE_DIR) / "assignments/a4_timewarp/a4_timewarp.cpp", stub);
   ASSERT_EQ(built.outcome, BuiltSubmission::Outcome::kBuilt) << built.said;
   const CostSection section = measure_cost(course_, "a4", stub);
   ASSERT_EQ(section.lines.size(), 1u);
-  EXPECT_NE(section.lines[0].reading.find("not written yet"), std::string::npos) << section.lines[0].reading;
+  EXPECT_NE(section.lines[0].reading.find("not written yet"), std::string::npos)
+      << section.lines[0].reading;
   EXPECT_FALSE(section.lines[0].is_attempted);
 }
 
 TEST_F(CostInAReport, SchedulerIsMeasuredByWorkPerCommittedEvent) {
   const fs::path reference = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
-  if (!fs::exists(reference)) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
+  if (!fs::exists(reference))
+    GTEST_SKIP() << "measured beside the reference, which this tree does not have";
   const CostSection section = measure_cost(course_, "a4", reference);
   ASSERT_EQ(section.lines.size(), 2u);
-  for (const CostLine& line : section.lines) EXPECT_TRUE(line.is_right && !line.is_wasteful) << line.reading;
-  EXPECT_NE(section.lines[1].reading.find("pays what the reference pays"), std::string::npos) << section.lines[1].reading;
-  EXPECT_EQ(section.plots.size(), 3u);   // error against work, work against the step, work against the number of processes
+  for (const CostLine& line : section.lines)
+    EXPECT_TRUE(line.is_right && !line.is_wasteful) << line.reading;
+  EXPECT_NE(section.lines[1].reading.find("pays what the reference pays"), std::string::npos)
+      << section.lines[1].reading;
+  // error against work, work against the step, work against the number of processes
+  EXPECT_EQ(section.plots.size(), 3u);
   ASSERT_EQ(section.tables.size(), 1u);
-  const auto& rows = section.tables[0].rows;   // of the submission, then of the reference: the same decisions, in the sandbox and in this process
+  // of the submission, then of the reference: the same decisions, in the sandbox and in this
+  // process
+  const auto& rows = section.tables[0].rows;
   ASSERT_EQ(rows.size() % 2, 0u);
   for (std::size_t k = 0; k < rows.size() / 2; ++k)
-    for (std::size_t cell = 1; cell < rows[k].size(); ++cell) EXPECT_EQ(rows[k][cell].text, rows[k + rows.size() / 2][cell].text) << "row " << k << ", column " << section.tables[0].columns[cell].name;
+    for (std::size_t cell = 1; cell < rows[k].size(); ++cell)
+      EXPECT_EQ(rows[k][cell].text, rows[k + rows.size() / 2][cell].text)
+          << "row " << k << ", column " << section.tables[0].columns[cell].name;
 }
 
 TEST_F(CostInAReport, LawsOfImpactAreMeasuredAsAWhole) {
-  const fs::path modules = fs::path(TUMBLE_BINARY_DIR) / "modules", reference = modules / "a1_reference.so";
-  if (!fs::exists(reference)) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
-  const CostSection right = measure_cost(course_, "a1", reference), stub = measure_cost(course_, "a1", modules / "a1_student.so");
+  const fs::path modules = fs::path(TUMBLE_BINARY_DIR) / "modules",
+                 reference = modules / "a1_reference.so";
+  if (!fs::exists(reference))
+    GTEST_SKIP() << "measured beside the reference, which this tree does not have";
+  const CostSection right = measure_cost(course_, "a1", reference),
+                    stub = measure_cost(course_, "a1", modules / "a1_student.so");
   ASSERT_EQ(right.lines.size(), 1u);
   ASSERT_EQ(stub.lines.size(), 1u);
   EXPECT_TRUE(right.lines[0].is_right) << right.lines[0].reading;
-  EXPECT_FALSE(stub.lines[0].is_right) << stub.lines[0].reading;   // whether it is attempted depends on the student's file
+  // whether it is attempted depends on the student's file
+  EXPECT_FALSE(stub.lines[0].is_right) << stub.lines[0].reading;
 }
 
 TEST_F(CostInAReport, StepOfHalfTheLengthIsNotEulerAndReadsTheSameTwice) {
@@ -105,14 +128,16 @@ TEST_F(CostInAReport, StepOfHalfTheLengthIsNotEulerAndReadsTheSameTwice) {
   EXPECT_FALSE(one.lines[0].is_right) << one.lines[0].reading;
   EXPECT_TRUE(one.lines[0].is_attempted);
   ASSERT_EQ(one.plots.size(), two.plots.size());
-  for (std::size_t k = 0; k < one.plots.size(); ++k) EXPECT_EQ(report::svg_of(one.plots[k]), report::svg_of(two.plots[k]));
+  for (std::size_t k = 0; k < one.plots.size(); ++k)
+    EXPECT_EQ(report::svg_of(one.plots[k]), report::svg_of(two.plots[k]));
   EXPECT_EQ(one.lines[0].reading, two.lines[0].reading);
 }
 
-TEST_F(CostInAReport, EulerStepHasOrderOne) {   // the lecture's formula, which is not secret
+TEST_F(CostInAReport, EulerStepHasOrderOne) {  // the lecture's formula, which is not secret
   const CostSection section = of_stub("euler_step", "return y + h * f(t, y);");
   EXPECT_TRUE(section.lines[0].is_right) << section.lines[0].reading;
-  EXPECT_NE(section.lines[0].reading.find("as it should (1)"), std::string::npos) << section.lines[0].reading;
+  EXPECT_NE(section.lines[0].reading.find("as it should (1)"), std::string::npos)
+      << section.lines[0].reading;
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace {
 
 using waist::Module;
 
-void fall(const volatile char* deeper) {   // endless recursion: no stack is left for the signal handler
+// endless recursion: no stack is left for the signal handler
+void fall(const volatile char* deeper) {
   volatile char room[4096];
   room[0] = deeper[0];
   fall(room);
@@ -26,8 +27,10 @@ Module faulty() {
   module.attack = [](const std::string& what) -> std::string {
     if (what == "null") *static_cast<volatile int*>(nullptr) = 1;
     if (what == "deep") fall("");
-    if (what == "size") std::abort();   // like a failed assertion of Eigen
-    if (what == "loop") for (volatile int i = 0;; i = i + 1) {}
+    if (what == "size") std::abort();  // like a failed assertion of Eigen
+    if (what == "loop")
+      for (volatile int i = 0;; i = i + 1) {
+      }
     if (what == "throw") throw std::out_of_range("index 7");
     return what;
   };
@@ -36,10 +39,13 @@ Module faulty() {
 
 const Module& guarded_module() {
   static modules::ModuleKind kind;
-  kind.watched = [](const modules::AnyModule& module, modules::CallWatcher& watcher) -> modules::AnyModule {
-    return std::make_shared<const Module>(modules::watched(*static_cast<const Module*>(module.get()), watcher));
+  kind.watched = [](const modules::AnyModule& module,
+                    modules::CallWatcher& watcher) -> modules::AnyModule {
+    return std::make_shared<const Module>(
+        modules::watched(*static_cast<const Module*>(module.get()), watcher));
   };
-  static const modules::AnyModule any = guarded(kind, std::make_shared<const Module>(faulty()), "mine.cpp");
+  static const modules::AnyModule any =
+      guarded(kind, std::make_shared<const Module>(faulty()), "mine.cpp");
   return *static_cast<const Module*>(any.get());
 }
 
@@ -51,19 +57,28 @@ TEST(GuardedCalls, RightCallsPass) {
 
 TEST(GuardedCalls, CrashEndsWithItsSignalFileAndFunction) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
-  EXPECT_EXIT(guarded_module().attack("null"), ::testing::ExitedWithCode(1), "mine.cpp: SIGSEGV.*in attack");
-  EXPECT_EXIT(guarded_module().attack("deep"), ::testing::ExitedWithCode(1), "mine.cpp: SIGSEGV.*endless recursion.*in attack");
-  EXPECT_EXIT(guarded_module().attack("size"), ::testing::ExitedWithCode(1), "mine.cpp: SIGABRT.*in attack");
+  EXPECT_EXIT(guarded_module().attack("null"), ::testing::ExitedWithCode(1),
+              "mine.cpp: SIGSEGV.*in attack");
+  EXPECT_EXIT(guarded_module().attack("deep"), ::testing::ExitedWithCode(1),
+              "mine.cpp: SIGSEGV.*endless recursion.*in attack");
+  EXPECT_EXIT(guarded_module().attack("size"), ::testing::ExitedWithCode(1),
+              "mine.cpp: SIGABRT.*in attack");
 }
 
 TEST(GuardedCalls, EndlessLoopEndsWithAMessage) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
-  EXPECT_EXIT(guarded_module().attack("loop"), ::testing::ExitedWithCode(1), "mine.cpp: out of time: no answer within 10 s.*in attack");
+  EXPECT_EXIT(guarded_module().attack("loop"), ::testing::ExitedWithCode(1),
+              "mine.cpp: out of time: no answer within 10 s.*in attack");
 }
 
 TEST(GuardedCalls, CrashElsewhereIsNotTheModules) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
-  EXPECT_EXIT({ guarded_module().twice(1.0); std::abort(); }, ::testing::KilledBySignal(SIGABRT), "");
+  EXPECT_EXIT(
+      {
+        guarded_module().twice(1.0);
+        std::abort();
+      },
+      ::testing::KilledBySignal(SIGABRT), "");
 }
 
 TEST(GuardedCalls, ExceptionOfTheModuleStopsARunWithItsReason) {
@@ -77,13 +92,19 @@ TEST(GuardedCalls, ExceptionOfTheModuleStopsARunWithItsReason) {
 
 // Exceptions thrown by a callback are not the module's.
 TEST(GuardedCalls, ExceptionsOfCallbacksPassThroughAModule) {
-  EXPECT_THROW(guarded_module().call_back([](double) -> double { throw UserError("scene", "odd"); }, 1), UserError);
-  EXPECT_THROW(guarded_module().call_back([](double) -> double { throw NotImplemented("f", "handout"); }, 1), NotImplemented);
+  EXPECT_THROW(
+      guarded_module().call_back([](double) -> double { throw UserError("scene", "odd"); }, 1),
+      UserError);
+  EXPECT_THROW(
+      guarded_module().call_back([](double) -> double { throw NotImplemented("f", "handout"); }, 1),
+      NotImplemented);
 }
 
 TEST(GuardedCalls, CrashOfAStaticInitialiserIsNamed) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
-  EXPECT_EXIT(guarded_load("mine.cpp", []() -> modules::AnyModule { std::abort(); }), ::testing::ExitedWithCode(1), "mine.cpp: SIGABRT.*in its global and static variables");
+  EXPECT_EXIT(guarded_load("mine.cpp", []() -> modules::AnyModule { std::abort(); }),
+              ::testing::ExitedWithCode(1),
+              "mine.cpp: SIGABRT.*in its global and static variables");
 }
 
 }  // namespace

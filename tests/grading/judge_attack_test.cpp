@@ -28,19 +28,28 @@ class JudgeAttack : public Attack {
 
   // Results of the assignment's starter file with `evil` before it.
   std::vector<TestResult> judged(const std::string& evil) {
-    const fs::path root = TUMBLE_SOURCE_DIR, starter = root / "assignments/a1_impulse/a1_impulse.cpp";
+    const fs::path root = TUMBLE_SOURCE_DIR,
+                   starter = root / "assignments/a1_impulse/a1_impulse.cpp";
     std::ifstream in(starter);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     std::ofstream(folder_ / "a1_impulse.cpp") << evil << "\n" << text;
     const fs::path object = folder_ / "a1.so", record = folder_ / "record.json";
-    const Compiled compiled = compile_submission({root, "assignments/a1_impulse/a1_impulse.h", folder_ / "a1_impulse.cpp", object, {}, "a1"});
+    const Compiled compiled = compile_submission({root,
+                                                  "assignments/a1_impulse/a1_impulse.h",
+                                                  folder_ / "a1_impulse.cpp",
+                                                  object,
+                                                  {},
+                                                  "a1"});
     EXPECT_EQ(compiled.outcome, Compiled::Outcome::kBuilt) << compiled.said;
-    const std::string words = judge_.string() + " --submission " + object.string() + " --json " + record.string() + " 'Ray*' > " + (folder_ / "said").string();
+    const std::string words = judge_.string() + " --submission " + object.string() + " --json " +
+                              record.string() + " 'Ray*' > " + (folder_ / "said").string();
     code_ = WEXITSTATUS(std::system(words.c_str()));
     return read_results(record.string());
   }
   static bool all(const std::vector<TestResult>& results, Verdict verdict) {
-    return !results.empty() && std::all_of(results.begin(), results.end(), [&](const TestResult& r) { return r.verdict == verdict; });
+    return !results.empty() &&
+           std::all_of(results.begin(), results.end(),
+                       [&](const TestResult& r) { return r.verdict == verdict; });
   }
 
   const fs::path judge_ = fs::path(TUMBLE_BINARY_DIR) / "bin/judge_a1";
@@ -49,7 +58,9 @@ class JudgeAttack : public Attack {
 };
 
 TEST_F(JudgeAttack, ExitAndFakeLinesFromAStaticInitialiserEarnNothing) {
-  const auto results = judged("#include <cstdio>\n#include <cstdlib>\nstatic const int early = [] { std::puts(\"[  PASSED  ] 81 tests.\"); std::exit(0); return 0; }();");
+  const auto results = judged(
+      "#include <cstdio>\n#include <cstdlib>\nstatic const int early = [] { std::puts(\"[  PASSED  "
+      "] 81 tests.\"); std::exit(0); return 0; }();");
   EXPECT_TRUE(all(results, Verdict::kCrashed));
   EXPECT_NE(results.front().story.find("exit code 0"), std::string::npos) << results.front().story;
   EXPECT_EQ(code_, 1);
@@ -58,7 +69,9 @@ TEST_F(JudgeAttack, ExitAndFakeLinesFromAStaticInitialiserEarnNothing) {
 TEST_F(JudgeAttack, OwnMainAndOperatorNewEarnNothing) {
   // The stub's throw allocates memory too: a submission that damages its own process can lose only
   // its own verdicts.
-  const auto results = judged("#include <cstdlib>\n#include <new>\nint main() { std::exit(0); }\nvoid* operator new(std::size_t n) { return std::malloc(n); }");
+  const auto results = judged(
+      "#include <cstdlib>\n#include <new>\nint main() { std::exit(0); }\nvoid* operator "
+      "new(std::size_t n) { return std::malloc(n); }");
   EXPECT_TRUE(all(results, Verdict::kNotAttempted));
   EXPECT_EQ(code_, 4);
 }

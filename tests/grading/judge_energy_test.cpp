@@ -17,7 +17,8 @@ Frame frame_of(double time, double kinetic, double potential) {
   return frame;
 }
 
-CheckResult judged(const std::string& kind, double tolerance, std::vector<Frame> frames, double at_s = 0.0) {
+CheckResult judged(const std::string& kind, double tolerance, std::vector<Frame> frames,
+                   double at_s = 0.0) {
   scene::Scene scene;
   scene::CheckSpec check;
   check.kind = kind;
@@ -34,18 +35,22 @@ TEST(EnergyChecks, RunThatGainsEnergyDoesNotWidenItsOwnTolerance) {
   // 999.
   for (const char* kind : {"energy", "energy_not_rising"}) {
     const CheckResult result = judged(kind, 1.0, {frame_of(0, 1, 0), frame_of(1, 1000, 0)});
-    EXPECT_NEAR(result.value, 999.0, 999.0 * 1e-13) << kind;   // minus the rounding of the largest terms, about 1e-15 of them
+    // minus the rounding of the largest terms, about 1e-15 of them
+    EXPECT_NEAR(result.value, 999.0, 999.0 * 1e-13) << kind;
     EXPECT_FALSE(result.passed) << kind;
   }
 }
 
 TEST(EnergyChecks, RunThatRisesWithoutSlowingDownDoesNotEither) {
-  EXPECT_DOUBLE_EQ(judged("energy", 1.0, {frame_of(0, 1, 0), frame_of(1, 1, 50), frame_of(2, 1, 500)}).value, 500.0);
+  EXPECT_DOUBLE_EQ(
+      judged("energy", 1.0, {frame_of(0, 1, 0), frame_of(1, 1, 50), frame_of(2, 1, 500)}).value,
+      500.0);
 }
 
 TEST(EnergyChecks, FallFromRestIsMeasuredByItsDepth) {
   // 10 J of potential energy become 9.9 J of kinetic energy: 1 %.
-  EXPECT_NEAR(judged("energy", 0.02, {frame_of(0, 0, 30), frame_of(1, 9.9, 20)}).value, 0.01, 1e-15);
+  EXPECT_NEAR(judged("energy", 0.02, {frame_of(0, 0, 30), frame_of(1, 9.9, 20)}).value, 0.01,
+              1e-15);
   EXPECT_TRUE(judged("energy", 0.02, {frame_of(0, 0, 30), frame_of(1, 9.9, 20)}).passed);
 }
 

@@ -27,7 +27,8 @@ pid_t child_that(void (*does)()) {
   ::_exit(0);
 }
 void spin() {
-  for (volatile unsigned i = 0;; i = i + 1) {}
+  for (volatile unsigned i = 0;; i = i + 1) {
+  }
 }
 void sleep_on() {
   for (;;) ::pause();
@@ -79,7 +80,7 @@ TEST(OwnTime, ActivityOfSleepersDoesNotGrow) {
   ::usleep(100'000);
   const double before = activity_below(child);
   ::usleep(300'000);
-  EXPECT_NEAR(activity_below(child), before, 0.015);   // one tick of the kernel's clock
+  EXPECT_NEAR(activity_below(child), before, 0.015);  // one tick of the kernel's clock
   end(child);
 }
 

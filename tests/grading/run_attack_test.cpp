@@ -12,7 +12,9 @@ class RunAttack : public Attack {};
 
 Victim in_call() { return Victim(attack_object("in_call.cpp")); }
 
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 // One attack in a new worker; afterwards the judge must be able to continue, and no process may be
 // left.
@@ -23,7 +25,8 @@ void expect_end(const std::string& what, Verdict verdict, const std::string& sto
   EXPECT_STREQ(words(victim.verdict()), words(verdict)) << victim.story();
   EXPECT_TRUE(holds(victim.story(), story_part)) << victim.story();
   EXPECT_TRUE(holds(victim.story(), "attack")) << "the story names the call: " << victim.story();
-  EXPECT_TRUE(holds(victim.story(), "called with: \"" + what + '"')) << "and its arguments: " << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "called with: \"" + what + '"'))
+      << "and its arguments: " << victim.story();
   call_log() = CallLog{};
   EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a new worker";
   victim.connection().reset();
@@ -52,10 +55,13 @@ std::string refusal() {
 }
 
 // The same of a file that namespaces show and protect.
-std::string refused_in_sight() { return chosen_sandbox() == SandboxKind::kNamespaces ? "Permission denied" : refusal(); }
+std::string refused_in_sight() {
+  return chosen_sandbox() == SandboxKind::kNamespaces ? "Permission denied" : refusal();
+}
 
 TEST_F(RunAttack, LeavingEarlyIsACrash) {
-  for (const char* way : {"exit", "_exit", "quick_exit"}) expect_end(way, Verdict::kCrashed, "exit code 0");
+  for (const char* way : {"exit", "_exit", "quick_exit"})
+    expect_end(way, Verdict::kCrashed, "exit code 0");
 }
 
 TEST_F(RunAttack, SignalsAreNamed) {
@@ -71,10 +77,13 @@ TEST_F(RunAttack, ExceptionsAreQuoted) {
 }
 
 TEST_F(RunAttack, EndlessCallsAreOutOfTime) {
-  for (const char* what : {"loop", "sleep"}) expect_end(what, Verdict::kOutOfResources, "no answer within 1.5 s");
+  for (const char* what : {"loop", "sleep"})
+    expect_end(what, Verdict::kOutOfResources, "no answer within 1.5 s");
 }
 
-TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNoProcess) { expect_end("fork bomb", Verdict::kOutOfResources, "no answer"); }
+TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNoProcess) {
+  expect_end("fork bomb", Verdict::kOutOfResources, "no answer");
+}
 
 TEST_F(RunAttack, ProcessesAreFew) {
   // Only process 1 and the worker, independent of other processes of this user. Memory is limited
@@ -85,7 +94,8 @@ TEST_F(RunAttack, ProcessesAreFew) {
 
 TEST_F(RunAttack, WorkerCannotSlowItselfDown) {
   // Waiting for a core is not charged, so a worker must not be able to choose it.
-  for (const char* what : {"own core", "idle class", "nice"}) EXPECT_EQ(reached(what), "Operation not permitted") << what;
+  for (const char* what : {"own core", "idle class", "nice"})
+    EXPECT_EQ(reached(what), "Operation not permitted") << what;
 }
 
 TEST_F(RunAttack, WaitingForAWorkerThatHungUpIsCharged) {
@@ -93,19 +103,25 @@ TEST_F(RunAttack, WaitingForAWorkerThatHungUpIsCharged) {
   victim.attack("hang up");
   EXPECT_STREQ(words(victim.verdict()), "crashed") << victim.story();
   EXPECT_TRUE(holds(victim.story(), "closed its channel")) << victim.story();
-  EXPECT_GE(call_log().own_s, 1.9);   // s: the grace period of a dying process is 2 s
+  EXPECT_GE(call_log().own_s, 1.9);  // s: the grace period of a dying process is 2 s
 }
 
 TEST_F(RunAttack, ExcessiveMemoryIsOutOfMemory) {
-  for (const char* what : {"100 GB by new", "memory in pieces"}) expect_end(what, Verdict::kOutOfResources, "more memory");
+  for (const char* what : {"100 GB by new", "memory in pieces"})
+    expect_end(what, Verdict::kOutOfResources, "more memory");
 }
 
-TEST_F(RunAttack, FloodOfOutputIsCutOff) { expect_end("flood", Verdict::kOutOfResources, "printed more than"); }
+TEST_F(RunAttack, FloodOfOutputIsCutOff) {
+  expect_end("flood", Verdict::kOutOfResources, "printed more than");
+}
 
-TEST_F(RunAttack, TooLongAnswerIsRefused) { expect_end("long answer", Verdict::kCrashed, "an argument or answer of 6710"); }
+TEST_F(RunAttack, TooLongAnswerIsRefused) {
+  expect_end("long answer", Verdict::kCrashed, "an argument or answer of 6710");
+}
 
 TEST_F(RunAttack, ForgedFramesAreAnswersOrRefused) {
-  for (const char* what : {"kind", "size", "callback", "count"}) expect_end(std::string("forge:") + what, Verdict::kCrashed, "answered");
+  for (const char* what : {"kind", "size", "callback", "count"})
+    expect_end(std::string("forge:") + what, Verdict::kCrashed, "answered");
   expect_end("forge:half", Verdict::kOutOfResources, "no answer within");
 }
 
@@ -117,16 +133,22 @@ TEST_F(RunAttack, ForgedStubIsAStub) {
 
 TEST_F(RunAttack, AfterACallbackThatThrowsTheNextCallGetsANewWorker) {
   Victim victim = in_call();
-  EXPECT_THROW(victim.module().call_back([](double) -> double { throw std::runtime_error("judge's own"); }, 1), std::runtime_error);
+  EXPECT_THROW(victim.module().call_back(
+                   [](double) -> double { throw std::runtime_error("judge's own"); }, 1),
+               std::runtime_error);
   EXPECT_EQ(victim.module().twice(1.0), 2.0);
 }
 
 TEST_F(RunAttack, CallInsideACallbackDiesWithItsStory) {
   // An integrator's derivative is a function of the same submission: if it crashes, both calls end.
   Victim victim = in_call();
-  EXPECT_THROW(victim.module().call_back([&](double) { return static_cast<double>(victim.module().attack("abort").size()); }, 2), CallEnded);
+  EXPECT_THROW(
+      victim.module().call_back(
+          [&](double) { return static_cast<double>(victim.module().attack("abort").size()); }, 2),
+      CallEnded);
   EXPECT_EQ(victim.verdict(), Verdict::kCrashed);
-  EXPECT_TRUE(holds(victim.story(), "SIGABRT") && holds(victim.story(), "attack")) << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "SIGABRT") && holds(victim.story(), "attack"))
+      << victim.story();
   call_log() = CallLog{};
   EXPECT_EQ(victim.module().call_back([&](double x) { return victim.module().twice(x); }, 3), 6.0);
   EXPECT_STREQ(call_log().last_call, "call_back");
@@ -151,21 +173,28 @@ TEST_F(RunAttack, ThreadsAndChildrenDieWithTheWorker) {
 
 TEST_F(RunAttack, NothingOfTheProjectIsVisible) {
   const std::string source = TUMBLE_SOURCE_DIR, build = TUMBLE_BINARY_DIR;
-  for (const std::string& path : {source, source + "/solutions_private", source + "/assignments/a1_impulse/a1_impulse.cpp", build,
-                                  build + "/modules/waist_right.so", std::string("/etc/passwd"), std::string("/root"), std::string("/home"),
-                                  std::string("/proc/1/root/etc"), std::string("/run"), std::string("/var/log"), std::string("/sys")}) {
-    std::error_code error;   // a tree that students get has no solutions_private: Landlock tells what does not exist
+  for (const std::string& path :
+       {source, source + "/solutions_private", source + "/assignments/a1_impulse/a1_impulse.cpp",
+        build, build + "/modules/waist_right.so", std::string("/etc/passwd"), std::string("/root"),
+        std::string("/home"), std::string("/proc/1/root/etc"), std::string("/run"),
+        std::string("/var/log"), std::string("/sys")}) {
+    // a tree that students get has no solutions_private: Landlock tells what does not exist
+    std::error_code error;
     if (!std::filesystem::exists(path, error) && !error) continue;
-    EXPECT_EQ(reached("open:" + path), path.starts_with("/proc/1/") ? refused_in_sight() : refusal()) << path;
+    EXPECT_EQ(reached("open:" + path),
+              path.starts_with("/proc/1/") ? refused_in_sight() : refusal())
+        << path;
   }
 }
 
 TEST_F(RunAttack, ProcessOneIsNotAccessible) {
-  for (const char* file : {"environ", "maps", "mem", "fd/4"}) EXPECT_EQ(reached(std::string("open:/proc/1/") + file), refused_in_sight()) << file;
+  for (const char* file : {"environ", "maps", "mem", "fd/4"})
+    EXPECT_EQ(reached(std::string("open:/proc/1/") + file), refused_in_sight()) << file;
 }
 
 TEST_F(RunAttack, OtherProcessesCannotBeSeenOrTouched) {
-  EXPECT_EQ(reached("processes"), chosen_sandbox() == SandboxKind::kNamespaces ? "1 2 " : refusal());
+  EXPECT_EQ(reached("processes"),
+            chosen_sandbox() == SandboxKind::kNamespaces ? "1 2 " : refusal());
   EXPECT_EQ(reached("trace parent"), "Operation not permitted");
   // Process 1 of a namespace receives no signal from inside without a handler for it; it only
   // matters that the judge continues.
@@ -179,13 +208,15 @@ TEST_F(RunAttack, NothingIsInherited) {
 }
 
 TEST_F(RunAttack, KernelObjectsOutsideTheLimitsAreRefused) {
-  for (const char* what : {"connect", "memfd", "shared memory", "link", "pipe by name", "more processes"})
+  for (const char* what :
+       {"connect", "memfd", "shared memory", "link", "pipe by name", "more processes"})
     EXPECT_EQ(reached(what), "Operation not permitted") << what;
 }
 
 TEST_F(RunAttack, NothingCanBeWrittenToDisk) {
   // A worker has no folder to write to.
-  for (const char* folder : {"/tmp/x", "/dev/shm/x", "/var/tmp/x", "/dev/x", "/x", "/usr/x", "/usr/local/x", "x"})
+  for (const char* folder :
+       {"/tmp/x", "/dev/shm/x", "/var/tmp/x", "/dev/x", "/x", "/usr/x", "/usr/local/x", "x"})
     EXPECT_EQ(reached(std::string("write:") + folder), "0") << folder;
 }
 
@@ -199,19 +230,30 @@ TEST_F(RunAttack, EndlessCallbacksAreStopped) {
 TEST_F(RunAttack, WrongSizesAreWrongAnswersAndTheJudgeContinues) {
   for (const std::string what : {"ask 0", "ask 14", "answer 0", "answer 100000"}) {
     Victim victim = in_call();
-    EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
+    EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); },
+                                      VectorXd::Ones(13), what),
+                 CallEnded)
+        << what;
     EXPECT_EQ(victim.verdict(), Verdict::kWrong) << victim.story();
-    EXPECT_TRUE(holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, but 13 are needed")) << victim.story();
+    EXPECT_TRUE(
+        holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, but 13 are needed"))
+        << victim.story();
     call_log() = CallLog{};
     EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a new worker";
   }
 }
 
 TEST_F(RunAttack, ExcessiveSizesAreRefused) {
-  for (const std::string what : {"ask 10000000", "answer 10000000", "ask 10000000000", "answer -1"}) {
+  for (const std::string what :
+       {"ask 10000000", "answer 10000000", "ask 10000000000", "answer -1"}) {
     Victim victim = in_call();
-    EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
-    EXPECT_TRUE(victim.verdict() == Verdict::kCrashed || victim.verdict() == Verdict::kOutOfResources) << victim.story();
+    EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); },
+                                      VectorXd::Ones(13), what),
+                 CallEnded)
+        << what;
+    EXPECT_TRUE(victim.verdict() == Verdict::kCrashed ||
+                victim.verdict() == Verdict::kOutOfResources)
+        << victim.story();
   }
 }
 
@@ -225,7 +267,13 @@ TEST_F(RunAttack, OwnTimeOfTheWorkerIsMeasured) {
 TEST_F(RunAttack, TimeOfCallbacksIsNotChargedToTheWorker) {
   Victim victim = in_call();
   // 2 s of the judge's own time, within a limit of 1.5 s for a call.
-  EXPECT_EQ(victim.module().call_back([](double) { ::usleep(500'000); return 1.0; }, 4), 4.0);
+  EXPECT_EQ(victim.module().call_back(
+                [](double) {
+                  ::usleep(500'000);
+                  return 1.0;
+                },
+                4),
+            4.0);
   EXPECT_LT(call_log().own_s, 1.0);
 }
 

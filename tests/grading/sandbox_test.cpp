@@ -65,7 +65,8 @@ TEST_F(SandboxEnds, SandboxThatCannotStartSaysSo) {
 }
 
 TEST_F(SandboxEnds, InitThatNeverReportsCountsAsNotStarted) {
-  if (!traits_of(chosen_sandbox()).needs_init) GTEST_SKIP() << "the keeper itself sees the end of the program";
+  if (!traits_of(chosen_sandbox()).needs_init)
+    GTEST_SKIP() << "the keeper itself sees the end of the program";
   // Fail-closed: if process 1 exits with code 0 but without a report, that is a fault of the
   // grader, never a result.
   SandboxJob job = shell("true");
@@ -79,7 +80,7 @@ TEST_F(SandboxEnds, WallTimeCpuTimeAndOutputAreLimited) {
   EXPECT_EQ(Sandbox::start(sleeping).wait().ending, Ending::kWallLimit);
   SandboxJob spinning = shell("trap '' XCPU; while :; do :; done");
   spinning.limits.cpu_s = 1;
-  spinning.limits.wall_s = 120.0;   // a loaded machine gives that second late
+  spinning.limits.wall_s = 120.0;  // a loaded machine gives that second late
   const SandboxOutcome spun = Sandbox::start(spinning).wait();
   EXPECT_EQ(spun.ending, Ending::kSignal);
   EXPECT_TRUE(spun.code == SIGXCPU || spun.code == SIGKILL) << spun.code;
@@ -92,55 +93,68 @@ TEST_F(SandboxEnds, ManySpinningProcessesEndAtTheWallLimit) {
   EXPECT_EQ(Sandbox::start(job).wait().ending, Ending::kWallLimit);
 }
 
-TEST_F(SandboxEnds, DaemonsDieWithTheirParent) { EXPECT_EQ(run("setsid sleep 100 & exit 0").code, 0); }
+TEST_F(SandboxEnds, DaemonsDieWithTheirParent) {
+  EXPECT_EQ(run("setsid sleep 100 & exit 0").code, 0);
+}
 
 int processes_of_all() {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) count += std::atoi(entry.path().filename().c_str()) > 0 ? 1 : 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc"))
+    count += std::atoi(entry.path().filename().c_str()) > 0 ? 1 : 0;
   return count;
 }
 
 TEST_F(SandboxEnds, ForkBombsOfToolsLeaveNoProcess) {
-  // A tree of 1,023 processes that all become orphans and wait for the channel. It is finite and ends
-  // with this test, so that without its limit it fails a test and does not fill the machine.
+  // A tree of 1,023 processes that all become orphans and wait for the channel. It is finite and
+  // ends with this test, so that without its limit it fails a test and does not fill the machine.
   int ends[2];
   ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
-  SandboxJob job = shell("tree() { [ $1 = 0 ] || { tree $(($1 - 1)) & tree $(($1 - 1)) & }; read x <&3; }; tree 9");
+  SandboxJob job = shell(
+      "tree() { [ $1 = 0 ] || { tree $(($1 - 1)) & tree $(($1 - 1)) & }; read x <&3; }; tree 9");
   job.channel = ends[0];
   job.limits.processes = 40;
   const int before = processes_of_all();
   Sandbox sandbox = Sandbox::start(job);
   ::close(ends[0]);
   ::usleep(1'000'000);
-  // 40, and 200 more where the user has other processes; up to 100 come and go on the machine meanwhile.
-  EXPECT_LT(processes_of_all() - before, can_change_user() || traits_of(chosen_sandbox()).generations > 1 ? 140 : 350);
+  // 40, and 200 more where the user has other processes; up to 100 come and go on the machine
+  // meanwhile.
+  EXPECT_LT(processes_of_all() - before,
+            can_change_user() || traits_of(chosen_sandbox()).generations > 1 ? 140 : 350);
   sandbox.stop();
   EXPECT_EQ(descendants_left(), 0);
   ::close(ends[1]);
 }
 
 TEST_F(SandboxEnds, TemporaryFolderIsLimitedAndRemoved) {
-  SandboxJob job = shell("cd \"$0\" && pwd && for i in 1 2 3 4 5 6 7 8; do head -c 4000000 /dev/zero > $i || exit 9; sleep 0.1; done");
+  SandboxJob job = shell(
+      "cd \"$0\" && pwd && for i in 1 2 3 4 5 6 7 8; do head -c 4000000 /dev/zero > $i || exit 9; "
+      "sleep 0.1; done");
   job.command.push_back(kTmpInside);
   job.limits.tmp_bytes = 8 << 20;
   const SandboxOutcome full = Sandbox::start(job).wait();
-  EXPECT_TRUE(full.ending == Ending::kDiskLimit || (full.ending == Ending::kExited && full.code == 9)) << full.code << full.printed;
+  EXPECT_TRUE(full.ending == Ending::kDiskLimit ||
+              (full.ending == Ending::kExited && full.code == 9))
+      << full.code << full.printed;
   EXPECT_EQ(full.printed.substr(0, 5), "/tmp\n") << "its name inside, whatever it is outside";
   job.limits.tmp_bytes = 64 << 20;
   EXPECT_EQ(Sandbox::start(job).wait().code, 0);
   std::size_t stages = 0;
-  const std::string own = "tumble-stage-" + std::to_string(::getpid()) + "-", name = "tumble-stage-";
+  const std::string own = "tumble-stage-" + std::to_string(::getpid()) + "-",
+                    name = "tumble-stage-";
   for (const auto& entry : std::filesystem::directory_iterator("/tmp")) {
     const std::string found = entry.path().filename().string();
-    std::error_code hidden;   // another user's: no folder of this run
-    const bool is_of_a_keeper = found.starts_with(name) && !found.starts_with(own) && std::filesystem::exists(entry.path() / "8", hidden);
+    std::error_code hidden;  // another user's: no folder of this run
+    const bool is_of_a_keeper = found.starts_with(name) && !found.starts_with(own) &&
+                                std::filesystem::exists(entry.path() / "8", hidden);
     stages += is_of_a_keeper ? 1 : 0;
   }
   EXPECT_EQ(stages, 0u);
 }
 
 TEST_F(SandboxEnds, FilesInTheTemporaryFolderCannotBeRun) {
-  if (traits_of(chosen_sandbox()).kind != SandboxKind::kLandlock) GTEST_SKIP() << "only Landlock tells running from reading";
+  if (traits_of(chosen_sandbox()).kind != SandboxKind::kLandlock)
+    GTEST_SKIP() << "only Landlock tells running from reading";
   SandboxJob job = shell("cp /usr/bin/true \"$0/program\" && \"$0/program\"");
   job.command.push_back(kTmpInside);
   EXPECT_EQ(Sandbox::start(job).wait().code, 126) << "as a shell says: found, and may not be run";
@@ -150,8 +164,10 @@ TEST_F(SandboxEnds, UsersAreNeitherTheGradersNorSharedByRuns) {
   if (!can_change_user()) GTEST_SKIP() << "this user cannot take another";
   const std::string mine = std::to_string(::getuid()) + "\n";
   EXPECT_NE(run("id -u").printed, mine);
-  if (traits_of(chosen_sandbox()).generations > 1) return;   // inside, namespaces show one number to all
-  Sandbox first = Sandbox::start(shell("id -u; sleep 1")), second = Sandbox::start(shell("id -u; sleep 1"));
+  // inside, namespaces show one number to all
+  if (traits_of(chosen_sandbox()).generations > 1) return;
+  Sandbox first = Sandbox::start(shell("id -u; sleep 1")),
+          second = Sandbox::start(shell("id -u; sleep 1"));
   EXPECT_NE(first.wait().printed, second.wait().printed);
 }
 
@@ -161,7 +177,7 @@ TEST_F(SandboxEnds, SandboxDiesWithItsOwner) {
   // The owner is killed; its keeper, adopted by this process, must notice and leave no process. At
   // any time: bubblewrap needs about 10 ms to set up the sandbox, and if it dies earlier its child
   // does not die with it.
-  constexpr int kTimes = 60, kApart = 250;   // us
+  constexpr int kTimes = 60, kApart = 250;  // us
   for (int i = 0; i < kTimes; ++i) {
     const pid_t owner = ::fork();
     if (owner == 0) {
@@ -182,14 +198,17 @@ TEST_F(SandboxEnds, StagesAreReadableOnlyByTheSandboxAndRemoved) {
     path = stage.add_text("secret", "deep");
     // The group is that of the job's user, which only its runs have.
     const auto others = std::filesystem::perms::others_all | std::filesystem::perms::group_write;
-    EXPECT_EQ(std::filesystem::status(path.parent_path()).permissions() & others, std::filesystem::perms::none);
+    EXPECT_EQ(std::filesystem::status(path.parent_path()).permissions() & others,
+              std::filesystem::perms::none);
   }
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST_F(SandboxEnds, StagesHaveTheirMakersProcessId) {
   // So that the next process can remove the stages of a killed one.
-  EXPECT_TRUE(stage_->path().filename().string().starts_with("tumble-stage-" + std::to_string(::getpid()) + "-")) << stage_->path();
+  EXPECT_TRUE(stage_->path().filename().string().starts_with("tumble-stage-" +
+                                                             std::to_string(::getpid()) + "-"))
+      << stage_->path();
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ TestResult timed_out(const std::string& function, double limit_s) {
   result.verdict = Verdict::kOutOfResources;
   result.last_call = function;
   result.timed_out_s = limit_s;
-  result.charged_s = limit_s + 0.7;   // measured on a loaded machine
+  result.charged_s = limit_s + 0.7;  // measured on a loaded machine
   return result;
 }
 
@@ -22,7 +22,7 @@ TEST(TimeBudget, TimeOutIsChargedItsLimitHoweverLongItTook) {
   TimeBudget budget({.budget_s = 10.0});
   budget.charge(timed_out("f", 5.0));
   EXPECT_FALSE(budget.is_used_up());
-  budget.charge(timed_out("f", 4.0));   // 10.4 s measured
+  budget.charge(timed_out("f", 4.0));  // 10.4 s measured
   EXPECT_FALSE(budget.is_used_up());
   budget.charge(timed_out("f", 1.0));
   EXPECT_TRUE(budget.is_used_up());
@@ -73,18 +73,23 @@ TEST(TimeBudget, TestThatIsNotRunHasAReason) {
   const TestResult result = budget.not_run("S.T");
   EXPECT_EQ(result.verdict, Verdict::kOutOfResources);
   EXPECT_TRUE(result.not_run);
-  EXPECT_EQ(result.story, "not run: the time budget of all tests together, 5 s, was used up by the tests before it; functions that ran out of time: f (1 test)");
+  EXPECT_EQ(result.story,
+            "not run: the time budget of all tests together, 5 s, was used up by the tests before "
+            "it; functions that ran out of time: f (1 test)");
 }
 
 TEST(TestWords, PatternWithoutMatchNamesTheNearest) {
-  const std::vector<std::string> tests = {"RayTriangle.Hits", "CollisionImpulse.Central", "ApplyImpulse.Turns"};
+  const std::vector<std::string> tests = {"RayTriangle.Hits", "CollisionImpulse.Central",
+                                          "ApplyImpulse.Turns"};
   EXPECT_EQ(chosen_tests(tests, "Ray*"), std::vector<std::string>{"RayTriangle.Hits"});
   EXPECT_EQ(chosen_tests(tests, ""), tests);
   try {
     chosen_tests(tests, "ColisionImpulse.*");
     ADD_FAILURE() << "selected tests";
   } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("Nearest: CollisionImpulse.Central"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("Nearest: CollisionImpulse.Central"),
+              std::string::npos)
+        << error.what();
   }
 }
 

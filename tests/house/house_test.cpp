@@ -1,5 +1,5 @@
-// The house rules of the design, read off the sources: knowledge runs one way and never in a circle, third parties stay in their
-// rooms, and the framework names no assignment and no solution.
+// The house rules of the design, read off the sources: knowledge runs one way and never in a
+// circle, third parties stay in their rooms, and the framework names no assignment and no solution.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -19,12 +19,15 @@ namespace fs = std::filesystem;
 const fs::path kRoot = TUMBLE_SOURCE_DIR;
 
 // Top to bottom: a folder includes only what stands above it (or itself).
-const std::vector<std::string> kFolders = {"core",    "geometry", "scene",  "dynamics", "collision", "trajectory", "effects",
-                                           "modules", "engines",  "render", "report",   "grading",   "cli"};
+const std::vector<std::string> kFolders = {
+    "core",    "geometry", "scene",  "dynamics", "collision", "trajectory", "effects",
+    "modules", "engines",  "render", "report",   "grading",   "cli"};
 
-// Rooms of two folders, in the same order. A file that lies beside the rooms is their entry: it may include all of them.
+// Rooms of two folders, in the same order. A file that lies beside the rooms is their entry: it may
+// include all of them.
 const std::map<std::string, std::vector<std::string>> kRooms = {
-    {"engines", {"base", "stepping", "contact", "judging", "rd", "events", "timewarp", "truths", "cost"}},
+    {"engines",
+     {"base", "stepping", "contact", "judging", "rd", "events", "timewarp", "truths", "cost"}},
     {"grading", {"verdicts", "test_program", "sandbox", "compiler", "worker", "course", "grades"}}};
 
 int rank_of(const std::string& folder) {
@@ -43,7 +46,8 @@ std::vector<fs::path> sources_below(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const auto extension = entry.path().extension();
-    if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp")) files.push_back(entry.path());
+    if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp"))
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -59,7 +63,8 @@ std::vector<Include> framework_includes() {
     for (int line = 1; std::getline(in, text); ++line) {
       std::smatch match;
       if (std::regex_search(text, match, include_line))
-        includes.push_back({relative.string(), std::next(relative.begin())->string(), line, match[1]});
+        includes.push_back(
+            {relative.string(), std::next(relative.begin())->string(), line, match[1]});
     }
   }
   return includes;
@@ -70,8 +75,9 @@ TEST(House, KnowledgeRunsDownTheTable) {
     if (!include.target.starts_with("framework/")) continue;
     const std::string target = std::next(fs::path(include.target).begin())->string();
     const int from = rank_of(include.folder), to = rank_of(target);
-    EXPECT_TRUE(to >= 0 && to <= from) << include.file << ':' << include.line << ": " << include.folder << " includes "
-                                       << include.target << ", which stands below it in the design's table";
+    EXPECT_TRUE(to >= 0 && to <= from)
+        << include.file << ':' << include.line << ": " << include.folder << " includes "
+        << include.target << ", which stands below it in the design's table";
   }
 }
 
@@ -88,13 +94,19 @@ TEST(House, RoomsIncludeOnlyWhatStandsAboveThem) {
     const std::vector<std::string>& rooms = kRooms.at(include.folder);
     const std::string from = room_of(include.file), to = room_of(include.target);
     if (from.empty()) continue;
-    // The entry is for those who stand on all of the engines: reference solutions of truths, and costs.
+    // The entry is for those who stand on all of the engines: reference solutions of truths, and
+    // costs.
     if (to.empty()) {
-      EXPECT_TRUE(from == "truths" || from == "cost") << include.file << ':' << include.line << ": a room includes the entry " << include.target;
+      EXPECT_TRUE(from == "truths" || from == "cost")
+          << include.file << ':' << include.line << ": a room includes the entry "
+          << include.target;
       continue;
     }
-    const auto from_at = std::find(rooms.begin(), rooms.end(), from), to_at = std::find(rooms.begin(), rooms.end(), to);
-    EXPECT_TRUE(from_at != rooms.end() && to_at <= from_at) << include.file << ':' << include.line << ": " << from << " includes " << include.target << ", which stands below it";
+    const auto from_at = std::find(rooms.begin(), rooms.end(), from),
+               to_at = std::find(rooms.begin(), rooms.end(), to);
+    EXPECT_TRUE(from_at != rooms.end() && to_at <= from_at)
+        << include.file << ':' << include.line << ": " << from << " includes " << include.target
+        << ", which stands below it";
   }
 }
 
@@ -125,19 +137,29 @@ std::string file_of(const std::string& file) { return file; }
 void expect_no_circle(const std::string& what, std::string (*part_of)(const std::string&)) {
   std::map<std::string, std::set<std::string>> edges;
   for (const Include& include : framework_includes())
-    if (include.target.starts_with("framework/") && part_of(include.file) != part_of(include.target)) edges[part_of(include.file)].insert(part_of(include.target));
-  for (const std::string& part : on_a_circle(edges)) ADD_FAILURE() << part << ": includes of " << what << " lead back to it";
+    if (include.target.starts_with("framework/") &&
+        part_of(include.file) != part_of(include.target))
+      edges[part_of(include.file)].insert(part_of(include.target));
+  for (const std::string& part : on_a_circle(edges))
+    ADD_FAILURE() << part << ": includes of " << what << " lead back to it";
 }
 
 TEST(House, IncludesOfFilesMakeNoCircle) { expect_no_circle("files", file_of); }
-TEST(House, IncludesOfUnitsMakeNoCircle) { expect_no_circle("headers with their sources", unit_of); }
+TEST(House, IncludesOfUnitsMakeNoCircle) {
+  expect_no_circle("headers with their sources", unit_of);
+}
 TEST(House, IncludesOfFoldersMakeNoCircle) { expect_no_circle("folders", folder_of); }
 
-// A forward declaration of what another folder defines is knowledge that no include shows: it may not look down the table either.
+// A forward declaration of what another folder defines is knowledge that no include shows: it may
+// not look down the table either.
 TEST(House, ForwardDeclarationsLookUpTheTable) {
-  static const std::regex declaration(R"(^\s*(?:class|struct)\s+(\w+)\s*;)"), definition(R"(^\s*(?:class|struct)\s+(\w+)\s*(?:final\s*)?(?::[^:]|\{|$))");
-  std::map<std::string, std::set<std::string>> defined_in;   // name -> files
-  struct Declared { std::string name, file; int line; };
+  static const std::regex declaration(R"(^\s*(?:class|struct)\s+(\w+)\s*;)"),
+      definition(R"(^\s*(?:class|struct)\s+(\w+)\s*(?:final\s*)?(?::[^:]|\{|$))");
+  std::map<std::string, std::set<std::string>> defined_in;  // name -> files
+  struct Declared {
+    std::string name, file;
+    int line;
+  };
   std::vector<Declared> declared;
   for (const fs::path& path : sources_below(kRoot / "framework")) {
     if (path.extension() != ".h") continue;
@@ -146,32 +168,42 @@ TEST(House, ForwardDeclarationsLookUpTheTable) {
     std::string text;
     std::smatch match;
     for (int line = 1; std::getline(in, text); ++line) {
-      if (std::regex_search(text, match, declaration)) declared.push_back({match[1], file, line});
-      else if (std::regex_search(text, match, definition)) defined_in[match[1]].insert(file);
+      if (std::regex_search(text, match, declaration))
+        declared.push_back({match[1], file, line});
+      else if (std::regex_search(text, match, definition))
+        defined_in[match[1]].insert(file);
     }
   }
-  const auto folder_rank = [](const std::string& file) { return rank_of(std::next(fs::path(file).begin())->string()); };
+  const auto folder_rank = [](const std::string& file) {
+    return rank_of(std::next(fs::path(file).begin())->string());
+  };
   for (const Declared& here : declared)
     for (const std::string& there : defined_in[here.name]) {
       if (defined_in[here.name].contains(here.file)) continue;
-      EXPECT_LE(folder_rank(there), folder_rank(here.file)) << here.file << ':' << here.line << " declares " << here.name << ", which " << there << " defines";
+      EXPECT_LE(folder_rank(there), folder_rank(here.file))
+          << here.file << ':' << here.line << " declares " << here.name << ", which " << there
+          << " defines";
       if (folder_of(here.file) == folder_of(there)) continue;
       const auto& rooms = kRooms.find(std::next(fs::path(here.file).begin())->string());
       if (rooms == kRooms.end() || folder_rank(here.file) != folder_rank(there)) continue;
-      const auto at = [&](const std::string& file) { return std::find(rooms->second.begin(), rooms->second.end(), room_of(file)); };
-      EXPECT_LE(at(there), at(here.file)) << here.file << ':' << here.line << " declares " << here.name << ", which " << there << " defines";
+      const auto at = [&](const std::string& file) {
+        return std::find(rooms->second.begin(), rooms->second.end(), room_of(file));
+      };
+      EXPECT_LE(at(there), at(here.file)) << here.file << ':' << here.line << " declares "
+                                          << here.name << ", which " << there << " defines";
     }
 }
 
 TEST(House, NeighboursDoNotIncludeEachOther) {
   const std::set<std::pair<std::string, std::string>> apart = {
-      {"dynamics", "collision"}, {"collision", "dynamics"}, {"render", "report"}, {"report", "render"},
-      {"render", "engines"},     {"report", "engines"}};
+      {"dynamics", "collision"}, {"collision", "dynamics"}, {"render", "report"},
+      {"report", "render"},      {"render", "engines"},     {"report", "engines"}};
   for (const Include& include : framework_includes()) {
     if (!include.target.starts_with("framework/")) continue;
     const std::string target = std::next(fs::path(include.target).begin())->string();
     EXPECT_FALSE(apart.contains({include.folder, target}))
-        << include.file << ':' << include.line << ": " << include.folder << " and " << target << " do not include each other";
+        << include.file << ':' << include.line << ": " << include.folder << " and " << target
+        << " do not include each other";
   }
 }
 
@@ -179,15 +211,20 @@ TEST(House, NeighboursDoNotIncludeEachOther) {
 TEST(House, AnEffectIsKnownOutsideItsFolderByTheInterfaceOnly) {
   for (const Include& include : framework_includes()) {
     const fs::path target(include.target);
-    if (!include.target.starts_with("framework/effects/") || std::distance(target.begin(), target.end()) < 4) continue;
-    EXPECT_EQ(include.folder, "effects") << include.file << ':' << include.line << " includes " << include.target;
-    EXPECT_NE(room_of(include.file), "") << include.file << ':' << include.line << ": what all effects share includes " << include.target;
+    if (!include.target.starts_with("framework/effects/") ||
+        std::distance(target.begin(), target.end()) < 4)
+      continue;
+    EXPECT_EQ(include.folder, "effects")
+        << include.file << ':' << include.line << " includes " << include.target;
+    EXPECT_NE(room_of(include.file), "") << include.file << ':' << include.line
+                                         << ": what all effects share includes " << include.target;
   }
 }
 
 TEST(House, FrameworkNamesNoAssignmentAndNoSolution) {
   for (const Include& include : framework_includes())
-    EXPECT_FALSE(include.target.starts_with("assignments/") || include.target.starts_with("solutions_private/"))
+    EXPECT_FALSE(include.target.starts_with("assignments/") ||
+                 include.target.starts_with("solutions_private/"))
         << include.file << ':' << include.line << " includes " << include.target;
 }
 
@@ -209,12 +246,14 @@ TEST(House, ThirdPartiesStayInTheirRooms) {
   for (const Include& include : framework_includes())
     for (const auto& [prefix, folders] : rooms)
       if (include.target.starts_with(prefix)) {
-        EXPECT_TRUE(folders.contains(include.folder)) << include.file << ':' << include.line << " includes " << include.target;
+        EXPECT_TRUE(folders.contains(include.folder))
+            << include.file << ':' << include.line << " includes " << include.target;
       }
 }
 
 TEST(House, HeavyHeadersStayOutOfOurHeaders) {
-  const std::vector<std::string> heavy = {"assimp/", "valijson/", "nlohmann/", "GL/", "EGL/", "png.h", "seccomp.h", "openssl/", "Eigen/Dense"};
+  const std::vector<std::string> heavy = {"assimp/", "valijson/", "nlohmann/", "GL/",        "EGL/",
+                                          "png.h",   "seccomp.h", "openssl/",  "Eigen/Dense"};
   const std::vector<Include> includes = framework_includes();
   // A header that only its own room includes is a part of that room's .cpp files.
   const auto leaves_its_room = [&](const Include& header) {
@@ -225,16 +264,20 @@ TEST(House, HeavyHeadersStayOutOfOurHeaders) {
   for (const Include& include : includes) {
     if (!include.file.ends_with(".h") || !leaves_its_room(include)) continue;
     for (const std::string& prefix : heavy)
-      EXPECT_FALSE(include.target.starts_with(prefix)) << include.file << ':' << include.line << " includes " << include.target;
+      EXPECT_FALSE(include.target.starts_with(prefix))
+          << include.file << ':' << include.line << " includes " << include.target;
   }
 }
 
 TEST(House, RootHoldsOnlyTheRoomsOfTheDesign) {
-  const std::set<std::string> rooms = {"framework", "assignments", "solutions_private", "tests", "models", "handouts", "build", "out"};
+  const std::set<std::string> rooms = {"framework", "assignments", "solutions_private",
+                                       "tests",     "models",      "handouts",
+                                       "build",     "out"};
   for (const auto& entry : fs::directory_iterator(kRoot)) {
     const std::string name = entry.path().filename().string();
     if (!entry.is_directory() || name.starts_with('.') || name.starts_with("build")) continue;
-    EXPECT_TRUE(rooms.contains(name)) << "a folder at the root that the design does not have: " << name;
+    EXPECT_TRUE(rooms.contains(name))
+        << "a folder at the root that the design does not have: " << name;
   }
 }
 

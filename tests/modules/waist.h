@@ -40,7 +40,8 @@ double call_back(const std::function<double(double)>& f, int calls);
 std::string attack(const std::string& what);
 /// A step of a method. `what` is "right" to call f with y and return a vector of the same size;
 /// "ask 0" calls f with 0 numbers, and "answer 3" returns 3.
-VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y, const std::string& what);
+VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y,
+              const std::string& what);
 /// Not implemented.
 double missing(double x);
 
@@ -51,7 +52,8 @@ TUMBLE_MODULE(waist, twice, echo, call_back, attack, missing, step);
 namespace tumble::waist {
 
 inline void describe(modules::AnswerSizes<Module>& sizes) {
-  sizes.add(&Module::step, [](const std::function<VectorXd(double, const VectorXd&)>&, const VectorXd& y, const std::string&) { return y.size(); });
+  sizes.add(&Module::step, [](const std::function<VectorXd(double, const VectorXd&)>&,
+                              const VectorXd& y, const std::string&) { return y.size(); });
 }
 
 }  // namespace tumble::waist

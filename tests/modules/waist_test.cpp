@@ -28,7 +28,8 @@ Everything sample() {
   value.turn = Quaterniond(0.5, -0.5, 0.5, -0.5);
   value.matrix = Eigen::MatrixXd::Random(3, 5);
   value.inner.resize(2);
-  value.inner[1] = {true, waist::Colour::kBlue, 0.25, Vector3d(1.0, -0.0, std::numeric_limits<double>::infinity())};
+  value.inner[1] = {true, waist::Colour::kBlue, 0.25,
+                    Vector3d(1.0, -0.0, std::numeric_limits<double>::infinity())};
   return value;
 }
 
@@ -54,13 +55,23 @@ TEST(Arguments, AreShownAlikeDirectlyAndFromBytes) {
   const std::vector<waist::Inner> list(6, {true, waist::Colour::kBlue, 0.25, Vector3d(1, -2, 0.5)});
   const std::function<double(double)> f = [](double x) { return x; };
   const Eigen::VectorXd long_vector = Eigen::VectorXd::LinSpaced(20, 1, 20);
-  const std::string shown = modules::show_arguments(f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
-  EXPECT_EQ(shown.substr(0, 85), "f, -3, \"a\", (0.5, -0.5, 0.5, -0.5), (20: 1, 2, 3, 4, 5, 6, 7, 8, ...), [6: {true, 7, ") << shown;
+  const std::string shown = modules::show_arguments(
+      f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
+  EXPECT_EQ(
+      shown.substr(0, 85),
+      "f, -3, \"a\", (0.5, -0.5, 0.5, -0.5), (20: 1, 2, 3, 4, 5, 6, 7, 8, ...), [6: {true, 7, ")
+      << shown;
   modules::Writer writer;
-  modules::write_arguments(writer, f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
+  modules::write_arguments(writer, f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5),
+                           long_vector, list);
   using Function = std::function<double(double)>;
-  EXPECT_EQ((modules::show_written_arguments<const Function&, int, const std::string&, const Quaterniond&, const Eigen::VectorXd&, const std::vector<waist::Inner>&>(writer.bytes)), shown);
-  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).size(), 700u);   // a story must stay readable
+  EXPECT_EQ(
+      (modules::show_written_arguments<const Function&, int, const std::string&, const Quaterniond&,
+                                       const Eigen::VectorXd&, const std::vector<waist::Inner>&>(
+          writer.bytes)),
+      shown);
+  // a story must stay readable
+  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).size(), 700u);
 }
 
 TEST(Wire, MessageCutAnywhereIsRefused) {
@@ -69,7 +80,8 @@ TEST(Wire, MessageCutAnywhereIsRefused) {
     const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     modules::Reader reader(cut);
     Everything back;
-    EXPECT_THROW(reader.value(back), modules::WireError) << size << " of " << bytes.size() << " bytes";
+    EXPECT_THROW(reader.value(back), modules::WireError)
+        << size << " of " << bytes.size() << " bytes";
   }
 }
 
@@ -88,7 +100,8 @@ TEST(Wire, MutatedMessagesAreReadOrRefusedAndNeverCrash) {
   std::mt19937 random(7);
   for (int i = 0; i < 20000; ++i) {
     Bytes bytes = right;
-    for (int k = 0; k < 3; ++k) bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    for (int k = 0; k < 3; ++k)
+      bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
     modules::Reader reader(bytes);
     Everything back;
     try {
@@ -117,10 +130,18 @@ class Loop : public modules::Connection {
   }
   Channel& begin_call(const char*) override { return *near_; }
   void count_callback() override { ++callbacks; }
-  Channel::Clock::time_point deadline() const override { return Channel::Clock::now() + std::chrono::seconds(10); }
-  void fail(const char* function, std::exception_ptr) override { throw std::runtime_error(std::string("no answer from ") + function); }
-  void refuse(const char* function, const std::string& what) override { throw std::runtime_error(function + (' ' + what)); }
-  void not_implemented(const char* function, const std::string& handout) override { throw NotImplemented(function, handout); }
+  Channel::Clock::time_point deadline() const override {
+    return Channel::Clock::now() + std::chrono::seconds(10);
+  }
+  void fail(const char* function, std::exception_ptr) override {
+    throw std::runtime_error(std::string("no answer from ") + function);
+  }
+  void refuse(const char* function, const std::string& what) override {
+    throw std::runtime_error(function + (' ' + what));
+  }
+  void not_implemented(const char* function, const std::string& handout) override {
+    throw NotImplemented(function, handout);
+  }
 
   int callbacks = 0;
 
@@ -143,7 +164,8 @@ TEST(Proxy, CallbacksRunInTheJudgeAndAreCounted) {
   Loop loop;
   const auto module = modules::make_proxy<waist::Module>(loop);
   int seen = 0;
-  EXPECT_EQ(module.call_back([&](double x) { return ++seen, 10.0 * x; }, 5), 100.0);  // 10 (0 + 1 + 2 + 3 + 4)
+  // 10 (0 + 1 + 2 + 3 + 4)
+  EXPECT_EQ(module.call_back([&](double x) { return ++seen, 10.0 * x; }, 5), 100.0);
   EXPECT_EQ(seen, 5);
   EXPECT_EQ(loop.callbacks, 5);
 }
@@ -151,7 +173,9 @@ TEST(Proxy, CallbacksRunInTheJudgeAndAreCounted) {
 TEST(Proxy, CallbackMayCallTheModuleAgain) {
   Loop loop;
   const auto module = modules::make_proxy<waist::Module>(loop);
-  const auto inner = [&](double x) { return module.call_back([&](double y) { return module.twice(x + y); }, 2); };
+  const auto inner = [&](double x) {
+    return module.call_back([&](double y) { return module.twice(x + y); }, 2);
+  };
   EXPECT_EQ(module.call_back(inner, 3), 18.0);  // sum over x = 0, 1, 2 and y = 0, 1 of 2 (x + y)
   EXPECT_EQ(module.twice(1.0), 2.0);
 }
@@ -174,7 +198,9 @@ std::string refusal_of(const waist::Module& module, const std::string& what) {
 
 TEST(Proxy, WrongSizesAreRefusedWithTheSizeNeeded) {
   for (const auto& [what, words] : std::map<std::string, std::string>{
-           {"ask 0", "step step: the derivative was called with 0 numbers, but 13 are needed (a vector that was never set has none)"},
+           {"ask 0",
+            "step step: the derivative was called with 0 numbers, but 13 are needed (a vector that "
+            "was never set has none)"},
            {"ask 14", "step step: the derivative was called with 14 numbers, but 13 are needed"},
            {"answer 0", "step step returned 0 numbers, but 13 are needed"},
            {"answer 100000", "step step returned 100000 numbers, but 13 are needed"}}) {
@@ -198,7 +224,9 @@ TEST(Channel, DeadlineCanBeExtendedAndThenPasses) {
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
   Channel channel(ends[0], ends[0]);
   int asked = 0;
-  channel.extend_by([&](Channel::Clock::time_point passed) { return ++asked < 3 ? Channel::Clock::now() + std::chrono::milliseconds(5) : passed; });
+  channel.extend_by([&](Channel::Clock::time_point passed) {
+    return ++asked < 3 ? Channel::Clock::now() + std::chrono::milliseconds(5) : passed;
+  });
   EXPECT_THROW(channel.receive(Channel::Clock::now()), modules::ChannelTimeout);
   EXPECT_EQ(asked, 3);
   ::close(ends[0]);
@@ -209,9 +237,11 @@ TEST(Channel, WaitWithoutAMessageEndsAtTheDeadline) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
   Channel channel(ends[0], ends[0]);
-  EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)), modules::ChannelTimeout);
+  EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)),
+               modules::ChannelTimeout);
   ::close(ends[1]);
-  EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)), modules::ChannelClosed);
+  EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)),
+               modules::ChannelClosed);
   ::close(ends[0]);
 }
 

@@ -1,4 +1,5 @@
-// What students get gives nothing away: the released tree is searched, byte for byte, for what only instructors may know.
+// What students get gives nothing away: the released tree is searched, byte for byte, for what only
+// instructors may know.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -45,7 +46,8 @@ class Release : public ::testing::Test {
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
   static int run(const std::string& words) {
-    const std::string command = "TUMBLE_ROOT='" + kRoot.string() + "' '" TUMBLE_BINARY_DIR "/bin/tumble' " + words;
+    const std::string command =
+        "TUMBLE_ROOT='" + kRoot.string() + "' '" TUMBLE_BINARY_DIR "/bin/tumble' " + words;
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -56,7 +58,9 @@ class Release : public ::testing::Test {
       const std::string& bytes = cached(file);
       const std::size_t at = bytes.find(text);
       if (at != std::string::npos)
-        return file.lexically_relative(folder_).string() + ":" + std::to_string(1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(at), '\n'));
+        return file.lexically_relative(folder_).string() + ":" +
+               std::to_string(
+                   1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(at), '\n'));
     }
     return "";
   }
@@ -87,11 +91,13 @@ std::set<std::string> hidden_tests() {
 
 TEST_F(Release, NamesNoHiddenTest) {
   const std::set<std::string> names = hidden_tests();
-  ASSERT_GT(names.size(), 20u) << "hidden tests were not found: this test would pass whatever a release holds";
+  ASSERT_GT(names.size(), 20u)
+      << "hidden tests were not found: this test would pass whatever a release holds";
   for (const std::string& name : names) EXPECT_EQ(where(name), "") << name;
 }
 
-// A known-wrong solution, whole or a slip, says in its first line `// mutant: NAME - slip`: neither the line nor the file's name is for students.
+// A known-wrong solution, whole or a slip, says in its first line `// mutant: NAME - slip`: neither
+// the line nor the file's name is for students.
 TEST_F(Release, NamesNoKnownWrongSolution) {
   int count = 0;
   for (const fs::path& file : files_below(kPrivate)) {
@@ -104,7 +110,8 @@ TEST_F(Release, NamesNoKnownWrongSolution) {
   EXPECT_GE(count, 16);
 }
 
-// Lines that carry code, without indentation. Braces alone, comments and includes say nothing about a solution.
+// Lines that carry code, without indentation. Braces alone, comments and includes say nothing about
+// a solution.
 std::vector<std::string> code_lines(const std::string& text) {
   std::vector<std::string> lines;
   std::size_t begin = 0;
@@ -113,15 +120,17 @@ std::vector<std::string> code_lines(const std::string& text) {
     const std::size_t first = text.find_first_not_of(" \t", begin);
     if (first < end) {
       const std::string line = text.substr(first, end - first);
-      if (line.size() > 2 && !line.starts_with("//") && !line.starts_with("#") && !line.starts_with("}  // namespace")) lines.push_back(line);
+      if (line.size() > 2 && !line.starts_with("//") && !line.starts_with("#") &&
+          !line.starts_with("}  // namespace"))
+        lines.push_back(line);
     }
     begin = end + 1;
   }
   return lines;
 }
 
-// Three lines of code in a row are somebody's work; fewer are the idiom of a language. Shorter than a line of text they
-// may be anybody's.
+// Three lines of code in a row are somebody's work; fewer are the idiom of a language. Shorter than
+// a line of text they may be anybody's.
 std::vector<std::string> passages(const std::string& text) {
   constexpr std::size_t kLines = 3, kCharacters = 80;
   const std::vector<std::string> lines = code_lines(text);
@@ -133,14 +142,17 @@ std::vector<std::string> passages(const std::string& text) {
   return found;
 }
 
-// What a slip (NAME.slip) puts in, with the lines around it: its first column is a mark, and what it takes out is its base's.
+// What a slip (NAME.slip) puts in, with the lines around it: its first column is a mark, and what
+// it takes out is its base's.
 std::string put_in(const std::string& slip) {
   std::istringstream in(slip);
   std::string text;
   bool in_block = false;
   for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("@@")) in_block = true;
-    else if (in_block && !line.empty() && line.front() != '-') text += line.substr(1) + '\n';
+    if (line.starts_with("@@"))
+      in_block = true;
+    else if (in_block && !line.empty() && line.front() != '-')
+      text += line.substr(1) + '\n';
   }
   return text;
 }
@@ -148,17 +160,24 @@ std::string put_in(const std::string& slip) {
 TEST_F(Release, HoldsNoPassageOfASolution) {
   std::map<std::string, std::string> released;  // passage, file
   for (const fs::path& file : files_below(folder_))
-    for (const std::string& passage : passages(cached(file))) released.emplace(passage, file.lexically_relative(folder_).string());
+    for (const std::string& passage : passages(cached(file)))
+      released.emplace(passage, file.lexically_relative(folder_).string());
   ASSERT_GT(released.size(), 1000u);
   int searched = 0;
   for (const fs::path& file : files_below(kPrivate)) {
     // The flawed submission is a student's file: what it left of the stub is the stub.
     const bool is_slip = file.extension() == ".slip";
-    if ((file.extension() != ".cpp" && !is_slip) || file.string().find("/flawed_submission/") != std::string::npos || file.parent_path().filename() == "tests") continue;
-    for (const std::string& passage : passages(is_slip ? put_in(contents_of(file)) : contents_of(file))) {
+    if ((file.extension() != ".cpp" && !is_slip) ||
+        file.string().find("/flawed_submission/") != std::string::npos ||
+        file.parent_path().filename() == "tests")
+      continue;
+    for (const std::string& passage :
+         passages(is_slip ? put_in(contents_of(file)) : contents_of(file))) {
       ++searched;
       const auto it = released.find(passage);
-      if (it != released.end()) ADD_FAILURE() << it->second << " holds, from " << file.lexically_relative(kRoot) << ":\n" << passage;
+      if (it != released.end())
+        ADD_FAILURE() << it->second << " holds, from " << file.lexically_relative(kRoot) << ":\n"
+                      << passage;
     }
   }
   EXPECT_GT(searched, 1000);
@@ -167,7 +186,9 @@ TEST_F(Release, HoldsNoPassageOfASolution) {
 TEST_F(Release, HoldsNoPrivateFolderAndNoBuild) {
   for (const fs::path& file : files_below(folder_)) {
     const std::string first = file.lexically_relative(folder_).begin()->string();
-    EXPECT_TRUE(first != "solutions_private" && first != ".git" && first != "out" && !first.starts_with("build")) << file;
+    EXPECT_TRUE(first != "solutions_private" && first != ".git" && first != "out" &&
+                !first.starts_with("build"))
+        << file;
   }
   EXPECT_TRUE(fs::exists(folder_ / "assignments/a1_impulse/a1_impulse.cpp"));
   EXPECT_TRUE(fs::exists(folder_ / "handouts/a1_impulse.md"));
@@ -178,7 +199,8 @@ TEST_F(Release, TheReadmeIsTheStudents) {
   EXPECT_EQ(readme, contents_of(kRoot / "assignments/README.md"));
   EXPECT_FALSE(fs::exists(folder_ / "assignments/README.md"));
   EXPECT_LT(readme.find("./tumble check a1"), 800u) << "what to type first does not come first";
-  for (const char* of_others : {"./tumble demo", "./tumble grade", "./tumble audit", "./tumble release", "reference,", "=reference"})
+  for (const char* of_others : {"./tumble demo", "./tumble grade", "./tumble audit",
+                                "./tumble release", "reference,", "=reference"})
     EXPECT_EQ(readme.find(of_others), std::string::npos) << of_others;
 }
 
@@ -187,9 +209,11 @@ TEST_F(Release, TheReadmesCommandsAreKnown) {
   static const std::regex command(R"(\n\./tumble (\w+)(?: ([\w./]+))?)");
   const std::string readme = contents_of(folder_ / "README.md");
   int count = 0;
-  for (std::sregex_iterator it(readme.begin(), readme.end(), command), end; it != end; ++it, ++count) {
+  for (std::sregex_iterator it(readme.begin(), readme.end(), command), end; it != end;
+       ++it, ++count) {
     const std::string verb = (*it)[1], what = (*it)[2];
-    EXPECT_TRUE(verb == "test" || fs::exists(folder_ / "framework/cli/help" / (verb + ".txt"))) << verb;
+    EXPECT_TRUE(verb == "test" || fs::exists(folder_ / "framework/cli/help" / (verb + ".txt")))
+        << verb;
     if (what.find('/') != std::string::npos) EXPECT_TRUE(fs::exists(folder_ / what)) << what;
   }
   EXPECT_GT(count, 15);
@@ -199,8 +223,10 @@ TEST_F(Release, PublishPutsTheReferenceWhereTheStubWas) {
   const fs::path published = folder_.string() + "-published";
   fs::remove_all(published);
   ASSERT_EQ(run("release '" + published.string() + "' --publish a1 --no-build > /dev/null"), 0);
-  EXPECT_EQ(contents_of(published / "assignments/a1_impulse/a1_impulse.cpp"), contents_of(kPrivate / "a1_impulse/a1_impulse.cpp"));
-  EXPECT_EQ(contents_of(published / "assignments/a2_integration/a2_integration.cpp"), contents_of(kRoot / "assignments/a2_integration/a2_integration.cpp"));
+  EXPECT_EQ(contents_of(published / "assignments/a1_impulse/a1_impulse.cpp"),
+            contents_of(kPrivate / "a1_impulse/a1_impulse.cpp"));
+  EXPECT_EQ(contents_of(published / "assignments/a2_integration/a2_integration.cpp"),
+            contents_of(kRoot / "assignments/a2_integration/a2_integration.cpp"));
   fs::remove_all(published);
 }
 

@@ -17,7 +17,8 @@ namespace {
 /// hinge through its centre.
 scene::Scene hung_ball() {
   scene::Scene scene = falling_ball();
-  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
+  scene.effects.of<effects::SpringSpec>() = {
+      {"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
   scene.effects.of<effects::RodSpec>() = {{"rod", {"", {1, 0, 2.5}}, {"ball", {0.3, 0, 0}}, 1.0}};
   effects::JointSpec hinge;
   hinge.kind = effects::JointKind::kHinge;
@@ -28,10 +29,12 @@ scene::Scene hung_ball() {
   return scene;
 }
 
-SceneLinks links_of(const scene::Scene& scene, const Trajectory& run) { return {scene, run.frames.front(), 6.0, {0.3, 0.0}}; }
+SceneLinks links_of(const scene::Scene& scene, const Trajectory& run) {
+  return {scene, run.frames.front(), 6.0, {0.3, 0.0}};
+}
 
 TEST(Links, FollowTheirBodies) {
-  const Trajectory run = ball_at(2.0);   // falls by 0.5 m in its second frame
+  const Trajectory run = ball_at(2.0);  // falls by 0.5 m in its second frame
   const SceneLinks links = links_of(hung_ball(), run);
   for (const Frame& frame : run.frames) {
     const auto now = links.at(frame);
@@ -40,7 +43,8 @@ TEST(Links, FollowTheirBodies) {
     EXPECT_EQ(now[0].a_world, Vector3d(0, 0, 2.5));
     EXPECT_EQ(now[0].b_world, com + Vector3d(0, 0, 0.3));
     EXPECT_EQ(now[1].b_world, com + Vector3d(0.3, 0, 0));
-    EXPECT_LT((0.5 * (now[2].a_world + now[2].b_world) - com).norm(), 1e-12) << "a few roundings of numbers near 1";
+    EXPECT_LT((0.5 * (now[2].a_world + now[2].b_world) - com).norm(), 1e-12)
+        << "a few roundings of numbers near 1";
     EXPECT_EQ(now[2].kind, LinkKind::kHinge);
   }
 }
@@ -82,8 +86,11 @@ TEST(Links, SurfacesAreOrientedOutward) {
       const float* p = geometry.vertices[geometry.indices[i]].position;
       return Vector3d(p[0], p[1], p[2]);
     };
-    for (std::size_t i = 0; i < geometry.indices.size(); i += 3) volume += at(i).dot(at(i + 1).cross(at(i + 2)));
-    for (const Vertex& vertex : geometry.vertices) farthest = std::max(farthest, static_cast<double>(std::hypot(vertex.position[0], vertex.position[1])));
+    for (std::size_t i = 0; i < geometry.indices.size(); i += 3)
+      volume += at(i).dot(at(i + 1).cross(at(i + 2)));
+    for (const Vertex& vertex : geometry.vertices)
+      farthest = std::max(farthest,
+                          static_cast<double>(std::hypot(vertex.position[0], vertex.position[1])));
     EXPECT_GT(volume, 0.01);
     EXPECT_LE(farthest, 1.001);
   }
@@ -92,7 +99,8 @@ TEST(Links, SurfacesAreOrientedOutward) {
 TEST(Links, AreVisibleInThePicture) {
   PictureOptions options = small();
   options.captions = options.paths = false;
-  const Image with = make_picture(hung_ball(), ball_at(1.2), 0.0, options), without = make_picture(falling_ball(), ball_at(1.2), 0.0, options);
+  const Image with = make_picture(hung_ball(), ball_at(1.2), 0.0, options),
+              without = make_picture(falling_ball(), ball_at(1.2), 0.0, options);
   const View view = view_of(falling_ball().camera);
   const auto differs = [&](const Vector3d& place) {
     const auto at = project(view, options.width, options.height, place);
@@ -101,7 +109,7 @@ TEST(Links, AreVisibleInThePicture) {
     return std::abs(a[0] - b[0]) > 25;
   };
   EXPECT_TRUE(differs({0.65, 0, 1.85})) << "the middle of the rod";
-  int seen = 0;   // at each point some turns of the coil cross in front of its axis
+  int seen = 0;  // at each point some turns of the coil cross in front of its axis
   for (double z = 1.55; z < 2.4; z += 0.02) seen += differs({0, 0, z});
   EXPECT_GT(seen, 5);
 }

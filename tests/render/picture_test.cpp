@@ -16,7 +16,8 @@ namespace tumble::render {
 namespace {
 
 std::string png_bytes() {
-  const auto file = std::filesystem::temp_directory_path() / ("tumble_picture_" + std::to_string(getpid()) + ".png");
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("tumble_picture_" + std::to_string(getpid()) + ".png");
   write_picture(file, falling_ball(), ball_at(2.0), 0.5, small());
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};

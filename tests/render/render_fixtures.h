@@ -24,10 +24,14 @@ inline scene::Scene falling_ball() {
 }
 
 inline Trajectory ball_at(double height) {
-  const auto at = [](double z) { return BodyPose{{0, 0, z}, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()}; };
+  const auto at = [](double z) {
+    return BodyPose{{0, 0, z}, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+  };
   Trajectory run;
   run.bodies = {{"ball", false}, {"floor", true}};
-  for (const double t : {0.0, 0.5}) run.frames.push_back({t, {at(height - t), at(0)}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1, {}, {}, {}, {}});
+  for (const double t : {0.0, 0.5})
+    run.frames.push_back(
+        {t, {at(height - t), at(0)}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1, {}, {}, {}, {}});
   return run;
 }
 

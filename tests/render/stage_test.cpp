@@ -12,7 +12,8 @@
 namespace tumble::render {
 namespace {
 
-const BodyPose kAtOrigin{Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+const BodyPose kAtOrigin{Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
+                         Vector3d::Zero()};
 
 PictureOptions as_shown() {
   PictureOptions options;
@@ -26,7 +27,9 @@ PictureOptions as_shown() {
 TEST(Stage, ScaleBarIsWhereNoWallHidesIt) {
   scene::Scene scene = falling_ball();
   scene.grid_spacing_m = 0.5;
-  const auto middle_of_bar = [](const Stage& stage) { return stage.moment(0).labels.back().point_world; };
+  const auto middle_of_bar = [](const Stage& stage) {
+    return stage.moment(0).labels.back().point_world;
+  };
   const Trajectory alone = ball_at(2.0);
   const Vector3d wanted = middle_of_bar(Stage(scene, alone, as_shown()));
 
@@ -53,8 +56,9 @@ TEST(Stage, ScaleBarIsWhereNoWallHidesIt) {
 // A ball moves along x and reverses after 1003 steps; the path shows every twelfth of 2006 frames,
 // and the corner too.
 TEST(Stage, PathHasTheCornersOfTheMotion) {
-  constexpr int kCorner = 1003;      // not a multiple of the stride of frames
-  constexpr double kStride = 1e-2;   // m: more than the width of a line, below which a path is simplified
+  constexpr int kCorner = 1003;  // not a multiple of the stride of frames
+  // m: more than the width of a line, below which a path is simplified
+  constexpr double kStride = 1e-2;
   const scene::Scene scene = falling_ball();
   Trajectory run = ball_at(1.0);
   const Frame first = run.frames.front();
@@ -65,13 +69,17 @@ TEST(Stage, PathHasTheCornersOfTheMotion) {
     frame.poses[0].com_world = {kStride * (kCorner - std::abs(i - kCorner)), 0, 1};
     run.frames.push_back(frame);
   }
-  run.events.push_back({kCorner, EventKind::kCollision, 0, 1, {10.3, 0, 1}, {-1, 0, 0}, 1.0, -1.0, 1.0});
+  run.events.push_back(
+      {kCorner, EventKind::kCollision, 0, 1, {10.3, 0, 1}, {-1, 0, 0}, 1.0, -1.0, 1.0});
   double farthest = 0.0;
-  for (const Batch& batch : Stage(scene, run, as_shown()).moment(run.frames.size() - 1).drawing.batches)
+  for (const Batch& batch :
+       Stage(scene, run, as_shown()).moment(run.frames.size() - 1).drawing.batches)
     if (batch.geometry == kTube && batch.pass == Pass::kLine)
       for (const Instance& piece : batch.instances)
-        if (piece.world_from_local[11] > 0.5f)   // at the ball's height, so not the scale bar
-          farthest = std::max({farthest, double(piece.world_from_local[3]), double(piece.world_from_local[3]) + double(piece.world_from_local[2])});
+        if (piece.world_from_local[11] > 0.5f)  // at the ball's height, so not the scale bar
+          farthest =
+              std::max({farthest, double(piece.world_from_local[3]),
+                        double(piece.world_from_local[3]) + double(piece.world_from_local[2])});
   // Single precision at 10 m; without the frames at the corner the result would be 5e-2 m less.
   EXPECT_NEAR(farthest, kStride * kCorner, 1e-5);
 }

@@ -25,7 +25,9 @@ namespace fs = std::filesystem;
 /// A temporary folder for each test.
 class Pictures : public ::testing::Test {
  protected:
-  Pictures() : folder_(fs::temp_directory_path() / ("tumble_render_" + std::to_string(getpid()))) { fs::create_directories(folder_); }
+  Pictures() : folder_(fs::temp_directory_path() / ("tumble_render_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
   ~Pictures() override { fs::remove_all(folder_); }
 
   static std::string output_of(const std::string& command) {
@@ -41,7 +43,8 @@ class Pictures : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   std::string probe(const fs::path& video, const std::string& entries) const {
-    return output_of("ffprobe -v error -count_frames -select_streams v:0 -show_entries " + entries + " -of csv=p=0 '" + video.string() + "'");
+    return output_of("ffprobe -v error -count_frames -select_streams v:0 -show_entries " + entries +
+                     " -of csv=p=0 '" + video.string() + "'");
   }
 
   fs::path folder_;
@@ -53,7 +56,8 @@ TEST_F(Pictures, VideoHasAFrameForEveryInstantAndHoldsTheLast) {
   write_video(folder_ / "v.mp4", falling_ball(), ball_at(2.0), options);
   // 0.5 s at 10 Hz are six frames with both ends; the last one is held for half a second, five
   // more.
-  EXPECT_EQ(probe(folder_ / "v.mp4", "stream=codec_name,width,height,nb_read_frames"), "h264,160,120,11\n");
+  EXPECT_EQ(probe(folder_ / "v.mp4", "stream=codec_name,width,height,nb_read_frames"),
+            "h264,160,120,11\n");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "a draft was left behind";
 }
 
@@ -69,17 +73,21 @@ TEST_F(Pictures, SideBySideIsAsWideAsBothAndEachSideShowsItsRun) {
   const Trajectory high = ball_at(2.0), low = ball_at(1.0);
   PictureOptions options = small();
   options.captions = false;
-  write_side_by_side_video(folder_ / "v.mp4", falling_ball(), {{high, "submission"}, {low, "reference"}}, options);
+  write_side_by_side_video(folder_ / "v.mp4", falling_ball(),
+                           {{high, "submission"}, {low, "reference"}}, options);
   EXPECT_EQ(probe(folder_ / "v.mp4", "stream=width,height"), "322,120\n");
   // The picture changes where the second run does: each half is drawn from its own run.
-  write_side_by_side_picture(folder_ / "same.png", falling_ball(), {{high, ""}, {high, ""}}, 0.0, options);
-  write_side_by_side_picture(folder_ / "other.png", falling_ball(), {{high, ""}, {low, ""}}, 0.0, options);
+  write_side_by_side_picture(folder_ / "same.png", falling_ball(), {{high, ""}, {high, ""}}, 0.0,
+                             options);
+  write_side_by_side_picture(folder_ / "other.png", falling_ball(), {{high, ""}, {low, ""}}, 0.0,
+                             options);
   EXPECT_NE(bytes_of(folder_ / "same.png"), bytes_of(folder_ / "other.png"));
 }
 
 TEST_F(Pictures, ContactSheetIsAGridOfHalfSizeViews) {
   write_contact_sheet(folder_ / "s.png", falling_ball(), ball_at(2.0), 9, small());
-  EXPECT_EQ(probe(folder_ / "s.png", "stream=width,height"), "244,184\n");   // 3 x 80 + 2 x 2, 3 x 60 + 2 x 2
+  // 3 x 80 + 2 x 2, 3 x 60 + 2 x 2
+  EXPECT_EQ(probe(folder_ / "s.png", "stream=width,height"), "244,184\n");
 }
 
 TEST_F(Pictures, VideoThatCannotBeWrittenGivesAReasonAndLeavesNothing) {
@@ -87,7 +95,8 @@ TEST_F(Pictures, VideoThatCannotBeWrittenGivesAReasonAndLeavesNothing) {
     write_video("/proc/no-such-place/v.mp4", falling_ball(), ball_at(2.0), small());
     FAIL() << "was accepted";
   } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("/proc/no-such-place"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("/proc/no-such-place"), std::string::npos)
+        << error.what();
   }
 }
 
@@ -98,7 +107,8 @@ TEST_F(Pictures, WithoutFfmpegTheErrorNamesIt) {
     write_video(folder_ / "v.mp4", falling_ball(), ball_at(2.0), small());
     ADD_FAILURE() << "was accepted";
   } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("ffmpeg is not installed"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("ffmpeg is not installed"), std::string::npos)
+        << error.what();
   }
   setenv("PATH", path.c_str(), 1);
   EXPECT_TRUE(fs::is_empty(folder_));
@@ -108,8 +118,11 @@ TEST_F(Pictures, TellingInstantIsJustAfterTheStrongestImpact) {
   Trajectory run = ball_at(2.0);
   EXPECT_DOUBLE_EQ(telling_instant(run), 0.5 / 3);
   run.frames.clear();
-  for (int i = 0; i <= 10; ++i) run.frames.push_back({i * 0.1, {}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1, {}, {}, {}, {}});
-  run.events = {{0.2, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitZ(), 1.0, -1.0}, {0.4, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitZ(), 3.0, -1.0}};
+  for (int i = 0; i <= 10; ++i)
+    run.frames.push_back(
+        {i * 0.1, {}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1, {}, {}, {}, {}});
+  run.events = {{0.2, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitZ(), 1.0, -1.0},
+                {0.4, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitZ(), 3.0, -1.0}};
   EXPECT_DOUBLE_EQ(telling_instant(run), 0.6);
 }
 
@@ -123,10 +136,12 @@ TEST_F(Pictures, EglAndOsmesaDrawTheSamePicture) {
   }
   ASSERT_EQ(egl.rgb.size(), osmesa.rgb.size());
   std::size_t differing = 0;
-  for (std::size_t i = 0; i < egl.rgb.size(); ++i) differing += std::abs(egl.rgb[i] - osmesa.rgb[i]) > 8;
+  for (std::size_t i = 0; i < egl.rgb.size(); ++i)
+    differing += std::abs(egl.rgb[i] - osmesa.rgb[i]) > 8;
   // They may round colours and rasterise triangles' edges differently: one pixel in a hundred.
   EXPECT_LT(differing, osmesa.rgb.size() / 100);
-  EXPECT_GT(std::set<std::uint8_t>(osmesa.rgb.begin(), osmesa.rgb.end()).size(), 50u) << "the picture is blank";
+  EXPECT_GT(std::set<std::uint8_t>(osmesa.rgb.begin(), osmesa.rgb.end()).size(), 50u)
+      << "the picture is blank";
 }
 
 // The rasteriser reads its number of threads once per process: the test starts a process for each
@@ -140,8 +155,9 @@ TEST_F(Pictures, ThreadsOfTheRasteriserChangeNoByte) {
   std::set<std::string> pictures;
   for (const std::string threads : {"0", "1", "2"}) {
     const fs::path file = folder_ / (threads + ".png");
-    const std::string command = "LP_NUM_THREADS=" + threads + " TUMBLE_TEST_PICTURE='" + file.string() + "' '" + self +
-                                "' --gtest_filter=Pictures.ThreadsOfTheRasteriserChangeNoByte > /dev/null";
+    const std::string command =
+        "LP_NUM_THREADS=" + threads + " TUMBLE_TEST_PICTURE='" + file.string() + "' '" + self +
+        "' --gtest_filter=Pictures.ThreadsOfTheRasteriserChangeNoByte > /dev/null";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
     pictures.insert(bytes_of(file));
   }
@@ -156,10 +172,13 @@ TEST_F(Pictures, ShadowReachesTheGroundFarBelow) {
   scene::Scene scene = falling_ball();
   scene.camera.eye_m = {0, -1, 12};
   scene.camera.target_m = {0, 0, 0};
-  const Image low = make_picture(scene, ball_at(0.8), 0.0, options), high = make_picture(scene, ball_at(6.0), 0.0, options);
+  const Image low = make_picture(scene, ball_at(0.8), 0.0, options),
+              high = make_picture(scene, ball_at(6.0), 0.0, options);
   const auto dark = [](const Image& image) {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < image.rgb.size(); i += 3) count += image.rgb[i] < 170 && std::abs(image.rgb[i] - image.rgb[i + 1]) < 12 && std::abs(image.rgb[i] - image.rgb[i + 2]) < 20;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+      count += image.rgb[i] < 170 && std::abs(image.rgb[i] - image.rgb[i + 1]) < 12 &&
+               std::abs(image.rgb[i] - image.rgb[i + 2]) < 20;
     return count;
   };
   EXPECT_GT(dark(low), 20u);

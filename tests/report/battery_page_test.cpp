@@ -61,19 +61,24 @@ TEST(BatteryRows, ShortfallThatHoldsIsReported) {
   row.measures = {at_most(1e-9, 1e-3)};
   row.measures[0].shortfall = "was not reached";
   EXPECT_EQ(outcome_of(row), Outcome::kHolds);
-  EXPECT_NE(sentence_of(count_of({row})).find("1 listed as shortfalls hold here"), std::string::npos);
+  EXPECT_NE(sentence_of(count_of({row})).find("1 listed as shortfalls hold here"),
+            std::string::npos);
 }
 
 TEST(BatteryPage, ShowsEveryCaseWithItsReasons) {
-  BatteryRow holds{1, "stack", "Boxes <one> on another.", {at_most(1e-9, 1e-3)}, {}}, pending{2, "timewarp", "Rollback.", {}, {}, "there is no timewarp yet"};
+  BatteryRow holds{1, "stack", "Boxes <one> on another.", {at_most(1e-9, 1e-3)}, {}},
+      pending{2, "timewarp", "Rollback.", {}, {}, "there is no timewarp yet"};
   holds.measures.push_back(at_most(1.0, 1e-3));
   holds.measures[1].shortfall = "edges have no normal";
   holds.plots.push_back({"plot", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}});
   const PrivateFolder folder;
-  write_battery_page({holds, pending}, "short runs", "tumble battery", folder.path() / "battery.html");
+  write_battery_page({holds, pending}, "short runs", "tumble battery",
+                     folder.path() / "battery.html");
   std::ifstream file(folder.path() / "battery.html");
   const std::string html(std::istreambuf_iterator<char>(file), {});
-  for (const char* words : {"SHORT", "edges have no normal", "there is no timewarp yet", "Boxes &lt;one&gt; on another.", "<svg", "short runs", "tumble battery", "href=\"#case-1\"", "id=\"case-1\""})
+  for (const char* words : {"SHORT", "edges have no normal", "there is no timewarp yet",
+                            "Boxes &lt;one&gt; on another.", "<svg", "short runs", "tumble battery",
+                            "href=\"#case-1\"", "id=\"case-1\""})
     EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 

@@ -20,7 +20,10 @@ namespace tumble::testing {
 struct Screen {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
-  const std::uint8_t* at(int x, int y) const { return &rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))]; }
+  const std::uint8_t* at(int x, int y) const {
+    return &rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x))];
+  }
 };
 
 class Browser {
@@ -45,12 +48,15 @@ class Browser {
 
   Screen screenshot(const std::string& address, int width, int height) {
     const std::filesystem::path out = folder_.path() / "screen.png";
-    run("--window-size=" + std::to_string(width) + "," + std::to_string(height) + " --screenshot=" + out.string() + " '" + address + "'");
+    run("--window-size=" + std::to_string(width) + "," + std::to_string(height) +
+        " --screenshot=" + out.string() + " '" + address + "'");
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_file(&image, out.c_str())) throw std::runtime_error("the browser wrote no picture");
+    if (!png_image_begin_read_from_file(&image, out.c_str()))
+      throw std::runtime_error("the browser wrote no picture");
     image.format = PNG_FORMAT_RGB;
-    Screen screen{static_cast<int>(image.width), static_cast<int>(image.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
+    Screen screen{static_cast<int>(image.width), static_cast<int>(image.height),
+                  std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
     png_image_finish_read(&image, nullptr, screen.rgb.data(), 0, nullptr);
     return screen;
   }
@@ -59,9 +65,12 @@ class Browser {
   // --virtual-time-budget: the page's clock advances 4 s, as fast as its work allows. WebGL is
   // rendered in software.
   void run(const std::string& what) {
-    const std::string command = "timeout 100 chromium --headless --no-sandbox --disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync "
-                                "--use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --hide-scrollbars --virtual-time-budget=4000 --user-data-dir=" +
-                                (folder_.path() / "profile").string() + " " + what + " 2>/dev/null";
+    const std::string command =
+        "timeout 100 chromium --headless --no-sandbox --disable-quic --no-first-run "
+        "--disable-background-networking --disable-component-update --disable-sync "
+        "--use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --hide-scrollbars "
+        "--virtual-time-budget=4000 --user-data-dir=" +
+        (folder_.path() / "profile").string() + " " + what + " 2>/dev/null";
     if (std::system(command.c_str()) != 0) throw std::runtime_error("chromium failed: " + command);
   }
 
@@ -70,7 +79,8 @@ class Browser {
 
 /// Value of a data attribute of the body element, e.g. "ready"; empty where there is none.
 inline std::string body_data(const std::string& elements, const std::string& name) {
-  const std::size_t body = elements.find("<body"), end = elements.find('>', body), at = elements.find("data-" + name + "=\"", body);
+  const std::size_t body = elements.find("<body"), end = elements.find('>', body),
+                    at = elements.find("data-" + name + "=\"", body);
   if (at == std::string::npos || at > end) return "";
   const std::size_t from = at + name.size() + 7;
   return elements.substr(from, elements.find('"', from) - from);

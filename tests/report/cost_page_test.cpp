@@ -18,7 +18,8 @@ CostCurve counting(const std::string& name, const std::string& counted) {
   CostCurve curve;
   curve.name = name;
   curve.counted = counted;
-  curve.points = {{"1/60 s", 1.0 / 60.0, 1e-2, 0.1, 100.0, ""}, {"1/120 s", 1.0 / 120.0, 1e-3, 0.2, 200.0, ""}};
+  curve.points = {{"1/60 s", 1.0 / 60.0, 1e-2, 0.1, 100.0, ""},
+                  {"1/120 s", 1.0 / 120.0, 1e-3, 0.2, 200.0, ""}};
   return curve;
 }
 
@@ -39,16 +40,20 @@ std::vector<std::string> drawn_in(const Plot& plot) {
 }
 
 TEST(CostPage, NamesTheCommonCountedQuantity) {
-  const std::vector<Plot> plots = plots_of_evaluations(page_of({counting("sweeps", "contact sweeps"), counting("newton", "contact sweeps")}));
+  const std::vector<Plot> plots = plots_of_evaluations(
+      page_of({counting("sweeps", "contact sweeps"), counting("newton", "contact sweeps")}));
   ASSERT_EQ(plots.size(), 1u);
   EXPECT_EQ(plots[0].x.name, "contact sweeps");
   EXPECT_EQ(drawn_in(plots[0]), (std::vector<std::string>{"sweeps", "newton"}));
 }
 
 TEST(CostPage, DrawsOnePlotPerCountedQuantity) {
-  const std::vector<Plot> plots = plots_of_evaluations(page_of({counting("RK4", ""), counting("bisection", "gaps looked at"), counting("Euler", "derivatives asked for")}));
+  const std::vector<Plot> plots =
+      plots_of_evaluations(page_of({counting("RK4", ""), counting("bisection", "gaps looked at"),
+                                    counting("Euler", "derivatives asked for")}));
   ASSERT_EQ(plots.size(), 2u);
-  EXPECT_EQ(plots[0].x.name, "derivatives asked for");   // the page's quantity, unless a curve has its own
+  // the page's quantity, unless a curve has its own
+  EXPECT_EQ(plots[0].x.name, "derivatives asked for");
   EXPECT_EQ(drawn_in(plots[0]), (std::vector<std::string>{"RK4", "Euler"}));
   EXPECT_EQ(plots[1].x.name, "gaps looked at");
   EXPECT_EQ(drawn_in(plots[1]), (std::vector<std::string>{"bisection"}));
@@ -84,7 +89,7 @@ TEST(CostPage, ShowsSharesOfTheTimeInPercent) {
   const std::string html = written(page_of({curve}));
   EXPECT_NE(html.find(">75<"), std::string::npos);
   EXPECT_NE(html.find(">25<"), std::string::npos);
-  EXPECT_EQ(html.find(">impulses<"), std::string::npos);   // a stage without time is left out
+  EXPECT_EQ(html.find(">impulses<"), std::string::npos);  // a stage without time is left out
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ using namespace report;
 
 constexpr double kRounding = 1e-12;
 
-EngineRow row_of(const std::string& engine, const std::string& label, int bodies, double cpu_s, std::uint64_t integrations) {
+EngineRow row_of(const std::string& engine, const std::string& label, int bodies, double cpu_s,
+                 std::uint64_t integrations) {
   EngineRow row;
   row.engine = engine;
   row.label = label;
@@ -33,28 +34,34 @@ EngineRow row_of(const std::string& engine, const std::string& label, int bodies
 }
 
 std::vector<std::vector<EngineRow>> ladder() {
-  return {{row_of("rd", "RD-1/30", 100, 3.0, 100000), row_of("ca", "CA", 100, 0.5, 50000), row_of("tw", "TW", 100, 0.1, 4000)},
+  return {{row_of("rd", "RD-1/30", 100, 3.0, 100000), row_of("ca", "CA", 100, 0.5, 50000),
+           row_of("tw", "TW", 100, 0.1, 4000)},
           {row_of("rd", "RD-1/30", 150, 6.0, 300000), row_of("tw", "TW", 150, 0.2, 6000)}};
 }
 
 // n (1 + p) / p lambda: one integration per step while discontinuities are rare, two per
 // discontinuity where every step contains some.
 TEST(ModelOfCost, RetroactiveDetectionHasItsTwoLimits) {
-  constexpr double kN = 10, kStep = 0.01, kRare = 1e-9, kOften = 1e6;   // w [1/s]
+  constexpr double kN = 10, kStep = 0.01, kRare = 1e-9, kOften = 1e6;  // w [1/s]
   EXPECT_NEAR(*modelled_integrations("rd", kN, kRare, kStep), kN / kStep, 1e-9 * kN / kStep);
-  EXPECT_NEAR(*modelled_integrations("rd", kN, kOften, kStep), kN * kN * kOften, kRounding * kN * kN * kOften);
+  EXPECT_NEAR(*modelled_integrations("rd", kN, kOften, kStep), kN * kN * kOften,
+              kRounding * kN * kN * kOften);
 }
 
 // By hand: lambda = 300 1/s, lambda h = 10.
 TEST(ModelOfCost, GivesTheNumbersOfAtoms) {
   EXPECT_NEAR(*modelled_integrations("ca", 100, 6.0, 1.0 / 30.0), 93000.0, kRounding * 93000.0);
   EXPECT_NEAR(*modelled_integrations("tw", 100, 6.0, 1.0 / 30.0), 4800.0, kRounding * 4800.0);
-  EXPECT_NEAR(*modelled_integrations("rd", 100, 6.0, 1.0 / 30.0), 30000.0 * (1.0 + 1.0 / (1.0 - std::exp(-10.0))), 1e-7);
+  EXPECT_NEAR(*modelled_integrations("rd", 100, 6.0, 1.0 / 30.0),
+              30000.0 * (1.0 + 1.0 / (1.0 - std::exp(-10.0))), 1e-7);
 }
 
 TEST(ModelOfCost, TimewarpGrowsWithTheNumberOfBodiesAndTheOthersWithItsSquare) {
-  constexpr double kW = 6.0, kStep = 1e9;   // steps so long that only discontinuities count
-  const auto growth = [&](const char* engine) { return *modelled_integrations(engine, 2e6, kW, kStep) / *modelled_integrations(engine, 1e6, kW, kStep); };
+  constexpr double kW = 6.0, kStep = 1e9;  // steps so long that only discontinuities count
+  const auto growth = [&](const char* engine) {
+    return *modelled_integrations(engine, 2e6, kW, kStep) /
+           *modelled_integrations(engine, 1e6, kW, kStep);
+  };
   EXPECT_NEAR(growth("tw"), 2.0, kRounding);
   EXPECT_NEAR(growth("ca"), 4.0, kRounding);
   EXPECT_NEAR(growth("rd"), 4.0, kRounding);
@@ -63,10 +70,10 @@ TEST(ModelOfCost, TimewarpGrowsWithTheNumberOfBodiesAndTheOthersWithItsSquare) {
 
 TEST(TablesOfEngines, PutTheSlidesFiguresWhereSizesAreTheSame) {
   const Table table = table_of_slides(ladder());
-  ASSERT_EQ(table.rows.size(), 3U);   // 100 atoms; the slides have no row for 150
+  ASSERT_EQ(table.rows.size(), 3U);  // 100 atoms; the slides have no row for 150
   EXPECT_EQ(table.rows[0][2].text, "0.142");
-  EXPECT_EQ(table.rows[0][4].text, "0.97");   // 0.142 / 0.147
-  EXPECT_EQ(table.rows[0][5].text, "30");     // 3.0 / 0.1
+  EXPECT_EQ(table.rows[0][4].text, "0.97");  // 0.142 / 0.147
+  EXPECT_EQ(table.rows[0][5].text, "30");    // 3.0 / 0.1
   EXPECT_EQ(table.rows[1][5].text, "5.00");
 }
 
@@ -74,11 +81,15 @@ TEST(TablesOfEngines, PutTheSlidesFiguresWhereSizesAreTheSame) {
 // slides'.
 TEST(PageOfEngines, StatesTheSourceOfTheModelAndWhyTheSlidesDiffer) {
   const PrivateFolder folder;
-  write_engines_index({{}, ladder(), {{row_of("tw", "TW", 1, 0.001, 31)}}, {}, false, "tumble engines"}, folder.path() / "index.html");
+  write_engines_index(
+      {{}, ladder(), {{row_of("tw", "TW", 1, 0.001, 31)}}, {}, false, "tumble engines"},
+      folder.path() / "index.html");
   std::ifstream file(folder.path() / "index.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(page.find("the slides count integrations"), std::string::npos);
-  for (const char* words : {"This model is ours", "the sizes are ours", "Why RD / TW of 100 atoms", "100 atoms: RD / TW 30.0 in time, 25.0 in integrations, 13 by our model"})
+  for (const char* words :
+       {"This model is ours", "the sizes are ours", "Why RD / TW of 100 atoms",
+        "100 atoms: RD / TW 30.0 in time, 25.0 in integrations, 13 by our model"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
 }
 
@@ -91,18 +102,18 @@ TEST(TablesOfEngines, PutTheMeanStepBesideW) {
   for (EngineRow& row : rare.rows) row.w_h = 0.1;
   const Table table = table_of_mean_steps({often, rare});
   ASSERT_EQ(table.rows.size(), 2U);
-  EXPECT_EQ(table.rows[0][0].text, "rare");   // w ascending
-  EXPECT_EQ(table.rows[0][2].text, "3");      // 0.1 over 1/30 s
-  EXPECT_EQ(table.rows[1][3].text, "600");    // 100 bodies, 6 1/s each
-  EXPECT_EQ(table.rows[1][5].text, "2");      // ms: 100 bodies, 2 s, 100,000 integrations
-  EXPECT_EQ(table.rows[1][7].text, "50");     // 4,000 integrations
+  EXPECT_EQ(table.rows[0][0].text, "rare");  // w ascending
+  EXPECT_EQ(table.rows[0][2].text, "3");     // 0.1 over 1/30 s
+  EXPECT_EQ(table.rows[1][3].text, "600");   // 100 bodies, 6 1/s each
+  EXPECT_EQ(table.rows[1][5].text, "2");     // ms: 100 bodies, 2 s, 100,000 integrations
+  EXPECT_EQ(table.rows[1][7].text, "50");    // 4,000 integrations
 }
 
 TEST(TablesOfEngines, CountStepsAndWork) {
   const Table table = table_of_ladder(ladder());
   ASSERT_EQ(table.rows.size(), 5U);
-  EXPECT_EQ(table.rows[0][3].text, "2");      // ms: 100 bodies, 2 s, 100,000 integrations
-  EXPECT_EQ(table.rows[0][4].text, "500");    // integrations per body and second
+  EXPECT_EQ(table.rows[0][3].text, "2");    // ms: 100 bodies, 2 s, 100,000 integrations
+  EXPECT_EQ(table.rows[0][4].text, "500");  // integrations per body and second
   EXPECT_EQ(table_of_model(ladder()).rows.size(), 5U);
 }
 
@@ -115,7 +126,7 @@ TEST(BarsOfEngines, ShowKeptAndUndoneWorkAndTime) {
   for (const StackedBars& of : bars) ASSERT_EQ(of.rows.size(), 2U) << "a stopped run has no bar";
   EXPECT_EQ(bars[0].rows[1].values, (std::vector<double>{3000, 1000}));
   EXPECT_EQ(bars[1].rows[1].values, std::vector<double>{70});
-  EXPECT_EQ(bars[2].rows[1].values, std::vector<double>{100});   // 0.1 s in ms
+  EXPECT_EQ(bars[2].rows[1].values, std::vector<double>{100});  // 0.1 s in ms
 }
 
 TEST(BarsOfEngines, ShowTheTimeOfRunsThatWereLongEnough) {
@@ -127,7 +138,8 @@ TEST(BarsOfEngines, ShowTheTimeOfRunsThatWereLongEnough) {
   ASSERT_EQ(bars.rows.size(), 1U);
   EXPECT_EQ(bars.rows[0].values, (std::vector<double>{75, 25}));
   EXPECT_NE(bars.caption.find("75 % of CA's"), std::string::npos) << bars.caption;
-  EXPECT_NE(bars.caption.find("Too short to measure: RD-1/30, TW."), std::string::npos) << bars.caption;
+  EXPECT_NE(bars.caption.find("Too short to measure: RD-1/30, TW."), std::string::npos)
+      << bars.caption;
 }
 
 TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
@@ -140,10 +152,18 @@ TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
   failed.name = "cars";
   failed.problem = "a wheel came off";
   const PrivateFolder folder;
-  write_engines_index({{fine, failed}, ladder(), {{row_of("tw", "TW", 1, 0.001, 31)}, {row_of("tw", "TW", 200, 0.001, 1500)}}, {}, false, "tumble engines"}, folder.path() / "index.html");
+  write_engines_index({{fine, failed},
+                       ladder(),
+                       {{row_of("tw", "TW", 1, 0.001, 31)}, {row_of("tw", "TW", 200, 0.001, 1500)}},
+                       {},
+                       false,
+                       "tumble engines"},
+                      folder.path() / "index.html");
   std::ifstream file(folder.path() / "index.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
-  for (const char* words : {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off", "Average integration step", "The model of cost", "first 5 collisions", "--full", "TW, ignoring each other"})
+  for (const char* words :
+       {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off", "Average integration step",
+        "The model of cost", "first 5 collisions", "--full", "TW, ignoring each other"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(table_of_scenes({fine, failed}).rows[0][5].text, "30");
 }

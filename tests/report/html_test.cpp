@@ -9,7 +9,8 @@ namespace tumble::report {
 namespace {
 
 TEST(HtmlEscape, MarkupBecomesText) {
-  EXPECT_EQ(html_escape("<script>alert('x')</script> & \"y\""), "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;y&quot;");
+  EXPECT_EQ(html_escape("<script>alert('x')</script> & \"y\""),
+            "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;y&quot;");
 }
 
 TEST(HtmlEscape, TerminalCodesAndControlsAreDropped) {
@@ -22,11 +23,16 @@ TEST(HtmlEscape, CharactersThatReverseTheWritingAreDropped) {
 }
 
 TEST(HtmlEscape, BytesThatAreNotTextAreReplaced) {
-  EXPECT_EQ(html_escape("a\xff" "b\xc0\xaf"), "a\xef\xbf\xbd" "b\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(html_escape("a\xff"
+                        "b\xc0\xaf"),
+            "a\xef\xbf\xbd"
+            "b\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(html_escape("gr\u00fc\u00df \u4f60\u597d"), "gr\u00fc\u00df \u4f60\u597d");
 }
 
-TEST(Link, OddBytesAreWrittenAsHex) { EXPECT_EQ(link_to("a b/#1?<x>.html"), "a%20b/%231%3F%3Cx%3E.html"); }
+TEST(Link, OddBytesAreWrittenAsHex) {
+  EXPECT_EQ(link_to("a b/#1?<x>.html"), "a%20b/%231%3F%3Cx%3E.html");
+}
 
 TEST(Page, RefusesALinkWithAScheme) {
   Page page("t");

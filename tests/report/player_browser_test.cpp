@@ -18,7 +18,8 @@ using report::player_page;
 class PlayerInBrowser : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!Browser::is_installed()) GTEST_SKIP() << "chromium is not installed, so no page is tested: apt-get install chromium";
+    if (!Browser::is_installed())
+      GTEST_SKIP() << "chromium is not installed, so no page is tested: apt-get install chromium";
   }
   Browser browser;
 };
@@ -50,17 +51,21 @@ TEST_F(PlayerInBrowser, BodiesAreDrawnAtTheirPositions) {
   const std::string address = browser.serve(player_page(scene, {{thrown_run(), ""}}));
   const render::View view = render::view_of(scene.camera);
   for (const double t : {0.1, 0.65}) {
-    const Screen screen = browser.screenshot(address + "#bare&t=" + std::to_string(t), kWidth, kHeight);
+    const Screen screen =
+        browser.screenshot(address + "#bare&t=" + std::to_string(t), kWidth, kHeight);
     ASSERT_EQ(screen.width, kWidth);
     const Spot ball = spot_of(screen, is_red), box = spot_of(screen, is_blue);
-    const auto expected = render::project(view, kWidth, kHeight, ball_place(t)), box_expected = render::project(view, kWidth, kHeight, box_pose(t).com_world);
-    const double radius = 0.25 / render::metres_per_pixel(view, kHeight, ball_place(t));   // 21 pixels
+    const auto expected = render::project(view, kWidth, kHeight, ball_place(t)),
+               box_expected = render::project(view, kWidth, kHeight, box_pose(t).com_world);
+    // 21 pixels
+    const double radius = 0.25 / render::metres_per_pixel(view, kHeight, ball_place(t));
     // The image of a ball away from the centre of the picture is an ellipse; its centre is some
     // percent of its radius from the image of the ball's centre. Linear interpolation between
     // frames: 0.3 mm.
     EXPECT_NEAR(ball.x, expected->x(), 0.1 * radius) << t;
     EXPECT_NEAR(ball.y, expected->y(), 0.1 * radius) << t;
-    EXPECT_NEAR(ball.pixels, M_PI * radius * radius, 0.08 * M_PI * radius * radius) << t;   // a polygon of 20 corners has 0.984 of the circle's area
+    // a polygon of 20 corners has 0.984 of the circle's area
+    EXPECT_NEAR(ball.pixels, M_PI * radius * radius, 0.08 * M_PI * radius * radius) << t;
     EXPECT_NEAR(box.x, box_expected->x(), 4.0) << t;
     EXPECT_NEAR(box.y, box_expected->y(), 4.0) << t;
   }
@@ -74,7 +79,8 @@ TEST_F(PlayerInBrowser, DataAreRestored) {
       found.push(run.events.time[0], run.events.impulse[0], run.events.before[0], Number.isNaN(run.events.before[1]) ? 1 : 0, run.series.find(s => s.name === 'total').values[30], run.contacts[7][0]);
       document.body.dataset.found = found.join(' '); };
     wait();)";
-  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0");
+  const std::string elements = browser.elements(
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0");
   EXPECT_EQ(body_data(elements, "error"), "");
   std::istringstream found(body_data(elements, "found"));
   const Trajectory run = thrown_run();
@@ -83,11 +89,13 @@ TEST_F(PlayerInBrowser, DataAreRestored) {
     found >> number;
     EXPECT_NEAR(number, value, tolerance) << what;
   };
-  constexpr double kPlaceQuantum = 8.1e-6, kTurnQuantum = 3.1e-5;   // a millionth of the distance to the target, 8.06 m; 1/32768. Tolerance: half of it, and float32.
+  // a millionth of the distance to the target, 8.06 m; 1/32768. Tolerance: half of it, and float32.
+  constexpr double kPlaceQuantum = 8.1e-6, kTurnQuantum = 3.1e-5;
   for (const auto& [body, k] : {std::pair{0u, 0u}, {0u, 30u}, {1u, 30u}}) {
     const BodyPose& pose = run.frames[k].poses[body];
     for (int i = 0; i < 3; ++i) expect(pose.com_world[i], kPlaceQuantum, "place");
-    for (int i = 0; i < 4; ++i) expect(pose.world_from_body.coeffs()[i], kTurnQuantum, "orientation");
+    for (int i = 0; i < 4; ++i)
+      expect(pose.world_from_body.coeffs()[i], kTurnQuantum, "orientation");
   }
   expect(0.4, 1e-6, "time of the event");
   expect(6.0, 6e-6, "impulse");
@@ -99,7 +107,8 @@ TEST_F(PlayerInBrowser, DataAreRestored) {
 
 TEST_F(PlayerInBrowser, BodyIsAtTheWallWhenItHitsIt) {
   Trajectory bullet = thrown_run(2 / kRate);
-  const double hit = 0.6 / kRate, speed = 300.0;   // m/s: between the first two frames it moves 3 m forward and 2 m back
+  // m/s: between the first two frames it moves 3 m forward and 2 m back
+  const double hit = 0.6 / kRate, speed = 300.0;
   for (Frame& frame : bullet.frames) {
     const bool flies_back = frame.time > hit;
     frame.poses[0].com_world = {speed * (flies_back ? 2 * hit - frame.time : frame.time), 0, 1};
@@ -111,7 +120,9 @@ TEST_F(PlayerInBrowser, BodyIsAtTheWallWhenItHitsIt) {
       const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion();
       document.body.dataset.found = [0.3, 0.6, 0.8].map(k => (run.pose(0, run.frameAt(k / 60), place, turn), place.x)).join(' '); };
     wait();)";
-  std::istringstream found(body_data(browser.elements(browser.serve(player_page(thrown_ball(), {{bullet, ""}}), script) + "#t=0"), "found"));
+  std::istringstream found(body_data(
+      browser.elements(browser.serve(player_page(thrown_ball(), {{bullet, ""}}), script) + "#t=0"),
+      "found"));
   // Times are stored to 5e-7 s, 1.5e-4 m at this speed; speeds to a relative 1.5e-5, 5e-5 m over a
   // frame. A straight line would be wrong by 2.4 m.
   for (const double expected : {1.5, 3.0, 2.0}) {
@@ -129,58 +140,84 @@ TEST_F(PlayerInBrowser, KeysPlayStepAndJump) {
       for (const [k, shift] of [['Home'], ['ArrowRight'], ['ArrowRight', true], ['ArrowLeft'], ['n'], ['p'], ['End'], ['ArrowDown'], [' ']]) { key(k, shift); say(); }
       document.body.dataset.said = said.join(' '); };
     wait();)";
-  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3&speed=1");
+  const std::string elements = browser.elements(
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3&speed=1");
   EXPECT_EQ(body_data(elements, "said"),
-            "0.0000 false 1 "     // Home
-            "0.0167 false 1 "     // one frame forward
-            "0.1833 false 1 "     // ten frames forward
-            "0.1667 false 1 "     // one frame back
-            "0.4000 false 1 "     // next event
-            "0.4000 false 1 "     // there is none before it
-            "0.8000 false 1 "     // End
-            "0.8000 false 0.5 "   // slower
-            "0.0000 true 0.5");   // plays from the start
+            "0.0000 false 1 "    // Home
+            "0.0167 false 1 "    // one frame forward
+            "0.1833 false 1 "    // ten frames forward
+            "0.1667 false 1 "    // one frame back
+            "0.4000 false 1 "    // next event
+            "0.4000 false 1 "    // there is none before it
+            "0.8000 false 1 "    // End
+            "0.8000 false 0.5 "  // slower
+            "0.0000 true 0.5");  // plays from the start
 }
 
 TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
   Trajectory wrong = thrown_run();
   wrong.events[0].impulse = 9.0;
-  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}})) + "#t=0.4");
+  const std::string elements =
+      browser.elements(browser.serve(player_page(
+                           thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}})) +
+                       "#t=0.4");
   EXPECT_EQ(body_data(elements, "error"), "");
-  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 9 N s, -3 → 1.5 m/s"), std::string::npos);   // beside the picture of one run,
-  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 6 N s, -3 → 1.5 m/s"), std::string::npos);   // and of the other
-  EXPECT_NE(elements.find("First difference at 0.4 s: collision of ball &lt;1&gt; and box: impulse 9 N s in submission, 6 N s in reference."), std::string::npos);
+  // beside the picture of one run,
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 9 N s, -3 → 1.5 m/s"), std::string::npos);
+  // and of the other
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 6 N s, -3 → 1.5 m/s"), std::string::npos);
+  EXPECT_NE(elements.find("First difference at 0.4 s: collision of ball &lt;1&gt; and box: impulse "
+                          "9 N s in submission, 6 N s in reference."),
+            std::string::npos);
 }
 
 // A runs ahead to 0.4 s; B is found to hit it at 0.2 s: A rolls back alone, then both are
 // committed.
-VirtualTimes one_rollback() { return {{"A", "B"}, {{0, 0, 0.4, 0}, {1, 0, 0.2, 0.2}, {0, 0.4, 0.2, 0.2}, {0, 0.2, 0.5, 0.2}, {1, 0.2, 0.6, 0.5}}}; }
+VirtualTimes one_rollback() {
+  return {{"A", "B"},
+          {{0, 0, 0.4, 0},
+           {1, 0, 0.2, 0.2},
+           {0, 0.4, 0.2, 0.2},
+           {0, 0.2, 0.5, 0.2},
+           {1, 0.2, 0.6, 0.5}}};
+}
 
 TEST_F(PlayerInBrowser, VirtualTimesShowTheMoveThatCommittedTheCursor) {
   report::PlayerOptions options;
   options.panels = {report::virtual_times_panel(one_rollback())};
-  const std::string address = browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}, options));
-  const std::string early = browser.elements(address + "#t=0.1&tab=virtual"), late = browser.elements(address + "#t=0.45&tab=virtual");
+  const std::string address =
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}, options));
+  const std::string early = browser.elements(address + "#t=0.1&tab=virtual"),
+                    late = browser.elements(address + "#t=0.45&tab=virtual");
   EXPECT_EQ(body_data(early, "error"), "");
-  EXPECT_NE(early.find("Move 2 of 5: B on from 0 to 0.2 s; global virtual time 0.2 s; 0 rollbacks so far"), std::string::npos);
-  EXPECT_NE(late.find("Move 5 of 5: B on from 0.2 to 0.6 s; global virtual time 0.5 s; 1 rollback so far"), std::string::npos);
+  EXPECT_NE(early.find(
+                "Move 2 of 5: B on from 0 to 0.2 s; global virtual time 0.2 s; 0 rollbacks so far"),
+            std::string::npos);
+  EXPECT_NE(
+      late.find(
+          "Move 5 of 5: B on from 0.2 to 0.6 s; global virtual time 0.5 s; 1 rollback so far"),
+      std::string::npos);
 }
 
 TEST_F(PlayerInBrowser, DamagedDataLeaveTheStaticPlots) {
   std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
   page.replace(page.find("id=\"run0\">") + 10, 40, std::string(40, 'A'));
   const std::string elements = browser.elements(browser.serve(page));
-  EXPECT_NE(body_data(elements, "error").find("the data in this page are damaged"), std::string::npos);
+  EXPECT_NE(body_data(elements, "error").find("the data in this page are damaged"),
+            std::string::npos);
   EXPECT_EQ(body_data(elements, "ready"), "");
-  EXPECT_EQ(elements.find("class=\"alive\""), std::string::npos);   // which hides them
+  EXPECT_EQ(elements.find("class=\"alive\""), std::string::npos);  // which hides them
   EXPECT_NE(elements.find("<svg class=\"plot\""), std::string::npos);
 }
 
 TEST_F(PlayerInBrowser, WithoutWebglItSaysSoAndKeepsCurvesAndEvents) {
-  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}})) + "#t=0.4&tab=events", "--disable-3d-apis");
+  const std::string elements = browser.elements(
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}})) + "#t=0.4&tab=events",
+      "--disable-3d-apis");
   EXPECT_NE(elements.find("The motion cannot be drawn here"), std::string::npos);
   EXPECT_NE(body_data(elements, "ready"), "");
-  EXPECT_NE(elements.find("ball &lt;1&gt; – box"), std::string::npos);   // a row of the list of events
+  // a row of the list of events
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box"), std::string::npos);
   EXPECT_NE(elements.find("Change of the total energy"), std::string::npos);
 }
 

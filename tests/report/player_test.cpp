@@ -37,8 +37,12 @@ std::vector<double> read_channel(const std::string& bytes, std::size_t count, st
       zigzag |= static_cast<std::uint64_t>(byte & 127) << shift;
       if (byte < 128) break;
     }
-    const std::int64_t whole = static_cast<std::int64_t>(zigzag >> 1 ^ -(zigzag & 1)) + (order == 0 ? 0 : order == 1 ? before : 2 * before - earlier);
-    values.push_back(head & 4 && bytes[mask + i] != 0 ? kNan : static_cast<double>(whole) * quantum);
+    const std::int64_t whole = static_cast<std::int64_t>(zigzag >> 1 ^ -(zigzag & 1)) +
+                               (order == 0   ? 0
+                                : order == 1 ? before
+                                             : 2 * before - earlier);
+    values.push_back(head & 4 && bytes[mask + i] != 0 ? kNan
+                                                      : static_cast<double>(whole) * quantum);
     earlier = before;
     before = whole;
   }
@@ -46,17 +50,20 @@ std::vector<double> read_channel(const std::string& bytes, std::size_t count, st
 }
 
 TEST(Channels, AreRestoredToHalfAQuantum) {
-  const std::vector<double> values = {0.0, 1.0, -3.25, 1e6, kNan, 1e6, -1e-3, std::numeric_limits<double>::infinity(), 4.0};
+  const std::vector<double> values = {
+      0.0, 1.0, -3.25, 1e6, kNan, 1e6, -1e-3, std::numeric_limits<double>::infinity(), 4.0};
   for (const int order : {0, 1, 2}) {
     ChannelWriter writer;
     writer.add(values, 1.0 / 1024, order);
-    writer.add(values, 1.0, order);   // a second one begins where the first ends
+    writer.add(values, 1.0, order);  // a second one begins where the first ends
     std::size_t at = 0;
     for (const double quantum : {1.0 / 1024, 1.0}) {
       const std::vector<double> back = read_channel(writer.bytes(), values.size(), at);
       for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isfinite(values[i])) EXPECT_LE(std::abs(back[i] - values[i]), 0.5 * quantum) << order << " " << i;
-        else EXPECT_TRUE(std::isnan(back[i])) << order << " " << i;
+        if (std::isfinite(values[i]))
+          EXPECT_LE(std::abs(back[i] - values[i]), 0.5 * quantum) << order << " " << i;
+        else
+          EXPECT_TRUE(std::isnan(back[i])) << order << " " << i;
       }
     }
     EXPECT_EQ(at, writer.bytes().size());
@@ -67,9 +74,10 @@ TEST(Channels, OfAConstantForceTakeOneBytePerValue) {
   std::vector<double> fall;
   for (int k = 0; k < 1000; ++k) fall.push_back(10 - 0.5 * kGravity * k * k / (kRate * kRate));
   ChannelWriter writer;
-  // A quantum of 1e-4 m: the second difference, g dt^2 = 2.7e-3 m, is 27 of them and a rounding of at most 2.
+  // A quantum of 1e-4 m: the second difference, g dt^2 = 2.7e-3 m, is 27 of them and a rounding of
+  // at most 2.
   writer.add(fall, 1e-4, 2);
-  EXPECT_LE(writer.bytes().size(), 9u + 1000u + 8u);   // the first two values take more
+  EXPECT_LE(writer.bytes().size(), 9u + 1000u + 8u);  // the first two values take more
 }
 
 TEST(Channels, CoarsenWhereANumberWouldNotFit) {
@@ -77,11 +85,12 @@ TEST(Channels, CoarsenWhereANumberWouldNotFit) {
   writer.add(std::vector<double>{1e30, -1e30}, 1e-12, 2);
   std::size_t at = 0;
   const auto back = read_channel(writer.bytes(), 2, at);
-  EXPECT_NEAR(back[0], 1e30, 1e30 * 1e-14);   // 2^-52 of it, times a factor of 8 for the differences
+  // 2^-52 of it, times a factor of 8 for the differences
+  EXPECT_NEAR(back[0], 1e30, 1e30 * 1e-14);
   EXPECT_NEAR(back[1], -1e30, 1e30 * 1e-14);
 }
 
-TEST(Base64, MatchesTheStandard) {   // RFC 4648, section 10
+TEST(Base64, MatchesTheStandard) {  // RFC 4648, section 10
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -100,35 +109,43 @@ TEST(Comparison, OfARunWithItselfFindsNothing) {
 TEST(Comparison, FindsTheImpulseThatDiffers) {
   Trajectory wrong = thrown_run();
   wrong.events[0].impulse = 9.0;
-  const auto first = compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference").first;
+  const auto first =
+      compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference").first;
   ASSERT_TRUE(first.has_value());
   EXPECT_EQ(first->time_s, 0.4);
-  EXPECT_EQ(first->what, "collision of ball <1> and box: impulse 9 N s in submission, 6 N s in reference");
+  EXPECT_EQ(first->what,
+            "collision of ball <1> and box: impulse 9 N s in submission, 6 N s in reference");
 }
 
 TEST(Comparison, FindsTheFrameFromWhichABodyIsElsewhere) {
   Trajectory wrong = thrown_run();
-  for (std::size_t k = 12; k < wrong.frames.size(); ++k) wrong.frames[k].poses[0].com_world.x() += 0.01;
-  const Comparison found = compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference");
+  for (std::size_t k = 12; k < wrong.frames.size(); ++k)
+    wrong.frames[k].poses[0].com_world.x() += 0.01;
+  const Comparison found =
+      compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference");
   ASSERT_TRUE(found.first.has_value());
-  EXPECT_EQ(found.first->time_s, wrong.frames[12].time);   // 0.2 s: before the events
+  EXPECT_EQ(found.first->time_s, wrong.frames[12].time);  // 0.2 s: before the events
   EXPECT_EQ(found.first->body, 0);
   EXPECT_NEAR(found.apart_m.back(), 0.01, 1e-12);
 }
 
 TEST(Comparison, FindsADifferenceInRotationOnly) {
   Trajectory wrong = thrown_run();
-  wrong.frames.back().poses[1].world_from_body = wrong.frames.back().poses[1].world_from_body * Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitX()));
-  const Comparison found = compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference");
+  wrong.frames.back().poses[1].world_from_body =
+      wrong.frames.back().poses[1].world_from_body *
+      Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitX()));
+  const Comparison found =
+      compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference");
   ASSERT_TRUE(found.first.has_value());
   EXPECT_EQ(found.first->body, 1);
-  EXPECT_NEAR(found.apart_m.back(), 0.374 * 0.1, 1e-9);   // radius times angle
+  EXPECT_NEAR(found.apart_m.back(), 0.374 * 0.1, 1e-9);  // radius times angle
 }
 
 TEST(Comparison, NamesAnEventThatOnlyOneRunHas) {
   Trajectory less = thrown_run();
   less.events.pop_back();
-  const auto first = compare(thrown_ball(), kRadii, thrown_run(), "submission", less, "reference").first;
+  const auto first =
+      compare(thrown_ball(), kRadii, thrown_run(), "submission", less, "reference").first;
   ASSERT_TRUE(first.has_value());
   EXPECT_EQ(first->what, "comes to rest of box and floor only in submission");
 }
@@ -137,8 +154,10 @@ TEST(Comparison, NamesAnEventThatOnlyOneRunHas) {
 TEST(PlayerPage, IsSelfContained) {
   const std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
-  for (const char* word : {"src=", "href=", "@import", "fetch("}) EXPECT_EQ(page.find(word), std::string::npos) << word;
-  EXPECT_LT(page.size(), 600'000u);   // three.js deflated is 250 kB in base64; the player 80 kB, plots without scripts 60 kB
+  for (const char* word : {"src=", "href=", "@import", "fetch("})
+    EXPECT_EQ(page.find(word), std::string::npos) << word;
+  // three.js deflated is 250 kB in base64; the player 80 kB, plots without scripts 60 kB
+  EXPECT_LT(page.size(), 600'000u);
 }
 
 TEST(PlayerPage, ShowsNamesAsText) {
@@ -146,11 +165,13 @@ TEST(PlayerPage, ShowsNamesAsText) {
   EXPECT_EQ(page.find("ball <1>"), std::string::npos);
   EXPECT_EQ(page.find("<b>label"), std::string::npos);
   EXPECT_NE(page.find("A thrown ball &amp; a turning box"), std::string::npos);
-  EXPECT_NE(page.find("<td>ball &lt;1&gt;, box</td>"), std::string::npos);   // in the table for browsers without scripts
+  // in the table for browsers without scripts
+  EXPECT_NE(page.find("<td>ball &lt;1&gt;, box</td>"), std::string::npos);
 }
 
 TEST(PlayerPage, HasTheSameBytesForTheSameRun) {
-  EXPECT_EQ(player_page(thrown_ball(), {{thrown_run(), ""}}), player_page(thrown_ball(), {{thrown_run(), ""}}));
+  EXPECT_EQ(player_page(thrown_ball(), {{thrown_run(), ""}}),
+            player_page(thrown_ball(), {{thrown_run(), ""}}));
 }
 
 TEST(PlayerPage, WithoutThreeJsIsRefused) {

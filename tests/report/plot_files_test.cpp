@@ -34,7 +34,9 @@ TEST(PlotFiles, AreCompleteWithSizeStyleAndBackground) {
   page.plot(plot("Energy"));
   const std::string svg = plots_in(page.html()).at(0).svg;
   EXPECT_TRUE(svg.starts_with("<?xml"));
-  for (const std::string part : {"xmlns=\"http://www.w3.org/2000/svg\"", "width=\"640\"", "viewBox=\"0 0 640 ", "svg.plot .grid", "fill=\"#fff\"", ">time [s]<", ">energy [J]<", "</svg>"})
+  for (const std::string part :
+       {"xmlns=\"http://www.w3.org/2000/svg\"", "width=\"640\"", "viewBox=\"0 0 640 ",
+        "svg.plot .grid", "fill=\"#fff\"", ">time [s]<", ">energy [J]<", "</svg>"})
     EXPECT_NE(svg.find(part), svg.npos) << part << "\n" << svg;
   EXPECT_EQ(svg.find("var(--"), svg.npos) << "a colour that is defined only in pages";
   EXPECT_EQ(svg.find("<svg", svg.find("<svg") + 1), svg.npos);

@@ -43,16 +43,24 @@ TEST(Ticks, OfAnAxisWithoutLengthBreakAPrecondition) {
 }
 
 TEST(Plots, BreakALineAtUndrawablePoints) {
-  Plot plot{"t", {"x"}, {"y", "m", Scale::kLog}, {{"curve", {1, 2, 3, 4, 5}, {1.0, 2.0, std::nan(""), 0.0, 3.0}}}, {}};
+  Plot plot{"t",
+            {"x"},
+            {"y", "m", Scale::kLog},
+            {{"curve", {1, 2, 3, 4, 5}, {1.0, 2.0, std::nan(""), 0.0, 3.0}}},
+            {}};
   const std::string svg = svg_of(plot);
   const std::string path = svg.substr(svg.find("<path d=\"M"));
-  EXPECT_EQ(count(path.substr(0, path.find("fill")), "M"), 2u);   // two pieces
+  EXPECT_EQ(count(path.substr(0, path.find("fill")), "M"), 2u);  // two pieces
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
 TEST(Plots, OfOneValueShowTheDecadesAroundIt) {
-  Plot plot{"flat", {"time", "s"}, {"error", "m", Scale::kLog}, {{"a", {1, 2, 3}, {7e-15, 7e-15, 7e-15}}}, {}};
+  Plot plot{"flat",
+            {"time", "s"},
+            {"error", "m", Scale::kLog},
+            {{"a", {1, 2, 3}, {7e-15, 7e-15, 7e-15}}},
+            {}};
   const std::string svg = svg_of(plot);
   EXPECT_EQ(count(svg, ">1e-15<"), 1u) << svg;
   EXPECT_EQ(count(svg, ">1e-14<"), 1u) << svg;
@@ -60,13 +68,18 @@ TEST(Plots, OfOneValueShowTheDecadesAroundIt) {
 
 TEST(Plots, WithoutPointsSaySo) {
   EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_EQ(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a horizontal line can be drawn
+  EXPECT_NE(
+      svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"),
+      std::string::npos);
+  // a horizontal line can be drawn
+  EXPECT_EQ(
+      svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"),
+      std::string::npos);
 }
 
 TEST(Plots, WriteAUnitAtEveryAxis) {
   const std::string svg = svg_of(Plot{"t", {"share"}, {"error", "m"}, {{"c", {1, 2}, {1, 2}}}, {}});
-  EXPECT_EQ(count(svg, ">share [-]<"), 1u) << svg;   // a number
+  EXPECT_EQ(count(svg, ">share [-]<"), 1u) << svg;  // a number
   EXPECT_EQ(count(svg, ">error [m]<"), 1u) << svg;
   EXPECT_EQ(count(svg_of(StackedBars{"t", {"share"}, {"a"}, {{"row", {1.0}}}}), ">share [-]<"), 1u);
 }
@@ -74,43 +87,55 @@ TEST(Plots, WriteAUnitAtEveryAxis) {
 /// The widths of a drawing's bars.
 std::vector<double> widths_of(const std::string& svg) {
   std::vector<double> widths;
-  for (std::size_t at = svg.find("<rect x="); at != std::string::npos; at = svg.find("<rect x=", at + 1))
-    if (svg.compare(svg.find("height=\"", at) + 8, 2, "17") == 0) widths.push_back(std::stod(svg.substr(svg.find("width=\"", at) + 7)));
+  for (std::size_t at = svg.find("<rect x="); at != std::string::npos;
+       at = svg.find("<rect x=", at + 1))
+    if (svg.compare(svg.find("height=\"", at) + 8, 2, "17") == 0)
+      widths.push_back(std::stod(svg.substr(svg.find("width=\"", at) + 7)));
   return widths;
 }
 
 TEST(StackedBars, HaveTheLengthsOfTheirPartsAndNumberTheWideOnes) {
-  const std::string svg = svg_of(StackedBars{"t", {"share", "%"}, {"a", "b", "c"}, {{"first", {60, 39, 1}}, {"second", {0, 50, 0}}}});
+  const std::string svg = svg_of(StackedBars{
+      "t", {"share", "%"}, {"a", "b", "c"}, {{"first", {60, 39, 1}}, {"second", {0, 50, 0}}}});
   const std::vector<double> widths = widths_of(svg);
-  ASSERT_EQ(widths.size(), 4u) << svg;   // a part of 0 is not drawn
+  ASSERT_EQ(widths.size(), 4u) << svg;  // a part of 0 is not drawn
   // The longest row, 100, has 408 units; widths are written to a tenth of a unit.
-  for (const auto& [k, value] : {std::pair{0, 60.0}, {1, 39.0}, {2, 1.0}, {3, 50.0}}) EXPECT_NEAR(widths[static_cast<std::size_t>(k)], 4.08 * value, 0.05 + 1e-9) << k;
+  for (const auto& [k, value] : {std::pair{0, 60.0}, {1, 39.0}, {2, 1.0}, {3, 50.0}})
+    EXPECT_NEAR(widths[static_cast<std::size_t>(k)], 4.08 * value, 0.05 + 1e-9) << k;
   for (const char* number : {">60<", ">39<", ">50<"}) EXPECT_GE(count(svg, number), 1u) << number;
   EXPECT_EQ(count(svg, ">1<"), 0u);
-  EXPECT_EQ(count(svg, ">0<"), 1u);   // the first tick: 0, not -0
-  EXPECT_THROW(svg_of(StackedBars{"t", {"share"}, {"a", "b"}, {{"row", {1.0}}}}), PreconditionError);
+  EXPECT_EQ(count(svg, ">0<"), 1u);  // the first tick: 0, not -0
+  EXPECT_THROW(svg_of(StackedBars{"t", {"share"}, {"a", "b"}, {{"row", {1.0}}}}),
+               PreconditionError);
 }
 
 TEST(StackedBars, EightPartsHaveEightFills) {
   StackedBars bars{"t", {"share"}, {}, {{"row", {}}}};
-  for (int k = 0; k < 8; ++k) bars.parts.push_back("part " + std::to_string(k)), bars.rows[0].values.push_back(1.0);
+  for (int k = 0; k < 8; ++k)
+    bars.parts.push_back("part " + std::to_string(k)), bars.rows[0].values.push_back(1.0);
   const std::string svg = svg_of(bars);
   std::set<std::string> fills;
-  for (std::size_t at = svg.find("height=\"17\" fill=\""); at != std::string::npos; at = svg.find("height=\"17\" fill=\"", at + 1)) fills.insert(svg.substr(at + 18, svg.find('"', at + 18) - at - 18));
+  for (std::size_t at = svg.find("height=\"17\" fill=\""); at != std::string::npos;
+       at = svg.find("height=\"17\" fill=\"", at + 1))
+    fills.insert(svg.substr(at + 18, svg.find('"', at + 18) - at - 18));
   EXPECT_EQ(fills.size(), 8u);
 }
 
 TEST(Plots, EscapeAllText) {
-  const std::string svg = svg_of(Plot{"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
-  for (const char* bad : {"<script>", "<a>", "<b>", "<c>", "<d>"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
+  const std::string svg =
+      svg_of(Plot{"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
+  for (const char* bad : {"<script>", "<a>", "<b>", "<c>", "<d>"})
+    EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
 }
 
 TEST(Plots, KeepTheExtremaOfLongCurves) {
   Curve curve{"long", {}, {}};
-  for (int i = 0; i < 100000; ++i) curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
+  for (int i = 0; i < 100000; ++i)
+    curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
   const std::string svg = svg_of(Plot{"t", {"x"}, {"y"}, {curve}, {}});
   EXPECT_LT(svg.size(), 60000u);
-  EXPECT_NE(svg.find(" 48.6"), std::string::npos);   // the peak, 6 of 112 parts of 272 units below the top at 34
+  // the peak, 6 of 112 parts of 272 units below the top at 34
+  EXPECT_NE(svg.find(" 48.6"), std::string::npos);
 }
 
 TEST(Plots, AreInAPageWithTheirCaption) {
@@ -122,16 +147,20 @@ TEST(Plots, AreInAPageWithTheirCaption) {
 
 TEST(Plot, SixteenCurvesDifferInTheLegend) {
   Plot plot{"Sixteen", {"x"}, {"y"}, {}, {}, ""};
-  for (int i = 0; i < 16; ++i) plot.curves.push_back({"curve " + std::to_string(i), {0.0, 1.0}, {0.0, 1.0 + i}, true});
+  for (int i = 0; i < 16; ++i)
+    plot.curves.push_back({"curve " + std::to_string(i), {0.0, 1.0}, {0.0, 1.0 + i}, true});
   const std::string svg = svg_of(plot);
-  std::set<std::string> lines, marks;   // stroke and dashes; shape, fill and colour
+  std::set<std::string> lines, marks;  // stroke and dashes; shape, fill and colour
   const std::string from = "<text x=";
   for (int i = 0; i < 16; ++i) {
-    const auto name = svg.find(">curve " + std::to_string(i) + "<"), line = svg.rfind("<line", name);
+    const auto name = svg.find(">curve " + std::to_string(i) + "<"),
+               line = svg.rfind("<line", name);
     const std::string row = svg.substr(line, name - line);
     lines.insert(row.substr(row.find("stroke="), row.find("/>") - row.find("stroke=")));
     const auto outline = row.find(" d=");
-    marks.insert(row.substr(outline == std::string::npos ? row.find(" r=") : outline, row.find("<text") - (outline == std::string::npos ? row.find(" r=") : outline)));
+    marks.insert(
+        row.substr(outline == std::string::npos ? row.find(" r=") : outline,
+                   row.find("<text") - (outline == std::string::npos ? row.find(" r=") : outline)));
   }
   EXPECT_EQ(lines.size(), 16u);
   EXPECT_EQ(marks.size(), 16u);

@@ -1,4 +1,5 @@
-// A rubric and the tests it is about name the same tests, and the points of an assignment sum to 100.
+// A rubric and the tests it is about name the same tests, and the points of an assignment sum to
+// 100.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -20,7 +21,8 @@ using Names = std::set<std::string>;
 const fs::path kRoot = TUMBLE_SOURCE_DIR;
 const fs::path kPrivate = kRoot / "solutions_private";  // absent from what students get
 
-/// Tests that a judge of this build is linked with, "Suite.Name" a line. A judge holds no student's file: it is there whatever stands in one.
+/// Tests that a judge of this build is linked with, "Suite.Name" a line. A judge holds no student's
+/// file: it is there whatever stands in one.
 Names tests_of(const std::string& program) {
   const std::string command = "'" TUMBLE_BINARY_DIR "/bin/" + program + "' --list";
   const auto close = [](FILE* pipe) { ::pclose(pipe); };
@@ -48,9 +50,11 @@ std::string missing_from(const Names& names, const Names& present) {
   return missing;
 }
 
-void expect_same(const Names& in_rubric, const Names& linked, const std::string& rubric, const std::string& program) {
+void expect_same(const Names& in_rubric, const Names& linked, const std::string& rubric,
+                 const std::string& program) {
   ASSERT_FALSE(linked.empty()) << program << " lists no test";
-  EXPECT_EQ(missing_from(linked, in_rubric), "") << "in " << program << ", worth nothing in " << rubric;
+  EXPECT_EQ(missing_from(linked, in_rubric), "")
+      << "in " << program << ", worth nothing in " << rubric;
   EXPECT_EQ(missing_from(in_rubric, linked), "") << "in " << rubric << ", unknown to " << program;
 }
 
@@ -69,7 +73,8 @@ TEST(Rubrics, PublicOnesNameThePublicTests) {
     const fs::path file = kRoot / "assignments" / folder / "rubric.json";
     const grading::Rubric rubric = grading::read_rubric(file);
     EXPECT_EQ(folder.substr(0, rubric.assignment.size() + 1), rubric.assignment + "_") << file;
-    expect_same(named_in(rubric), tests_of("check_" + rubric.assignment + "_sandboxed"), file.lexically_relative(kRoot), "check_" + rubric.assignment + "_sandboxed");
+    expect_same(named_in(rubric), tests_of("check_" + rubric.assignment + "_sandboxed"),
+                file.lexically_relative(kRoot), "check_" + rubric.assignment + "_sandboxed");
   }
 }
 
@@ -78,11 +83,14 @@ TEST(Rubrics, SumTo100WithTheHiddenOnesAndNameEveryTest) {
   for (const std::string& folder : assignments()) {
     const fs::path file = kRoot / "assignments" / folder / "rubric.json";
     const grading::Rubric open = grading::read_rubric(file);
-    const grading::Rubric hidden = grading::read_rubric(kPrivate / folder / "rubric_hidden.json", true);
+    const grading::Rubric hidden =
+        grading::read_rubric(kPrivate / folder / "rubric_hidden.json", true);
     EXPECT_EQ(hidden.assignment, open.assignment);
-    const grading::Rubric whole = grading::joined(open, hidden);  // throws where the sum is not 100, or a test is in both
+    // throws where the sum is not 100, or a test is in both
+    const grading::Rubric whole = grading::joined(open, hidden);
     EXPECT_EQ(whole.total(), 100.0) << folder;
-    expect_same(named_in(whole), tests_of("judge_" + open.assignment), folder + ", public and hidden together", "judge_" + open.assignment);
+    expect_same(named_in(whole), tests_of("judge_" + open.assignment),
+                folder + ", public and hidden together", "judge_" + open.assignment);
   }
 }
 

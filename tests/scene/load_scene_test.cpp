@@ -10,8 +10,10 @@ namespace {
 
 TEST(CommittedScenes, AllLoadAndBuild) {
   int scenes = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(TUMBLE_SOURCE_DIR "/assignments")) {
-    if (entry.path().extension() != ".json" || entry.path().parent_path().filename() != "scenes") continue;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(TUMBLE_SOURCE_DIR "/assignments")) {
+    if (entry.path().extension() != ".json" || entry.path().parent_path().filename() != "scenes")
+      continue;
     SCOPED_TRACE(entry.path().string());
     ++scenes;
     Scene scene;

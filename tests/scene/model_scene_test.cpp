@@ -28,7 +28,8 @@ double largest_angle(const scene::Scene& scene) {
     const auto* mesh = std::get_if<MeshSolid>(&solids[i].shape);
     if (mesh == nullptr) continue;
     for (const Vector3d& vertex : mesh->mesh_body.vertices) {
-      const Vector3d to = scene.bodies[i].position_m + scene.bodies[i].world_from_body * vertex - scene.camera.eye_m;
+      const Vector3d to = scene.bodies[i].position_m + scene.bodies[i].world_from_body * vertex -
+                          scene.camera.eye_m;
       largest = std::max(largest, std::atan2(to.cross(sight).norm(), to.dot(sight)));
     }
   }
@@ -41,7 +42,8 @@ TEST(ModelScene, ShowsEveryShippedModelWholeWhateverItsSize) {
     if (!scene::names_model(entry.path())) continue;
     for (const double unit : {1e-3, 1.0, 100.0})
       for (const bool drops : {false, true}) {
-        const scene::Scene made = scene::make_model_scene(entry.path(), {unit, 1000.0, drops, true});
+        const scene::Scene made =
+            scene::make_model_scene(entry.path(), {unit, 1000.0, drops, true});
         EXPECT_LE(largest_angle(made), 1.0) << entry.path() << " " << unit << " " << drops;
         EXPECT_GE(largest_angle(made), 0.3) << entry.path() << ": a dot in the picture";
         EXPECT_EQ(made.checks.empty(), false);
@@ -53,7 +55,10 @@ TEST(ModelScene, ShowsEveryShippedModelWholeWhateverItsSize) {
 
 // A fall by its own radius takes sqrt(2 r / g) for any model: steps and duration scale with it.
 TEST(ModelScene, TakesStepsInProportionToTheTimeOfAFall) {
-  const scene::Scene one = scene::make_model_scene(kModels / "gear.3ds", {0.01, 1000.0, true, true}), hundred = scene::make_model_scene(kModels / "gear.3ds", {0.0001, 1000.0, true, true});
+  const scene::Scene one =
+                         scene::make_model_scene(kModels / "gear.3ds", {0.01, 1000.0, true, true}),
+                     hundred = scene::make_model_scene(kModels / "gear.3ds",
+                                                       {0.0001, 1000.0, true, true});
   EXPECT_NEAR(one.duration_s / hundred.duration_s, 10.0, 1e-9);
   EXPECT_NEAR(one.step_s / hundred.step_s, 10.0, 1e-9);
   EXPECT_TRUE(effects::gravity_of(one).has_value());
@@ -68,8 +73,10 @@ TEST(ModelScene, PutsObjectsSideBySideClearOfEachOther) {
 }
 
 TEST(ModelScene, AsksAboutTheUnitWhereTheSizeIsOdd) {
-  EXPECT_NE(scene::make_model_scene(kModels / "gear.3ds", {100.0}).about.find("--scale 0.001"), std::string::npos);
-  EXPECT_EQ(scene::make_model_scene(kModels / "gear.3ds").about.find("--scale 0.001"), std::string::npos);
+  EXPECT_NE(scene::make_model_scene(kModels / "gear.3ds", {100.0}).about.find("--scale 0.001"),
+            std::string::npos);
+  EXPECT_EQ(scene::make_model_scene(kModels / "gear.3ds").about.find("--scale 0.001"),
+            std::string::npos);
 }
 
 TEST(ModelScene, RefusesWhatIsNotClosedInTheLoadersWords) {

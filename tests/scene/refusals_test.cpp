@@ -9,10 +9,12 @@
 namespace tumble::scene::refusals_test {
 namespace {
 
-const std::string kBall = R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 })";
+const std::string kBall =
+    R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 })";
 
 std::string scene_with(const std::string& body, const std::string& more = "") {
-  return "{\n  \"title\": \"t\",\n  \"duration_s\": 1,\n  \"bodies\": [\n" + body + "\n  ]" + more + "\n}\n";
+  return "{\n  \"title\": \"t\",\n  \"duration_s\": 1,\n  \"bodies\": [\n" + body + "\n  ]" + more +
+         "\n}\n";
 }
 
 /// The message of a refused text; "" where it is accepted.
@@ -27,46 +29,65 @@ std::string refusal(const std::string& text) {
 }
 
 void expect_words(const std::string& refused, const std::vector<std::string>& words) {
-  for (const auto& word : words) EXPECT_NE(refused.find(word), std::string::npos) << "expected '" << word << "' in: " << refused;
+  for (const auto& word : words)
+    EXPECT_NE(refused.find(word), std::string::npos) << "expected '" << word << "' in: " << refused;
 }
 
-std::string body_with(const std::string& more) { return R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, )" + more + " }"; }
+std::string body_with(const std::string& more) {
+  return R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, )" + more + " }";
+}
 
 TEST(SceneRefusals, ARightSceneIsAccepted) { EXPECT_EQ(refusal(scene_with(kBall)), ""); }
 
 TEST(SceneRefusals, AMistypedKeyIsNamedWithItsNeighbour) {
-  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocty_m_s": [1, 0, 0])"))), {"s.json:5", "/bodies/0/velocty_m_s", "Did you mean 'velocity_m_s'"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocty_m_s": [1, 0, 0])"))),
+               {"s.json:5", "/bodies/0/velocty_m_s", "Did you mean 'velocity_m_s'"});
 }
 
 TEST(SceneRefusals, AKeyWithoutItsUnitIsNamedWithIt) {
-  expect_words(refusal(scene_with(body_with(R"("mass": 1)"))), {"/bodies/0/mass", "Did you mean 'mass_kg'"});
+  expect_words(refusal(scene_with(body_with(R"("mass": 1)"))),
+               {"/bodies/0/mass", "Did you mean 'mass_kg'"});
 }
 
 TEST(SceneRefusals, AUnitInTheValueIsFoundAndTheNumberExpected) {
-  expect_words(refusal(scene_with(body_with(R"("mass_kg": "2 kg")"))), {"/bodies/0/mass_kg", "found the text \"2 kg\"", "expected a number above 0 [kg]"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": "2 kg")"))),
+               {"/bodies/0/mass_kg", "found the text \"2 kg\"", "expected a number above 0 [kg]"});
 }
 
 TEST(SceneRefusals, ANegativeMassSaysWhatAMassIs) {
-  expect_words(refusal(scene_with(body_with(R"("mass_kg": -2)"))), {"/bodies/0/mass_kg", "found -2", "above 0"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": -2)"))),
+               {"/bodies/0/mass_kg", "found -2", "above 0"});
 }
 
-TEST(SceneRefusals, NaNIsNotJson) { expect_words(refusal(scene_with(body_with(R"("mass_kg": NaN)"))), {"s.json:5", "not JSON", "no NaN"}); }
+TEST(SceneRefusals, NaNIsNotJson) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": NaN)"))),
+               {"s.json:5", "not JSON", "no NaN"});
+}
 
 TEST(SceneRefusals, NeitherMassNorDensitySaysBoth) {
-  expect_words(refusal(scene_with(R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } } })")), {"/bodies/0", "neither density_kg_m3 nor mass_kg"});
+  expect_words(
+      refusal(scene_with(R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } } })")),
+      {"/bodies/0", "neither density_kg_m3 nor mass_kg"});
 }
 
 TEST(SceneRefusals, AVectorOfTwoNumbersIsCounted) {
-  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "position_m": [1, 2])"))), {"/bodies/0/position_m", "list of 2", "three numbers"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "position_m": [1, 2])"))),
+               {"/bodies/0/position_m", "list of 2", "three numbers"});
 }
 
 TEST(SceneRefusals, AMissingModelNamesTheFile) {
-  expect_words(refusal(scene_with(R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } }, "mass_kg": 1 })")), {"s.json:5: /bodies/0/shape/model", "pawn", "chess_prawn.3ds", "Did you mean 'chess_pawn.3ds'"});
+  expect_words(
+      refusal(scene_with(
+          R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } }, "mass_kg": 1 })")),
+      {"s.json:5: /bodies/0/shape/model", "pawn", "chess_prawn.3ds",
+       "Did you mean 'chess_pawn.3ds'"});
 }
 
 TEST(SceneRefusals, AnUnknownBodyInACheckListsTheBodies) {
-  const std::string checks = R"(, "checks": [{ "kind": "event_count", "body": "bal", "expected": [1], "tolerance": 0, "why": "w" }])";
-  expect_words(refusal(scene_with(kBall, checks)), {"/checks/0/body", "no body is named 'bal'", "Did you mean 'ball'"});
+  const std::string checks =
+      R"(, "checks": [{ "kind": "event_count", "body": "bal", "expected": [1], "tolerance": 0, "why": "w" }])";
+  expect_words(refusal(scene_with(kBall, checks)),
+               {"/checks/0/body", "no body is named 'bal'", "Did you mean 'ball'"});
 }
 
 TEST(SceneRefusals, AnUnknownKindOfCheckIsNamedWithItsNeighbour) {
@@ -74,37 +95,57 @@ TEST(SceneRefusals, AnUnknownKindOfCheckIsNamedWithItsNeighbour) {
   expect_words(refusal(scene_with(kBall, checks)), {"/checks/0/kind", "Did you mean 'energy'"});
 }
 
-TEST(SceneRefusals, ATakenNameIsReportedWithItsOwner) { expect_words(refusal(scene_with(kBall + ",\n" + kBall)), {"s.json:6", "/bodies/1/name", "taken by /bodies/0"}); }
-
-TEST(SceneRefusals, AQuaternionThatIsNotUnitSaysItsLength) {
-  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "orientation": { "quaternion": [1, 1, 0, 0] })"))), {"/bodies/0/orientation/quaternion", "unit quaternion"});
+TEST(SceneRefusals, ATakenNameIsReportedWithItsOwner) {
+  expect_words(refusal(scene_with(kBall + ",\n" + kBall)),
+               {"s.json:6", "/bodies/1/name", "taken by /bodies/0"});
 }
 
-TEST(SceneRefusals, AKeyThatStandsTwiceIsRefused) { expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "mass_kg": 2)"))), {"/bodies/0/mass_kg", "twice"}); }
+TEST(SceneRefusals, AQuaternionThatIsNotUnitSaysItsLength) {
+  expect_words(refusal(scene_with(
+                   body_with(R"("mass_kg": 1, "orientation": { "quaternion": [1, 1, 0, 0] })"))),
+               {"/bodies/0/orientation/quaternion", "unit quaternion"});
+}
+
+TEST(SceneRefusals, AKeyThatStandsTwiceIsRefused) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "mass_kg": 2)"))),
+               {"/bodies/0/mass_kg", "twice"});
+}
 
 TEST(SceneRefusals, AnEllipsoidMeetsPlanesOnlyAndSaysWhatElseItMayMeet) {
-  const std::string egg = R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1] } }, "mass_kg": 1, "position_m": [0, 0, 1] })";
+  const std::string egg =
+      R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1] } }, "mass_kg": 1, "position_m": [0, 0, 1] })";
   const std::string floor = R"({ "name": "floor", "shape": { "plane": {} }, "immovable": true })";
   EXPECT_EQ(refusal(scene_with(egg + ",\n" + floor)), "");
-  expect_words(refusal(scene_with(kBall + ",\n" + egg)), {"s.json:6", "/bodies/1", "'egg' is an ellipsoid and may meet 'ball'", "planes only", "apart"});
+  expect_words(refusal(scene_with(kBall + ",\n" + egg)),
+               {"s.json:6", "/bodies/1", "'egg' is an ellipsoid and may meet 'ball'", "planes only",
+                "apart"});
   EXPECT_EQ(refusal(scene_with(kBall + ",\n" + egg, R"(, "apart": [["egg", "ball"]])")), "");
 }
 
 TEST(SceneRefusals, AnEllipsoidBesideItsCentreOfMassNeedsMomentsOfItsOwn) {
   const auto egg = [](const std::string& more) {
-    return scene_with(R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1], "center_m": [0, 0, 0.05] } }, )" + more + " }");
+    return scene_with(
+        R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1], "center_m": [0, 0, 0.05] } }, )" +
+        more + " }");
   };
-  expect_words(refusal(egg(R"("mass_kg": 1)")), {"/bodies/0/shape/ellipsoid/center_m", "not of one density", "inertia_body_kg_m2"});
-  EXPECT_EQ(refusal(egg(R"("mass_kg": 1, "inertia_body_kg_m2": [[2e-4, -2e-5, 0], [-2e-5, 16e-4, 0], [0, 0, 17e-4]])")), "");
+  expect_words(refusal(egg(R"("mass_kg": 1)")),
+               {"/bodies/0/shape/ellipsoid/center_m", "not of one density", "inertia_body_kg_m2"});
+  EXPECT_EQ(
+      refusal(egg(
+          R"("mass_kg": 1, "inertia_body_kg_m2": [[2e-4, -2e-5, 0], [-2e-5, 16e-4, 0], [0, 0, 17e-4]])")),
+      "");
 }
 
-TEST(SceneRefusals, WhatIsNoObjectSaysThatASceneIs) { expect_words(refusal("[]"), {"s.json:1", "found the list []", "expected an object"}); }
+TEST(SceneRefusals, WhatIsNoObjectSaysThatASceneIs) {
+  expect_words(refusal("[]"), {"s.json:1", "found the list []", "expected an object"});
+}
 
 TEST(SceneRefusals, ADurationOrStepThatIsNotAboveZeroSaysSo) {
   for (const std::string key : {"step_s", "duration_s"})
     for (const std::string value : {"0", "-1"}) {
       std::string text = scene_with(kBall, key == "step_s" ? ", \"step_s\": " + value : "");
-      if (key == "duration_s") text.replace(text.find("\"duration_s\": 1"), 15, "\"duration_s\": " + value);
+      if (key == "duration_s")
+        text.replace(text.find("\"duration_s\": 1"), 15, "\"duration_s\": " + value);
       expect_words(refusal(text), {"/" + key, "found " + value, "a number above 0"});
     }
 }
@@ -112,18 +153,28 @@ TEST(SceneRefusals, ADurationOrStepThatIsNotAboveZeroSaysSo) {
 // 1e-320 kg has no inverse in doubles, and (1e200 m/s)^2 no value: errors that follow from them
 // would not name their cause.
 TEST(SceneRefusals, NumbersThatDoublesCannotSquareAreNamed) {
-  for (const std::string mass : {"1e-320", "1e-61", "1e300", "1e61"}) expect_words(refusal(scene_with(body_with("\"mass_kg\": " + mass))), {"s.json:5", "/bodies/0/mass_kg", "found", "compute"});
-  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -1e200, 0])"))), {"/bodies/0/velocity_m_s/1", "too large"});
-  expect_words(refusal(scene_with(body_with("\"mass_kg\": 1e999"))), {"s.json:5", "1e999", "a double can hold"});
-  for (const std::string mass : {"1e-60", "1e60"}) EXPECT_EQ(refusal(scene_with(body_with("\"mass_kg\": " + mass))), "");
-  EXPECT_EQ(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -0.0, 1e-60])"))), "");
+  for (const std::string mass : {"1e-320", "1e-61", "1e300", "1e61"})
+    expect_words(refusal(scene_with(body_with("\"mass_kg\": " + mass))),
+                 {"s.json:5", "/bodies/0/mass_kg", "found", "compute"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -1e200, 0])"))),
+               {"/bodies/0/velocity_m_s/1", "too large"});
+  expect_words(refusal(scene_with(body_with("\"mass_kg\": 1e999"))),
+               {"s.json:5", "1e999", "a double can hold"});
+  for (const std::string mass : {"1e-60", "1e60"})
+    EXPECT_EQ(refusal(scene_with(body_with("\"mass_kg\": " + mass))), "");
+  EXPECT_EQ(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -0.0, 1e-60])"))),
+            "");
 }
 
 TEST(SceneRefusals, ListsWithinListsAreFollowedToSomeDepth) {
-  EXPECT_NE(refusal("{ \"bodies\": " + std::string(2000, '[') + std::string(2000, ']') + " }").find("brackets"), std::string::npos);
+  EXPECT_NE(refusal("{ \"bodies\": " + std::string(2000, '[') + std::string(2000, ']') + " }")
+                .find("brackets"),
+            std::string::npos);
 }
 
-TEST(SceneRefusals, ATrailingCommaIsNotJson) { expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"}); }
+TEST(SceneRefusals, ATrailingCommaIsNotJson) {
+  expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"});
+}
 
 }  // namespace
 }  // namespace tumble::scene::refusals_test

@@ -8,7 +8,8 @@
 namespace tumble::battery {
 namespace {
 
-report::Measure measure(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+report::Measure measure(const std::string& what, double value, double threshold,
+                        const std::string& unit, const std::string& why) {
   report::Measure m;
   m.what = what;
   m.value = value;
@@ -37,17 +38,20 @@ void Findings::add(report::Measure measure) {
   row_.measures.push_back(std::move(measure));
 }
 
-void Findings::at_most(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+void Findings::at_most(const std::string& what, double value, double threshold,
+                       const std::string& unit, const std::string& why) {
   add(measure(what, value, threshold, unit, why));
 }
 
-void Findings::at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+void Findings::at_least(const std::string& what, double value, double threshold,
+                        const std::string& unit, const std::string& why) {
   report::Measure m = measure(what, value, threshold, unit, why);
   m.at_least = true;
   add(std::move(m));
 }
 
-void Findings::must_fail(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+void Findings::must_fail(const std::string& what, double value, double threshold,
+                         const std::string& unit, const std::string& why) {
   report::Measure m = measure(what, value, threshold, unit, why);
   m.must_fail = true;
   add(std::move(m));
@@ -79,8 +83,12 @@ void Findings::part(const std::string& what, const std::function<void()>& work) 
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts, add_sweeps, add_scales, add_rotation, add_stacks, add_cards, add_structures, add_friction, add_piles, add_rollbacks}) add(all);
-  std::stable_sort(all.begin(), all.end(), [](const Case& a, const Case& b) { return a.row < b.row; });
+  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts,
+                         add_sweeps, add_scales, add_rotation, add_stacks, add_cards,
+                         add_structures, add_friction, add_piles, add_rollbacks})
+    add(all);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Case& a, const Case& b) { return a.row < b.row; });
   return all;
 }
 
@@ -88,9 +96,12 @@ report::BatteryRow run(const Case& the_case, const Given& given) {
   report::BatteryRow row{the_case.row, the_case.name, the_case.about, {}, {}, the_case.not_part};
   if (!the_case.run) return row;
   Findings findings(row, given.on_measure);
-  if (const std::string lack = missing(the_case.needs, given.laws); !lack.empty()) findings.not_run("all", lack);
-  else findings.part("all", [&] { the_case.run(given, findings); });
-  for (report::Measure& m : row.measures) m.shortfall = known_shortfall(row.row, m.what, given.is_long);
+  if (const std::string lack = missing(the_case.needs, given.laws); !lack.empty())
+    findings.not_run("all", lack);
+  else
+    findings.part("all", [&] { the_case.run(given, findings); });
+  for (report::Measure& m : row.measures)
+    m.shortfall = known_shortfall(row.row, m.what, given.is_long);
   return row;
 }
 

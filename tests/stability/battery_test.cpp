@@ -1,4 +1,5 @@
-// The short battery: every hard case holds its thresholds, or is a known shortfall; every method known not to hold is seen failing.
+// The short battery: every hard case holds its thresholds, or is a known shortfall; every method
+// known not to hold is seen failing.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ truths::Case truth(const std::string& id) {
   return cli::read_truth(fs::path(TUMBLE_SOURCE_DIR) / "tests" / "truths" / (name + ".json"));
 }
 
-// The reference's laws where this tree has it; else the library's integration only, and what needs more says so.
+// The reference's laws where this tree has it; else the library's integration only, and what needs
+// more says so.
 battery::Given available_laws() {
   modules::Registry registry;
   register_assignments(registry);
@@ -42,7 +44,9 @@ TEST_P(Stability, HoldsItsThresholds) {
   for (const report::Measure& m : row.measures) {
     const report::Outcome outcome = report::outcome_of(m);
     EXPECT_TRUE(outcome != report::Outcome::kBroken && outcome != report::Outcome::kTooGood)
-        << m.what << ": " << report::shown(m.value, m.unit) << ", wanted " << report::shown_threshold(m) << " (" << report::word_of(outcome) << "). " << m.why << ' ' << m.error;
+        << m.what << ": " << report::shown(m.value, m.unit) << ", wanted "
+        << report::shown_threshold(m) << " (" << report::word_of(outcome) << "). " << m.why << ' '
+        << m.error;
   }
 }
 

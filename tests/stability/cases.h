@@ -27,7 +27,8 @@ void spikes(const Given& given, Findings& findings);
 /// Of row 31: bodies with a curved surface (rattleback.cpp).
 void rattleback(const Given& given, Findings& findings);
 
-/// Why a measure of a row is known not to be reached; empty: it must be. The one list of shortfalls (shortfalls.cpp).
+/// Why a measure of a row is known not to be reached; empty: it must be. The one list of shortfalls
+/// (shortfalls.cpp).
 std::string known_shortfall(int row, const std::string& what, bool is_long);
 
 }  // namespace tumble::battery

@@ -12,7 +12,8 @@
 
 namespace tumble::battery {
 
-scene::BodySpec box(const std::string& name, const Vector3d& half_extents, double mass, const Vector3d& position) {
+scene::BodySpec box(const std::string& name, const Vector3d& half_extents, double mass,
+                    const Vector3d& position) {
   scene::BodySpec body = truths::ball(name, mass, 1.0, position, Vector3d::Zero(), 0.0);
   body.shape = scene::BoxSpec{half_extents};
   return body;
@@ -24,7 +25,9 @@ scene::BodySpec rough(scene::BodySpec body, double friction, double restitution)
   return body;
 }
 
-scene::BodySpec floor_of(double friction) { return rough(truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.0), friction); }
+scene::BodySpec floor_of(double friction) {
+  return rough(truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.0), friction);
+}
 
 scene::BodySpec turned(scene::BodySpec body, double angle, const Vector3d& axis) {
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, axis)) * body.world_from_body;
@@ -39,10 +42,15 @@ scene::Scene with_contact(const std::string& name, std::vector<scene::BodySpec> 
   return scene;
 }
 
-scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) { return truths::straight_chain(masses, length, direction, kDown); }
+scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) {
+  return truths::straight_chain(masses, length, direction, kDown);
+}
 
-Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws, double duration, double h, long frames) {
-  const long about = std::max(1L, std::lround(duration / h)), stride = std::max(1L, about / std::max(1L, frames)), steps = std::max(1L, about / stride) * stride;
+Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws, double duration, double h,
+                        long frames) {
+  const long about = std::max(1L, std::lround(duration / h)),
+             stride = std::max(1L, about / std::max(1L, frames)),
+             steps = std::max(1L, about / stride) * stride;
   return truths::run_in_steps(scene, laws, static_cast<double>(steps) * h, steps, steps / stride);
 }
 
@@ -50,7 +58,8 @@ double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.poten
 
 double energy_drift(const Trajectory& run, double scale) {
   double worst = 0.0;
-  for (const Frame& frame : run.frames) worst = std::max(worst, std::abs(energy_of(frame) - energy_of(run.frames.front())) / scale);
+  for (const Frame& frame : run.frames)
+    worst = std::max(worst, std::abs(energy_of(frame) - energy_of(run.frames.front())) / scale);
   return worst;
 }
 
@@ -65,13 +74,17 @@ double energy_rise(const Trajectory& run) {
 
 double drift_of(const Trajectory& run, std::size_t body) {
   double worst = 0.0;
-  for (const Frame& frame : run.frames) worst = std::max(worst, (frame.poses[body].com_world - run.frames.front().poses[body].com_world).norm());
+  for (const Frame& frame : run.frames)
+    worst = std::max(
+        worst, (frame.poses[body].com_world - run.frames.front().poses[body].com_world).norm());
   return worst;
 }
 
 double tilt_of(const Trajectory& run, std::size_t body) {
   double worst = 0.0;
-  for (const Frame& frame : run.frames) worst = std::max(worst, angle_between(frame.poses[body].world_from_body, run.frames.front().poses[body].world_from_body));
+  for (const Frame& frame : run.frames)
+    worst = std::max(worst, angle_between(frame.poses[body].world_from_body,
+                                          run.frames.front().poses[body].world_from_body));
   return worst;
 }
 
@@ -95,7 +108,8 @@ double angle_between(const Quaterniond& a, const Quaterniond& b) {
   return 2 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
 }
 
-report::Curve curve_of(const std::string& name, const Trajectory& run, const std::function<double(const Frame&)>& value) {
+report::Curve curve_of(const std::string& name, const Trajectory& run,
+                       const std::function<double(const Frame&)>& value) {
   report::Curve curve{name, {}, {}};
   for (const Frame& frame : run.frames) {
     curve.x.push_back(frame.time);
@@ -104,31 +118,44 @@ report::Curve curve_of(const std::string& name, const Trajectory& run, const std
   return curve;
 }
 
-void compare_with_truth(const Given& given, Findings& findings, const std::string& id, bool exact_only) {
+void compare_with_truth(const Given& given, Findings& findings, const std::string& id,
+                        bool exact_only) {
   findings.part("truth " + id, [&] {
     const truths::Case truth = given.truth(id);
     Laws laws = given.laws;
-    if (exact_only) laws.state_derivative = [](const RigidBodyState&, const Inertia&, const Wrench&) -> VectorXd { throw NotImplemented("state_derivative", "left out"); };
+    if (exact_only)
+      laws.state_derivative = [](const RigidBodyState&, const Inertia&, const Wrench&) -> VectorXd {
+        throw NotImplemented("state_derivative", "left out");
+      };
     truths::Comparison comparison;
     truths::framework_families().at(truth.family)(truth, laws, comparison);
     const truths::Line* worst = nullptr;
     const auto ratio = [](const truths::Line& line) { return line.error / line.tolerance; };
     for (const truths::Line& line : comparison.lines()) {
       if (exact_only && line.output.starts_with("rk4.")) continue;
-      if (line.verdict == truths::Verdict::kNotAttempted) return findings.not_run("truth " + id, line.note);
-      if (line.verdict == truths::Verdict::kWrong && !(ratio(line) > 1.0)) throw std::runtime_error(line.output + ": " + line.note);   // without a number
+      if (line.verdict == truths::Verdict::kNotAttempted)
+        return findings.not_run("truth " + id, line.note);
+      // without a number
+      if (line.verdict == truths::Verdict::kWrong && !(ratio(line) > 1.0))
+        throw std::runtime_error(line.output + ": " + line.note);
       if (line.verdict == truths::Verdict::kNotCompared || !(ratio(line) >= 0.0)) continue;
       if (worst == nullptr || ratio(line) > ratio(*worst)) worst = &line;
     }
     require(worst != nullptr, "no output of truth " + id + " was compared");
-    findings.at_most("truth " + id + ": " + worst->output, worst->error, worst->tolerance, "",
-                     worst->note.empty() ? "100 floors of double precision; of all outputs the one closest to its mark" : worst->note);
+    findings.at_most(
+        "truth " + id + ": " + worst->output, worst->error, worst->tolerance, "",
+        worst->note.empty()
+            ? "100 floors of double precision; of all outputs the one closest to its mark"
+            : worst->note);
   });
 }
 
-void write_model(const TriangleMesh& mesh, const std::filesystem::path& file) { write_whole(file, models::write_3ds({{"model", mesh}})); }
+void write_model(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  write_whole(file, models::write_3ds({{"model", mesh}}));
+}
 
-void write_prism(const std::vector<Vector2d>& corners, double half_depth, const std::filesystem::path& file) {
+void write_prism(const std::vector<Vector2d>& corners, double half_depth,
+                 const std::filesystem::path& file) {
   TriangleMesh mesh;
   for (const double y : {-half_depth, half_depth})
     for (const Vector2d& corner : corners) mesh.vertices.emplace_back(corner.x(), y, corner.y());
@@ -137,7 +164,8 @@ void write_prism(const std::vector<Vector2d>& corners, double half_depth, const 
     mesh.faces.push_back({i, 4 + j, j});
     mesh.faces.push_back({i, 4 + i, 4 + j});
   }
-  for (const Face& face : {Face{0, 1, 2}, Face{0, 2, 3}, Face{4, 6, 5}, Face{4, 7, 6}}) mesh.faces.push_back(face);
+  for (const Face& face : {Face{0, 1, 2}, Face{0, 2, 3}, Face{4, 6, 5}, Face{4, 7, 6}})
+    mesh.faces.push_back(face);
   write_model(mesh, file);
 }
 

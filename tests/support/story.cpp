@@ -15,7 +15,8 @@ using Values = Eigen::Map<const MatrixXd>;
 Values values_of(const Numbers& m) { return {m.data, m.rows, m.columns}; }
 
 constexpr const char* kNoNumber =
-    "no number came out (NaN or infinity): a variable that was never set, 0 / 0, an infinite mass multiplied, or the root of a negative number";
+    "no number came out (NaN or infinity): a variable that was never set, 0 / 0, an infinite mass "
+    "multiplied, or the root of a negative number";
 
 bool is_float(const Values& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i)
@@ -23,7 +24,9 @@ bool is_float(const Values& values) {
   return true;
 }
 
-double largest_difference(const Values& a, const Values& b) { return (a - b).cwiseAbs().maxCoeff(); }
+double largest_difference(const Values& a, const Values& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
 
 }  // namespace
 
@@ -32,7 +35,8 @@ Story with_slip(Story story, const std::string& slip) {
   return story;
 }
 
-std::string tell(const Story& story, const std::string& expected, const std::string& found, const std::string& unit, const std::string& difference) {
+std::string tell(const Story& story, const std::string& expected, const std::string& found,
+                 const std::string& unit, const std::string& difference) {
   std::ostringstream text;
   text << "\n  scene:    " << story.scene;
   if (!story.steps.empty()) text << "\n  steps:    " << story.steps;
@@ -58,14 +62,16 @@ std::string show(const Numbers& m) {
   return text.str();
 }
 
-std::string slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected_numbers, double tolerance, const Story& story) {
+std::string slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected_numbers,
+                               double tolerance, const Story& story) {
   const Values found = values_of(found_numbers), expected = values_of(expected_numbers);
   if (!found.allFinite()) return story.no_number.empty() ? kNoNumber : story.no_number;
   const double scale = expected.cwiseAbs().maxCoeff(), error = largest_difference(found, expected);
   constexpr double kFloatEps = 0x1p-24;
   if (!(scale > 0) || error > 16 * kFloatEps * scale) return "";
   const bool shows_in_bits = is_float(found) && !is_float(expected);
-  const bool shows_in_size = !story.iterates && error > kFloatEps / 256 * scale && tolerance < kFloatEps / 4096 * scale;
+  const bool shows_in_size =
+      !story.iterates && error > kFloatEps / 256 * scale && tolerance < kFloatEps / 4096 * scale;
   return shows_in_bits || shows_in_size ? kFloat : "";
 }
 
@@ -74,45 +80,60 @@ void report_failure(const std::string& told) {
   const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
   const int told_before = test ? test->result()->total_part_count() : 0;
   const bool is_last = told_before == kStoriesATest - 1;
-  if (told_before < kStoriesATest) ADD_FAILURE() << told << (is_last ? "\n  more:     what else may differ in this test is left out" : "");
+  if (told_before < kStoriesATest)
+    ADD_FAILURE() << told
+                  << (is_last ? "\n  more:     what else may differ in this test is left out" : "");
 }
 
-void expect_near(double found, double expected, double tolerance, const std::string& unit, const Story& story) {
+void expect_near(double found, double expected, double tolerance, const std::string& unit,
+                 const Story& story) {
   const double difference = std::abs(found - expected);
   if (difference <= tolerance) return;
   const std::string seen = slip_in_the_digits({&found, 1, 1}, {&expected, 1, 1}, tolerance, story);
-  report_failure(tell(with_slip(story, seen), show(expected), show(found), unit, show(difference) + " (allowed " + show(tolerance) + ")"));
+  report_failure(tell(with_slip(story, seen), show(expected), show(found), unit,
+                      show(difference) + " (allowed " + show(tolerance) + ")"));
 }
 
-void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, double tolerance, const std::string& unit, const Story& given) {
+void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, double tolerance,
+                 const std::string& unit, const Story& given) {
   const Values found = values_of(found_numbers), expected = values_of(expected_numbers);
   const bool same_size = found.rows() == expected.rows() && found.cols() == expected.cols();
-  const double difference = same_size && found.allFinite() ? largest_difference(found, expected) : std::numeric_limits<double>::quiet_NaN();
+  const double difference = same_size && found.allFinite()
+                                ? largest_difference(found, expected)
+                                : std::numeric_limits<double>::quiet_NaN();
   if (difference <= tolerance) return;
-  const Story story = same_size ? with_slip(given, slip_in_the_digits(found_numbers, expected_numbers, tolerance, given)) : given;
+  const Story story =
+      same_size
+          ? with_slip(given, slip_in_the_digits(found_numbers, expected_numbers, tolerance, given))
+          : given;
   const std::string off_by = show(difference) + " (allowed " + show(tolerance) + ")";
   constexpr Eigen::Index kReadable = 16;  // numbers in a line
   if (same_size && expected.size() > kReadable && found.allFinite()) {
     Eigen::Index row = 0, column = 0;
     (found - expected).cwiseAbs().maxCoeff(&row, &column);
-    const std::string where = " at [" + std::to_string(row) + "], the worst of " + std::to_string(expected.size());
-    report_failure(tell(story, show(expected(row, column)) + where, show(found(row, column)), unit, off_by));
+    const std::string where =
+        " at [" + std::to_string(row) + "], the worst of " + std::to_string(expected.size());
+    report_failure(
+        tell(story, show(expected(row, column)) + where, show(found(row, column)), unit, off_by));
   } else {
     report_failure(tell(story, show(expected_numbers), show(found_numbers), unit, off_by));
   }
 }
 
-void expect_kept_nothing(const Numbers& first, const Numbers& expected_first, const Numbers& second, const Numbers& expected_second, double tolerance,
-                         const std::string& unit, const Story& story) {
+void expect_kept_nothing(const Numbers& first, const Numbers& expected_first, const Numbers& second,
+                         const Numbers& expected_second, double tolerance, const std::string& unit,
+                         const Story& story) {
   const auto is_near = [tolerance](const Numbers& x, const Numbers& y) {
-    return x.rows * x.columns == y.rows * y.columns && largest_difference(values_of(x), values_of(y)) <= tolerance;
+    return x.rows * x.columns == y.rows * y.columns &&
+           largest_difference(values_of(x), values_of(y)) <= tolerance;
   };
   expect_near(first, expected_first, tolerance, unit, story);
   const bool kept = is_near(first, expected_first) && !is_near(second, expected_second);
   expect_near(second, expected_second, tolerance, unit, with_slip(story, kept ? kKept : ""));
 }
 
-void expect_true(bool holds, const std::string& expected, const std::string& found, const Story& story) {
+void expect_true(bool holds, const std::string& expected, const std::string& found,
+                 const Story& story) {
   if (!holds) report_failure(tell(story, expected, found, ""));
 }
 

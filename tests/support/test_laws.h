@@ -1,7 +1,7 @@
 /// Impulse laws for tests of the engines, which must not depend on what a student wrote.
 ///
-/// Link with tumble::test_laws, a target that is absent from what students get: a test that needs it stands in CMake under
-/// `if(TARGET tumble::test_laws)`.
+/// Link with tumble::test_laws, a target that is absent from what students get: a test that needs
+/// it stands in CMake under `if(TARGET tumble::test_laws)`.
 #pragma once
 
 #include "framework/dynamics/laws.h"

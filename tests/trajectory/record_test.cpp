@@ -15,9 +15,12 @@ TEST(Record, NamesCommandVersionSceneAndSeeds) {
   info.scene_name = "bowl";
   info.scene_digest = "0123456789abcdef0123456789abcdef";
   info.seeds = {7};
-  EXPECT_EQ(record_of(info), "tumble run bowl · Tumble 0.1.0 (25ccc19a01) · scene bowl 0123456789abcdef, seed 7");
+  EXPECT_EQ(record_of(info),
+            "tumble run bowl · Tumble 0.1.0 (25ccc19a01) · scene bowl 0123456789abcdef, seed 7");
   info.seeds = {7, 11};
-  EXPECT_EQ(record_of(info), "tumble run bowl · Tumble 0.1.0 (25ccc19a01) · scene bowl 0123456789abcdef, seeds 7, 11");
+  EXPECT_EQ(
+      record_of(info),
+      "tumble run bowl · Tumble 0.1.0 (25ccc19a01) · scene bowl 0123456789abcdef, seeds 7, 11");
 }
 
 TEST(Record, SaysNothingOfWhatIsNotThere) {

@@ -23,14 +23,15 @@ std::string said_in(double wait_s, const RunProgress::Pace& pace) {
     progress.frame(frame_at(0.5));
     std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
   }
-  EXPECT_EQ(recorder.trajectory().frames.size(), 1u);   // handed on
+  EXPECT_EQ(recorder.trajectory().frames.size(), 1u);  // handed on
   return testing::internal::GetCapturedStderr();
 }
 
 TEST(RunProgress, AShortRunSaysNothing) { EXPECT_EQ(said_in(0.01, {100.0, 100.0}), ""); }
 
 TEST(RunProgress, ALongRunSaysHowFarItIsAndWhereItStandsStill) {
-  const std::string said = said_in(1.0, {0.05, 0.05});   // twenty lines on an idle machine, two on any
+  // twenty lines on an idle machine, two on any
+  const std::string said = said_in(1.0, {0.05, 0.05});
   EXPECT_TRUE(said.starts_with("tumble: 0.5 of 2 s simulated, about 0 s left\n")) << said;
   EXPECT_NE(said.find("0.5 of 2 s simulated, for "), std::string::npos) << said;
   EXPECT_NE(said.find("no frame has come"), std::string::npos) << said;

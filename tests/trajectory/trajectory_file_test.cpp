@@ -1,4 +1,5 @@
-// A recorded run comes back bit for bit; a file that is not one is refused with the byte where it stops being one.
+// A recorded run comes back bit for bit; a file that is not one is refused with the byte where it
+// stops being one.
 #include <unistd.h>
 
 #include <cmath>
@@ -17,7 +18,8 @@ namespace tumble {
 namespace {
 
 std::filesystem::path scratch(const std::string& name) {
-  return std::filesystem::temp_directory_path() / ("tumble_run_" + std::to_string(getpid()) + "_" + name);
+  return std::filesystem::temp_directory_path() /
+         ("tumble_run_" + std::to_string(getpid()) + "_" + name);
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
@@ -27,11 +29,13 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 Trajectory small_run() {
   Trajectory run;
-  run.info = {"tumble run x", "1", "x", "ab12", "rd", "reference", "library", 1.0 / 60.0, 60.0, {7, 8}};
+  run.info = {"tumble run x", "1",       "x",        "ab12", "rd",
+              "reference",    "library", 1.0 / 60.0, 60.0,   {7, 8}};
   run.bodies = {{"ball", false}, {"floor", true}};
   const BodyPose pose{{0.1, -0.0, 1e-310}, Quaterniond(0.5, -0.5, 0.5, 0.5), {1, 2, 3}, {4, 5, 6}};
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const double time : {0.0, 1.0 / 3.0}) run.frames.push_back({time, {pose, pose}, 0.1, 0.2, {1, 2, 3}, {4, 5, 6}, infinity});
+  for (const double time : {0.0, 1.0 / 3.0})
+    run.frames.push_back({time, {pose, pose}, 0.1, 0.2, {1, 2, 3}, {4, 5, 6}, infinity});
   run.info.constraint_source = "student";
   run.frames[1].spring_forces = {-2.5, 1e-310};
   run.frames[1].rod_tensions = {9.81};
@@ -74,7 +78,8 @@ TEST(TrajectoryFile, ComesBackBitForBit) {
   ASSERT_EQ(read.frames.size(), 2u);
   EXPECT_EQ(read.frames[1].time, 1.0 / 3.0);
   EXPECT_TRUE(std::signbit(read.frames[1].poses[0].com_world.y()));
-  EXPECT_EQ(read.frames[1].poses[1].world_from_body.coeffs(), small_run().frames[1].poses[1].world_from_body.coeffs());
+  EXPECT_EQ(read.frames[1].poses[1].world_from_body.coeffs(),
+            small_run().frames[1].poses[1].world_from_body.coeffs());
   EXPECT_EQ(read.events[0].normal_velocity_after, 0.625);
   EXPECT_EQ(read.events[1].kind, EventKind::kControl);
   EXPECT_TRUE(read.frames[0].spring_forces.empty());
@@ -104,17 +109,21 @@ TEST(TrajectoryFile, SameRunOtherStageTimesSameBytes) {
 TEST(TrajectoryFile, CutAnywhereIsRefusedWithThePlace) {
   const std::string good = good_bytes();
   for (std::size_t length = 0; length < good.size(); ++length)
-    EXPECT_NE(problem_of(good.substr(0, length)).find(", byte "), std::string::npos) << "cut to " << length << " bytes";
+    EXPECT_NE(problem_of(good.substr(0, length)).find(", byte "), std::string::npos)
+        << "cut to " << length << " bytes";
 }
 
 TEST(TrajectoryFile, ForeignFileIsNamedAsSuch) {
-  EXPECT_NE(problem_of("{\"name\": \"a scene, not a run\"}").find("byte 0: not a recorded run"), std::string::npos);
+  EXPECT_NE(problem_of("{\"name\": \"a scene, not a run\"}").find("byte 0: not a recorded run"),
+            std::string::npos);
 }
 
 TEST(TrajectoryFile, OtherVersionIsNamedAsOlderOrNewer) {
   std::string bytes = good_bytes();
   bytes[8] = 1;
-  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format version 1, this program reads 3"), std::string::npos);
+  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format "
+                                   "version 1, this program reads 3"),
+            std::string::npos);
   bytes[8] = 9;
   EXPECT_NE(problem_of(bytes).find("byte 8: recorded by a newer version"), std::string::npos);
 }
@@ -126,17 +135,20 @@ TEST(TrajectoryFile, AnyByteChangedIsReadOrRefusedAndNothingElse) {
     for (const int flip : {0x01, 0x80, 0xff}) {
       std::string bytes = good;
       bytes[at] = static_cast<char>(bytes[at] ^ flip);
-      const std::string said = problem_of(bytes);   // any exception but a UserError fails the test
+      const std::string said = problem_of(bytes);  // any exception but a UserError fails the test
       if (said != "no error") ++refused;
     }
-  // Counts and lengths, of which there are about 30 of 8 bytes, magic, version and end are noticed; a changed number cannot be.
+  // Counts and lengths, of which there are about 30 of 8 bytes, magic, version and end are noticed;
+  // a changed number cannot be.
   EXPECT_GT(refused, 500);
 }
 
 TEST(TrajectoryFile, AnEventOfAnUnknownKindIsNamed) {
   const std::string good = good_bytes();
-  // Seen from the end: "end\n", stopped_by (8 + 13), counts (8 + 8 + 12 + 8 + 8 + 9 + 8), and the last event but its time.
-  const std::size_t kind_at = good.size() - 4 - (8 + small_run().stopped_by.size()) - (8 + (8 + 12 + 8) + (8 + 9 + 8)) - (1 + 8 + 9 * 8);
+  // Seen from the end: "end\n", stopped_by (8 + 13), counts (8 + 8 + 12 + 8 + 8 + 9 + 8), and the
+  // last event but its time.
+  const std::size_t kind_at = good.size() - 4 - (8 + small_run().stopped_by.size()) -
+                              (8 + (8 + 12 + 8) + (8 + 9 + 8)) - (1 + 8 + 9 * 8);
   std::string bytes = good;
   ASSERT_EQ(bytes[kind_at], static_cast<char>(EventKind::kControl));
   bytes[kind_at] = 12;
@@ -145,12 +157,14 @@ TEST(TrajectoryFile, AnEventOfAnUnknownKindIsNamed) {
 
 TEST(TrajectoryFile, CountBeyondTheFileIsRefusedBeforeMemoryIsTaken) {
   std::string bytes = good_bytes();
-  for (int i = 12; i < 20; ++i) bytes[static_cast<std::size_t>(i)] = '\x7f';   // the length of the first string
+  // the length of the first string
+  for (int i = 12; i < 20; ++i) bytes[static_cast<std::size_t>(i)] = '\x7f';
   EXPECT_NE(problem_of(bytes).find("bytes follow"), std::string::npos);
 }
 
 TEST(TrajectoryFile, BytesAfterTheEndAreRefused) {
-  EXPECT_NE(problem_of(good_bytes() + "x").find("bytes follow the end of the run"), std::string::npos);
+  EXPECT_NE(problem_of(good_bytes() + "x").find("bytes follow the end of the run"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ using truths::Verdict;
 TEST(TruthFiles, EveryOneIsKnownAndRight) {
   const Reference reference;
   int right = 0, skipped = 0;
-  for (const auto& file : cli::find_truths(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths")) {
+  for (const auto& file :
+       cli::find_truths(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths")) {
     const auto lines = reference.compare(cli::read_truth(file));
     if (lines.empty()) {
       ++skipped;
@@ -32,8 +33,11 @@ TEST(TruthFiles, EveryOneIsKnownAndRight) {
 TEST(TruthFiles, AnImpulseOfTheWrongSignIsWrong) {
   Reference spoilt;
   const auto right_impulse = spoilt.a1.collision_impulse;
-  spoilt.a1.collision_impulse = [=](const Contact& c, const Body& a, const Body& b, double e) { return -right_impulse(c, a, b, e); };
-  for (const char* name : {"impulse_random__random20", "impulse_rod_ball__tip_e1", "bouncing_ball__e0.5", "newtons_cradle__5balls_1moving_e0.9"})
+  spoilt.a1.collision_impulse = [=](const Contact& c, const Body& a, const Body& b, double e) {
+    return -right_impulse(c, a, b, e);
+  };
+  for (const char* name : {"impulse_random__random20", "impulse_rod_ball__tip_e1",
+                           "bouncing_ball__e0.5", "newtons_cradle__5balls_1moving_e0.9"})
     EXPECT_EQ(truths::verdict_of(spoilt.compare(truth_named(name))), Verdict::kWrong) << name;
 }
 
@@ -51,7 +55,8 @@ TEST(TruthFiles, AStageUsedTwiceByRk4IsWrong) {
     };
     return right_step(repeating, t, y, h);
   };
-  for (const char* name : {"logistic__lecture_a6_b0.007_dt0.5", "free_top_symmetric__rod_prolate", "free_top_asymmetric__generic_123", "spring_mass__critical"})
+  for (const char* name : {"logistic__lecture_a6_b0.007_dt0.5", "free_top_symmetric__rod_prolate",
+                           "free_top_asymmetric__generic_123", "spring_mass__critical"})
     EXPECT_EQ(truths::verdict_of(spoilt.compare(truth_named(name))), Verdict::kWrong) << name;
 }
 
@@ -64,27 +69,38 @@ TEST(TruthFiles, DampingOfTheWrongSignAndARodWithoutItsVelocityProductAreWrong) 
     return right_force(driven, a, b);
   };
   const auto right_row = spoilt.a3.rod_row;
-  spoilt.a3.rod_row = [=](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
+  spoilt.a3.rod_row = [=](const Body& a, const Vector3d& point_a, const Body& b,
+                          const Vector3d& point_b, double length) {
     ConstraintRow row = right_row(a, point_a, b, point_b, length);
     row.velocity_product = 0.0;
     return row;
   };
-  for (const char* name : {"spring_mass__critical", "two_body_spring__damped_k20_c0.5", "double_pendulum__rest_horizontal_equal"})
+  for (const char* name : {"spring_mass__critical", "two_body_spring__damped_k20_c0.5",
+                           "double_pendulum__rest_horizontal_equal"})
     EXPECT_EQ(truths::verdict_of(spoilt.compare(truth_named(name))), Verdict::kWrong) << name;
 }
 
 TEST(TruthFiles, AStubIsNotAttempted) {
   Reference stub;
-  stub.a2.rk4_step = [](const OdeFunction&, double, const VectorXd&, double) -> VectorXd { throw NotImplemented("rk4_step", "handout"); };
-  stub.a1.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double { throw NotImplemented("collision_impulse", "handout"); };
-  stub.a3.spring_force = [](const Spring&, const AnchorState&, const AnchorState&) -> Vector3d { throw NotImplemented("spring_force", "handout"); };
-  for (const char* name : {"logistic__lecture_to_T2", "free_top_symmetric__rod_prolate", "impulse_rod_ball__tip_e1", "bouncing_ball__e0.5", "spring_mass__overdamped"})
+  stub.a2.rk4_step = [](const OdeFunction&, double, const VectorXd&, double) -> VectorXd {
+    throw NotImplemented("rk4_step", "handout");
+  };
+  stub.a1.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double {
+    throw NotImplemented("collision_impulse", "handout");
+  };
+  stub.a3.spring_force = [](const Spring&, const AnchorState&, const AnchorState&) -> Vector3d {
+    throw NotImplemented("spring_force", "handout");
+  };
+  for (const char* name :
+       {"logistic__lecture_to_T2", "free_top_symmetric__rod_prolate", "impulse_rod_ball__tip_e1",
+        "bouncing_ball__e0.5", "spring_mass__overdamped"})
     EXPECT_EQ(truths::verdict_of(stub.compare(truth_named(name))), Verdict::kNotAttempted) << name;
 }
 
 /// The message for a logistic case in which one piece of its text is replaced.
 std::string complaint(const std::string& from, const std::string& to) {
-  std::ifstream source(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths/logistic__lecture_to_T2.json");
+  std::ifstream source(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+                       "tests/truths/logistic__lecture_to_T2.json");
   std::string text(std::istreambuf_iterator<char>(source), {});
   text.replace(text.find(from), from.size(), to);
   const auto file = std::filesystem::path(::testing::TempDir()) / "odd_truth.json";

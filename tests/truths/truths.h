@@ -23,9 +23,12 @@ struct Reference {
   Reference() {
     register_assignments(registry);
     const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
-    a1 = *std::static_pointer_cast<const a1::Module>(modules::load_module(registry.find("a1"), built / "a1_reference.so"));
-    a2 = *std::static_pointer_cast<const a2::Module>(modules::load_module(registry.find("a2"), built / "a2_reference.so"));
-    a3 = *std::static_pointer_cast<const a3::Module>(modules::load_module(registry.find("a3"), built / "a3_reference.so"));
+    a1 = *std::static_pointer_cast<const a1::Module>(
+        modules::load_module(registry.find("a1"), built / "a1_reference.so"));
+    a2 = *std::static_pointer_cast<const a2::Module>(
+        modules::load_module(registry.find("a2"), built / "a2_reference.so"));
+    a3 = *std::static_pointer_cast<const a3::Module>(
+        modules::load_module(registry.find("a3"), built / "a3_reference.so"));
   }
 
   Laws laws() const {
@@ -40,7 +43,8 @@ struct Reference {
   std::vector<truths::Line> compare(const truths::Case& truth) const {
     const Laws laws = this->laws();
     truths::Comparison comparison;
-    if (const auto family = truths::framework_families().find(truth.family); family != truths::framework_families().end())
+    if (const auto family = truths::framework_families().find(truth.family);
+        family != truths::framework_families().end())
       comparison.attempt(truth.family, [&] { family->second(truth, laws, comparison); });
     const auto with = [&](const std::string& id, modules::AnyModule table) {
       const auto families = registry.find(id).note<truths::ModuleTruths>().families;
@@ -54,14 +58,16 @@ struct Reference {
 };
 
 inline truths::Case truth_named(const std::string& name) {
-  return cli::read_truth(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths" / (name + ".json"));
+  return cli::read_truth(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths" /
+                         (name + ".json"));
 }
 
 inline std::string failures(const std::vector<truths::Line>& lines) {
   std::string text;
   for (const truths::Line& line : lines)
     if (line.verdict != truths::Verdict::kRight && line.verdict != truths::Verdict::kNotCompared)
-      text += "\n  " + line.output + ": error " + std::to_string(line.error) + ", mark " + std::to_string(line.tolerance) + "  " + line.note;
+      text += "\n  " + line.output + ": error " + std::to_string(line.error) + ", mark " +
+              std::to_string(line.tolerance) + "  " + line.note;
   return text;
 }
 

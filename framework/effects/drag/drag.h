@@ -11,14 +11,15 @@ struct DragSpec {
   std::string body;
   double linear_n_s_m = 0.0;
   double angular_n_m_s = 0.0;
-  std::string pointer{};       // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  std::string pointer{};
 };
 
 /// What a world holds of it.
 struct Drag {
   int body;
-  double linear;               // [N s/m]
-  double angular;              // [N m s]
+  double linear;   // [N s/m]
+  double angular;  // [N m s]
 };
 
 }  // namespace tumble::effects

@@ -6,13 +6,14 @@
 
 namespace tumble::effects {
 
-extern const char* const kDragSchema;   // schema.json
+extern const char* const kDragSchema;  // schema.json
 
 namespace {
 
 class DragTerms final : public GroupTerms {
  public:
-  DragTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls) {
+  DragTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
+      : calls_(acting.calls) {
     for (const int entry : entries) {
       const Drag& drag = acting.world.effects.of<Drag>()[static_cast<std::size_t>(entry)];
       drags_.push_back({places.place_of(drag.body), drag.linear, drag.angular});
@@ -30,7 +31,7 @@ class DragTerms final : public GroupTerms {
 
  private:
   std::uint64_t& calls_;
-  std::vector<Drag> drags_;    // of the group; `body` is the place in it
+  std::vector<Drag> drags_;  // of the group; `body` is the place in it
 };
 
 class DragEffect final : public ListedEffect<DragSpec, Drag> {
@@ -53,23 +54,40 @@ class DragEffect final : public ListedEffect<DragSpec, Drag> {
   void check(const scene::Scene& scene, const scene::Refuse& refuse) const override {
     const scene::BodiesByName bodies(scene);
     for (const DragSpec& drag : specs(scene)) {
-      if (!bodies.can_move(drag.body)) refuse(drag.pointer + "/body", "body '" + drag.body + "' is immovable: nothing slows it", "Name a movable body.");
-      if (drag.linear_n_s_m == 0.0 && drag.angular_n_m_s == 0.0) refuse(drag.pointer, "the drag has neither linear_n_s_m nor angular_n_m_s: it would do nothing", "Give one of the two.");
+      if (!bodies.can_move(drag.body))
+        refuse(drag.pointer + "/body", "body '" + drag.body + "' is immovable: nothing slows it",
+               "Name a movable body.");
+      if (drag.linear_n_s_m == 0.0 && drag.angular_n_m_s == 0.0)
+        refuse(drag.pointer,
+               "the drag has neither linear_n_s_m nor angular_n_m_s: it would do nothing",
+               "Give one of the two.");
     }
   }
-  std::string describe(const DragSpec& spec) const override { return fmt::format("{}: {:g} N s/m, {:g} N m s", spec.body, spec.linear_n_s_m, spec.angular_n_m_s); }
+  std::string describe(const DragSpec& spec) const override {
+    return fmt::format("{}: {:g} N s/m, {:g} N m s", spec.body, spec.linear_n_s_m,
+                       spec.angular_n_m_s);
+  }
 
   void build(const scene::Scene& scene, const BodyIndex& index, World& world) const override {
-    for (const DragSpec& spec : specs(scene)) world.effects.of<Drag>().push_back({index.of(spec.body, "drag"), spec.linear_n_s_m, spec.angular_n_m_s});
+    for (const DragSpec& spec : specs(scene))
+      world.effects.of<Drag>().push_back(
+          {index.of(spec.body, "drag"), spec.linear_n_s_m, spec.angular_n_m_s});
   }
   std::vector<int> ends_of(const Drag& drag) const override { return {drag.body}; }
-  void rename_ends(Drag& drag, const std::function<int(int)>& other) const override { drag.body = other(drag.body); }
+  void rename_ends(Drag& drag, const std::function<int(int)>& other) const override {
+    drag.body = other(drag.body);
+  }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries,
+                                          GroupPlaces& places) const override {
     return std::make_unique<DragTerms>(acting, entries, places);
   }
   void append_drains(const World& world, std::vector<Drain>& drains) const override {
-    for (const Drag& drag : held(world)) drains.push_back({drag.body, drag.linear, drag.angular, fmt::format("the drag of body '{}'", world.bodies[static_cast<std::size_t>(drag.body)].name), "less drag"});
+    for (const Drag& drag : held(world))
+      drains.push_back({drag.body, drag.linear, drag.angular,
+                        fmt::format("the drag of body '{}'",
+                                    world.bodies[static_cast<std::size_t>(drag.body)].name),
+                        "less drag"});
   }
 };
 

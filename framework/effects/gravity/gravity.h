@@ -12,11 +12,14 @@ namespace tumble::effects {
 /// What a scene says of it, at most once. A world holds it as World::gravity_world.
 struct GravitySpec {
   Vector3d acceleration_m_s2;
-  std::string pointer{};       // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  std::string pointer{};
 };
 
 /// Of a scene that is made in memory.
-inline void set_gravity(scene::Scene& scene, const Vector3d& acceleration_m_s2) { scene.effects.of<GravitySpec>() = {{acceleration_m_s2}}; }
+inline void set_gravity(scene::Scene& scene, const Vector3d& acceleration_m_s2) {
+  scene.effects.of<GravitySpec>() = {{acceleration_m_s2}};
+}
 inline std::optional<Vector3d> gravity_of(const scene::Scene& scene) {
   const auto& said = scene.effects.of<GravitySpec>();
   return said.empty() ? std::nullopt : std::optional(said.front().acceleration_m_s2);

@@ -6,7 +6,7 @@
 
 namespace tumble::effects {
 
-extern const char* const kGravitySchema;   // schema.json
+extern const char* const kGravitySchema;  // schema.json
 
 namespace {
 
@@ -16,11 +16,15 @@ class ActingGravity final : public SteadyForces {
 
   void add(int body, const RigidBodyState&, Wrench& sum) override {
     ++calls_;
-    sum.force_world += world_.bodies[static_cast<std::size_t>(body)].inertia.mass * *world_.gravity_world;
+    sum.force_world +=
+        world_.bodies[static_cast<std::size_t>(body)].inertia.mass * *world_.gravity_world;
   }
-  void add_acceleration(int, Vector3d& sum_world) const override { sum_world += *world_.gravity_world; }
+  void add_acceleration(int, Vector3d& sum_world) const override {
+    sum_world += *world_.gravity_world;
+  }
   double work(int body, const RigidBodyState& from, const RigidBodyState& to) const override {
-    return world_.bodies[static_cast<std::size_t>(body)].inertia.mass * world_.gravity_world->dot(to.com_world - from.com_world);
+    return world_.bodies[static_cast<std::size_t>(body)].inertia.mass *
+           world_.gravity_world->dot(to.com_world - from.com_world);
   }
 
  private:
@@ -37,9 +41,13 @@ class GravityEffect final : public Effect {
   std::string schema() const override { return kGravitySchema; }
   Traits traits() const override { return {.leaves_flight = true}; }
 
-  void read(scene::Entry& entry, scene::Scene& scene) const override { scene.effects.of<GravitySpec>() = {{entry.vector(), entry.pointer()}}; }
+  void read(scene::Entry& entry, scene::Scene& scene) const override {
+    scene.effects.of<GravitySpec>() = {{entry.vector(), entry.pointer()}};
+  }
   void clear(scene::Scene& scene) const override { scene.effects.of<GravitySpec>().clear(); }
-  bool is_kept_in(const TypedLists& lists) const override { return !lists.of<GravitySpec>().empty(); }
+  bool is_kept_in(const TypedLists& lists) const override {
+    return !lists.of<GravitySpec>().empty();
+  }
   std::vector<scene::Asker> askers(const scene::Scene& scene) const override {
     const auto g = gravity_of(scene);
     if (!g) return {};
@@ -47,25 +55,37 @@ class GravityEffect final : public Effect {
   }
   std::string note(const scene::Scene& scene) const override {
     const auto g = gravity_of(scene);
-    return g && g->isZero(0.0) ? "/gravity_m_s2 is zero, and is applied all the same: delete it" : "";
+    return g && g->isZero(0.0) ? "/gravity_m_s2 is zero, and is applied all the same: delete it"
+                               : "";
   }
 
-  void build(const scene::Scene& scene, const BodyIndex&, World& world) const override { world.gravity_world = gravity_of(scene); }
+  void build(const scene::Scene& scene, const BodyIndex&, World& world) const override {
+    world.gravity_world = gravity_of(scene);
+  }
   int count_in(const World& world) const override { return world.gravity_world ? 1 : 0; }
-  std::vector<int> bodies_of(const World&, int) const override { return {}; }   // all of them
-  void copy_entries(const World&, const std::vector<int>&, const std::function<int(int)>&, World&) const override {}   // a part of a world lies in the same field
+  std::vector<int> bodies_of(const World&, int) const override { return {}; }  // all of them
+  // a part of a world lies in the same field
+  void copy_entries(const World&, const std::vector<int>&, const std::function<int(int)>&,
+                    World&) const override {}
 
-  std::unique_ptr<SteadyForces> steady_forces(const Acting& acting) const override { return acting.world.gravity_world ? std::make_unique<ActingGravity>(acting) : nullptr; }
-
-  void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {
-    if (!world.gravity_world) return;
-    for (std::size_t i = 0; i < world.bodies.size(); ++i)
-      if (!world.bodies[i].immovable()) sum -= world.bodies[i].inertia.mass * world.gravity_world->dot(states[i].com_world);
+  std::unique_ptr<SteadyForces> steady_forces(const Acting& acting) const override {
+    return acting.world.gravity_world ? std::make_unique<ActingGravity>(acting) : nullptr;
   }
-  void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {
+
+  void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states,
+                            double& sum) const override {
     if (!world.gravity_world) return;
     for (std::size_t i = 0; i < world.bodies.size(); ++i)
-      if (!world.bodies[i].immovable()) sum += world.bodies[i].inertia.mass * world.gravity_world->cwiseAbs().dot(states[i].com_world.cwiseAbs());
+      if (!world.bodies[i].immovable())
+        sum -= world.bodies[i].inertia.mass * world.gravity_world->dot(states[i].com_world);
+  }
+  void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states,
+                        double& sum) const override {
+    if (!world.gravity_world) return;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+      if (!world.bodies[i].immovable())
+        sum += world.bodies[i].inertia.mass *
+               world.gravity_world->cwiseAbs().dot(states[i].com_world.cwiseAbs());
   }
 };
 

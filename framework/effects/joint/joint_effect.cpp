@@ -11,13 +11,16 @@
 
 namespace tumble::effects {
 
-extern const char* const kJointSchema;   // schema.json
+extern const char* const kJointSchema;  // schema.json
 
 namespace {
 
 class JointTerms final : public GroupTerms {
  public:
-  JointTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls), all_(acting.world.effects.of<JointLink>()), joints_(placed_links(all_, entries, places)) {
+  JointTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
+      : calls_(acting.calls),
+        all_(acting.world.effects.of<JointLink>()),
+        joints_(placed_links(all_, entries, places)) {
     for (const PlacedLink& link : joints_) {
       rows_ += static_cast<std::size_t>(effects::row_count(of(link).kind));
       sizes_.push_back(size_of(of(link), acting.world, places));
@@ -28,20 +31,25 @@ class JointTerms final : public GroupTerms {
   void append_rows(const std::vector<Body>& bodies, std::vector<Constraint>& rows) override {
     for (const PlacedLink& link : joints_) {
       ++calls_;
-      append_joint_rows(of(link), bodies[link.a.place], link.a.place, bodies[link.b.place], link.b.place, rows);
+      append_joint_rows(of(link), bodies[link.a.place], link.a.place, bodies[link.b.place],
+                        link.b.place, rows);
     }
   }
   void note_open(const std::vector<Body>& bodies, const NoteOpen& note) const override {
     for (std::size_t k = 0; k < joints_.size(); ++k) {
       const PlacedLink& link = joints_[k];
       const JointLink& joint = of(link);
-      note(joint.name, (link.a.point_among(bodies) - link.b.point_among(bodies)).norm() / sizes_[k]);
-      const Quaterniond a = bodies[link.a.place].world_from_body * joint.a_from_joint, b = bodies[link.b.place].world_from_body * joint.b_from_joint;
-      if (joint.kind == JointKind::kHinge) note(joint.name, (a * Vector3d::UnitZ()).cross(b * Vector3d::UnitZ()).norm());
+      note(joint.name,
+           (link.a.point_among(bodies) - link.b.point_among(bodies)).norm() / sizes_[k]);
+      const Quaterniond a = bodies[link.a.place].world_from_body * joint.a_from_joint,
+                        b = bodies[link.b.place].world_from_body * joint.b_from_joint;
+      if (joint.kind == JointKind::kHinge)
+        note(joint.name, (a * Vector3d::UnitZ()).cross(b * Vector3d::UnitZ()).norm());
       if (joint.kind == JointKind::kWeld) note(joint.name, 2.0 * (a.conjugate() * b).vec().norm());
     }
   }
-  void measure(const std::vector<Body>&, const VectorXd& multipliers, std::vector<double>& forces) override {
+  void measure(const std::vector<Body>&, const VectorXd& multipliers,
+               std::vector<double>& forces) override {
     Eigen::Index at = 0;
     for (const PlacedLink& link : joints_) {
       forces[static_cast<std::size_t>(link.entry)] = multipliers.segment<3>(at).norm();
@@ -50,7 +58,9 @@ class JointTerms final : public GroupTerms {
   }
 
  private:
-  const JointLink& of(const PlacedLink& link) const { return all_[static_cast<std::size_t>(link.entry)]; }
+  const JointLink& of(const PlacedLink& link) const {
+    return all_[static_cast<std::size_t>(link.entry)];
+  }
 
   // The longer arm of the two bodies; of bodies that are held at their centres, how far their mass
   // lies from there. [m]
@@ -59,7 +69,8 @@ class JointTerms final : public GroupTerms {
     for (const Anchor* end : {&joint.a, &joint.b}) {
       if (!places.has(end->body)) continue;
       const Inertia& inertia = world.bodies[static_cast<std::size_t>(end->body)].inertia;
-      size = std::max({size, end->point_body.norm(), std::sqrt(0.5 * inertia.inertia_body.trace() * inertia.inverse_mass)});
+      size = std::max({size, end->point_body.norm(),
+                       std::sqrt(0.5 * inertia.inertia_body.trace() * inertia.inverse_mass)});
     }
     return size > 0.0 ? size : 1.0;
   }
@@ -67,7 +78,7 @@ class JointTerms final : public GroupTerms {
   std::uint64_t& calls_;
   const std::vector<JointLink>& all_;
   std::vector<PlacedLink> joints_;
-  std::vector<double> sizes_;      // by place in joints_ [m]
+  std::vector<double> sizes_;  // by place in joints_ [m]
   std::size_t rows_ = 0;
 };
 
@@ -78,12 +89,19 @@ struct Carried {
   Vector3d com_at_start = Vector3d::Zero();
   Quaterniond turned = Quaterniond::Identity();
 
-  Vector3d point(const Vector3d& point_at_start) const { return pose == nullptr ? point_at_start : Vector3d(pose->com_world + turned * (point_at_start - com_at_start)); }
+  Vector3d point(const Vector3d& point_at_start) const {
+    return pose == nullptr ? point_at_start
+                           : Vector3d(pose->com_world + turned * (point_at_start - com_at_start));
+  }
 };
 
 /// Angle between two unit vectors or of a rotation; exact near 0, where acos is not.
-double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-double angle_of(const Quaterniond& rotation) { return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w())); }
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+double angle_of(const Quaterniond& rotation) {
+  return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
+}
 
 class JointEffect final : public ListedEffect<JointSpec, JointLink> {
  public:
@@ -101,16 +119,23 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
     entry.read("name", spec.name);
     std::string kind;
     entry.read("kind", kind);
-    spec.kind = kind == "ball" ? JointKind::kBall : kind == "hinge" ? JointKind::kHinge : JointKind::kWeld;
+    spec.kind = kind == "ball"    ? JointKind::kBall
+                : kind == "hinge" ? JointKind::kHinge
+                                  : JointKind::kWeld;
     spec.body_a = entry.body("body_a");
     if (entry.has("body_b")) spec.body_b = entry.body("body_b");
     entry.read("point_m", spec.point_m);
     const bool is_hinge = spec.kind == JointKind::kHinge;
-    if (is_hinge && !entry.has("axis")) entry.refuse("", "a hinge needs the key 'axis': its direction in the world", "Add it, such as \"axis\": [0, 1, 0].");
-    if (!is_hinge && entry.has("axis")) entry.refuse("axis", "a joint of kind " + kind + " has no axis", "Delete it, or make the joint a hinge.");
+    if (is_hinge && !entry.has("axis"))
+      entry.refuse("", "a hinge needs the key 'axis': its direction in the world",
+                   "Add it, such as \"axis\": [0, 1, 0].");
+    if (!is_hinge && entry.has("axis"))
+      entry.refuse("axis", "a joint of kind " + kind + " has no axis",
+                   "Delete it, or make the joint a hinge.");
     if (is_hinge) {
       entry.read("axis", spec.axis);
-      if (spec.axis.isZero(0.0)) entry.refuse("axis", "found the zero vector, expected a direction");
+      if (spec.axis.isZero(0.0))
+        entry.refuse("axis", "found the zero vector, expected a direction");
       spec.axis.normalize();
     }
     scene.effects.of<JointSpec>().push_back(spec);
@@ -119,26 +144,40 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
     const scene::BodiesByName bodies(scene);
     for (const JointSpec& joint : specs(scene)) {
       const std::string subject = "joint '" + joint.name + "'";
-      if (joint.body_a == joint.body_b) refuse(joint.pointer, subject + " joins body '" + joint.body_a + "' to itself", "Name another body as body_b.");
+      if (joint.body_a == joint.body_b)
+        refuse(joint.pointer, subject + " joins body '" + joint.body_a + "' to itself",
+               "Name another body as body_b.");
       if (!bodies.can_move(joint.body_a) && !bodies.can_move(joint.body_b))
-        refuse(joint.pointer, subject + " joins " + (joint.body_b.empty() ? "'" + joint.body_a + "' to the world" : "'" + joint.body_a + "' and '" + joint.body_b + "'") + ": neither can move", "Name a movable body.");
+        refuse(joint.pointer,
+               subject + " joins " +
+                   (joint.body_b.empty() ? "'" + joint.body_a + "' to the world"
+                                         : "'" + joint.body_a + "' and '" + joint.body_b + "'") +
+                   ": neither can move",
+               "Name a movable body.");
     }
   }
   std::string describe(const JointSpec& spec) const override {
     static const char* const kinds[] = {"ball joint", "hinge", "weld"};
-    return fmt::format("{}: {}, {} to {}", spec.name, kinds[static_cast<int>(spec.kind)], spec.body_a, spec.body_b.empty() ? "the world" : spec.body_b);
+    return fmt::format("{}: {}, {} to {}", spec.name, kinds[static_cast<int>(spec.kind)],
+                       spec.body_a, spec.body_b.empty() ? "the world" : spec.body_b);
   }
   std::vector<scene::Link> links(const scene::Scene& scene) const override {
     const scene::BodiesByName bodies(scene);
-    const auto seen_from = [&](const std::string& name, const Vector3d& point_world) -> scene::AnchorSpec {
+    const auto seen_from = [&](const std::string& name,
+                               const Vector3d& point_world) -> scene::AnchorSpec {
       const scene::BodySpec* body = bodies.find(name);
-      return {name, body == nullptr ? point_world : Vector3d(body->world_from_body.conjugate() * (point_world - body->position_m))};
+      return {name, body == nullptr ? point_world
+                                    : Vector3d(body->world_from_body.conjugate() *
+                                               (point_world - body->position_m))};
     };
     std::vector<scene::Link> links;
-    for (const JointSpec& spec : specs(scene)) links.push_back({spec.name, seen_from(spec.body_a, spec.point_m), seen_from(spec.body_b, spec.point_m), kUnset, spec.pointer});
+    for (const JointSpec& spec : specs(scene))
+      links.push_back({spec.name, seen_from(spec.body_a, spec.point_m),
+                       seen_from(spec.body_b, spec.point_m), kUnset, spec.pointer});
     return links;
   }
-  std::vector<std::pair<std::string, std::string>> pairs_apart(const scene::Scene& scene) const override {
+  std::vector<std::pair<std::string, std::string>> pairs_apart(
+      const scene::Scene& scene) const override {
     std::vector<std::pair<std::string, std::string>> pairs;
     for (const JointSpec& spec : specs(scene))
       if (!spec.body_b.empty()) pairs.emplace_back(spec.body_a, spec.body_b);
@@ -149,15 +188,19 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
   }
 
   void build(const scene::Scene& scene, const BodyIndex& index, World& world) const override {
-    for (const JointSpec& spec : specs(scene)) world.effects.of<JointLink>().push_back(link_of(spec, index, world));
+    for (const JointSpec& spec : specs(scene))
+      world.effects.of<JointLink>().push_back(link_of(spec, index, world));
   }
-  std::vector<int> ends_of(const JointLink& joint) const override { return {joint.a.body, joint.b.body}; }
+  std::vector<int> ends_of(const JointLink& joint) const override {
+    return {joint.a.body, joint.b.body};
+  }
   void rename_ends(JointLink& joint, const std::function<int(int)>& other) const override {
     for (Anchor* anchor : {&joint.a, &joint.b})
       if (anchor->body >= 0) anchor->body = other(anchor->body);
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries,
+                                          GroupPlaces& places) const override {
     return std::make_unique<JointTerms>(acting, entries, places);
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
@@ -166,39 +209,62 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
     return needed;
   }
 
-  void append_held_rows(const World& world, const std::vector<RigidBodyState>& start, std::vector<Constraint>& rows) const override {
+  void append_held_rows(const World& world, const std::vector<RigidBodyState>& start,
+                        std::vector<Constraint>& rows) const override {
     const auto at_rest = [&](int index) {
-      Body body{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+      Body body{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
+                Vector3d::Zero()};
       if (index < 0) return body;
       body.com_world = start[static_cast<std::size_t>(index)].com_world;
       body.world_from_body = start[static_cast<std::size_t>(index)].world_from_body;
       return body;
     };
-    for (const JointLink& joint : held(world)) append_joint_rows(joint, at_rest(joint.a.body), joint.a.body, at_rest(joint.b.body), joint.b.body, rows);
+    for (const JointLink& joint : held(world))
+      append_joint_rows(joint, at_rest(joint.a.body), joint.a.body, at_rest(joint.b.body),
+                        joint.b.body, rows);
   }
   void append_carriers(const World& world, std::vector<Carrier>& carriers) const override {
-    for (std::size_t k = 0; k < held(world).size(); ++k) carriers.push_back({held(world)[k].a, held(world)[k].b, 0.0, held(world)[k].kind != JointKind::kWeld, static_cast<int>(k)});
+    for (std::size_t k = 0; k < held(world).size(); ++k)
+      carriers.push_back({held(world)[k].a, held(world)[k].b, 0.0,
+                          held(world)[k].kind != JointKind::kWeld, static_cast<int>(k)});
   }
 
   std::vector<double> Frame::*measured_as() const override { return &Frame::joint_forces; }
-  void append_pulls(const World& world, const std::vector<RigidBodyState>&, const std::vector<double>& measured, const Laws& laws, std::vector<Pull>& pulls) const override {
+  void append_pulls(const World& world, const std::vector<RigidBodyState>&,
+                    const std::vector<double>& measured, const Laws& laws,
+                    std::vector<Pull>& pulls) const override {
     for (std::size_t k = 0; k < measured.size(); ++k) {
       const JointLink& joint = held(world)[k];
-      pulls.push_back({joint.a.body, joint.b.body, std::abs(measured[k]), fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})", joint.name, laws.constraint_source)});
+      pulls.push_back(
+          {joint.a.body, joint.b.body, std::abs(measured[k]),
+           fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})",
+                       joint.name, laws.constraint_source)});
     }
   }
-  std::vector<scene::LinkCheck> link_checks() const override { return {{"joint_gap", "m"}, {"joint_angle", "rad"}}; }
-  std::pair<double, std::string> error_of(const std::string& check, const scene::Scene& scene, std::size_t entry, const PoseOf& pose_of) const override {
+  std::vector<scene::LinkCheck> link_checks() const override {
+    return {{"joint_gap", "m"}, {"joint_angle", "rad"}};
+  }
+  std::pair<double, std::string> error_of(const std::string& check, const scene::Scene& scene,
+                                          std::size_t entry, const PoseOf& pose_of) const override {
     const JointSpec& joint = specs(scene)[entry];
-    const Carried a = carried_by(joint.body_a, scene, pose_of), b = carried_by(joint.body_b, scene, pose_of);
-    if (check == "joint_gap") return {(a.point(joint.point_m) - b.point(joint.point_m)).norm(), joint.name};
-    if (joint.kind == JointKind::kBall) return {0.0, joint.name};   // free to turn
-    return {joint.kind == JointKind::kHinge ? angle_between(a.turned * joint.axis, b.turned * joint.axis) : angle_of(a.turned * b.turned.conjugate()), joint.name};
+    const Carried a = carried_by(joint.body_a, scene, pose_of),
+                  b = carried_by(joint.body_b, scene, pose_of);
+    if (check == "joint_gap")
+      return {(a.point(joint.point_m) - b.point(joint.point_m)).norm(), joint.name};
+    if (joint.kind == JointKind::kBall) return {0.0, joint.name};  // free to turn
+    return {joint.kind == JointKind::kHinge
+                ? angle_between(a.turned * joint.axis, b.turned * joint.axis)
+                : angle_of(a.turned * b.turned.conjugate()),
+            joint.name};
   }
   void draw(const scene::Scene& scene, Drawables& drawables) const override {
     using Kind = DrawnPivot::Kind;
     for (const JointSpec& spec : specs(scene))
-      drawables.pivots.push_back({spec.name, spec.kind == JointKind::kHinge ? Kind::kPin : spec.kind == JointKind::kBall ? Kind::kBall : Kind::kWeld, spec.body_a, spec.body_b, spec.point_m, spec.axis});
+      drawables.pivots.push_back({spec.name,
+                                  spec.kind == JointKind::kHinge  ? Kind::kPin
+                                  : spec.kind == JointKind::kBall ? Kind::kBall
+                                                                  : Kind::kWeld,
+                                  spec.body_a, spec.body_b, spec.point_m, spec.axis});
   }
 
  private:
@@ -206,7 +272,9 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
   /// across it, the same in both bodies.
   static JointLink link_of(const JointSpec& spec, const BodyIndex& index, const World& world) {
     const std::string subject = "joint '" + spec.name + "'";
-    const Quaterniond world_from_joint = spec.kind == JointKind::kHinge ? shortest_turn(Vector3d::UnitZ(), spec.axis) : Quaterniond::Identity();
+    const Quaterniond world_from_joint = spec.kind == JointKind::kHinge
+                                             ? shortest_turn(Vector3d::UnitZ(), spec.axis)
+                                             : Quaterniond::Identity();
     const auto seen_from = [&](int body, Anchor& anchor, Quaterniond& body_from_joint) {
       anchor = {body, spec.point_m};
       body_from_joint = world_from_joint;
@@ -225,10 +293,12 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
     return link;
   }
 
-  static Carried carried_by(const std::string& name, const scene::Scene& scene, const PoseOf& pose_of) {
+  static Carried carried_by(const std::string& name, const scene::Scene& scene,
+                            const PoseOf& pose_of) {
     const BodyPose* pose = pose_of(name);
     if (pose == nullptr) return {};
-    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const scene::BodySpec& spec) { return spec.name == name; });
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                   [&](const scene::BodySpec& spec) { return spec.name == name; });
     return {pose, body->position_m, pose->world_from_body * body->world_from_body.conjugate()};
   }
 };

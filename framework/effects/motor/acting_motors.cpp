@@ -11,8 +11,9 @@
 namespace tumble::effects {
 namespace {
 
-constexpr double kSameTorque = 1e-6;     // of the largest torque: what the rates of bodies at rest change in it
-constexpr double kSameAngle = 1e-9;      // rad: likewise, by a motor's stiffness
+// of the largest torque: what the rates of bodies at rest change in it
+constexpr double kSameTorque = 1e-6;
+constexpr double kSameAngle = 1e-9;  // rad: likewise, by a motor's stiffness
 
 // A motor measures its hinge's angle within a turn: from half a turn between two looks on it is
 // lost. Nothing comes so far that does not overshoot more each time, because the torque that brakes
@@ -20,14 +21,18 @@ constexpr double kSameAngle = 1e-9;      // rad: likewise, by a motor's stiffnes
 void refuse_lost(const std::string& hinge, const MotorSpec& law, const HingeMotion& motion) {
   const double turn = std::abs(motion.rate) * law.period_s;
   if (law.stiffness_n_m_rad == 0.0 || !(turn > std::numbers::pi)) return;
-  throw StoppedRun(fmt::format("the motor of '{}' finds its hinge turning at {:.3g} rad/s, {:.3g} rad between two looks {:.3g} s apart: beyond half a turn it does not know its angle. "
-                               "Likely it overshoots more each time, for it holds its torque too long: a shorter \"period_s\", or less \"damping_n_m_s_rad\" or \"stiffness_n_m_rad\"",
-                               hinge, motion.rate, turn, law.period_s));
+  throw StoppedRun(
+      fmt::format("the motor of '{}' finds its hinge turning at {:.3g} rad/s, {:.3g} rad between "
+                  "two looks {:.3g} s apart: beyond half a turn it does not know its angle. "
+                  "Likely it overshoots more each time, for it holds its torque too long: a "
+                  "shorter \"period_s\", or less \"damping_n_m_s_rad\" or \"stiffness_n_m_rad\"",
+                  hinge, motion.rate, turn, law.period_s));
 }
 
 }  // namespace
 
-MotorTerms::MotorTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls), all_(acting.world.effects.of<Motor>()) {
+MotorTerms::MotorTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
+    : calls_(acting.calls), all_(acting.world.effects.of<Motor>()) {
   for (const int entry : entries) {
     const JointLink& hinge = all_[static_cast<std::size_t>(entry)].hinge;
     const int a = places.place_of(hinge.a.body);
@@ -51,8 +56,12 @@ double MotorTerms::look(double time, const std::vector<Body>& bodies) {
       ++calls_;
       const HingeMotion hinge = hinge_motion(of(motor).hinge, bodies[motor.a], bodies[motor.b]);
       refuse_lost(of(motor).hinge.name, law, hinge);
-      const double target = law.offset_rad + law.amplitude_rad * std::sin(2 * std::numbers::pi * law.frequency_hz * time + law.phase_rad);
-      const double torque = law.stiffness_n_m_rad * (target - hinge.angle) - law.damping_n_m_s_rad * hinge.rate;
+      const double target =
+          law.offset_rad +
+          law.amplitude_rad *
+              std::sin(2 * std::numbers::pi * law.frequency_hz * time + law.phase_rad);
+      const double torque =
+          law.stiffness_n_m_rad * (target - hinge.angle) - law.damping_n_m_s_rad * hinge.rate;
       motor.torque = std::clamp(torque, -law.largest_torque_n_m, law.largest_torque_n_m);
       motor.next_look = law.period_s * (std::floor(time / law.period_s * (1 + 1e-12)) + 1);
     }
@@ -89,11 +98,16 @@ bool MotorTerms::differs_from(const Memory& before) const {
 
 Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& states) {
   const std::vector<Motor>& motors = world_.effects.of<Motor>();
-  const auto omega = [&](int body) { return body < 0 ? Vector3d(Vector3d::Zero()) : omega_of(states[static_cast<std::size_t>(body)], world_.bodies[static_cast<std::size_t>(body)].inertia); };
+  const auto omega = [&](int body) {
+    return body < 0 ? Vector3d(Vector3d::Zero())
+                    : omega_of(states[static_cast<std::size_t>(body)],
+                               world_.bodies[static_cast<std::size_t>(body)].inertia);
+  };
   Work work;
   for (std::size_t k = 0; k < motors.size(); ++k) {
     const double now = (omega(motors[k].hinge.a.body) - omega(motors[k].hinge.b.body)).norm();
-    work.most += 2.0 * motors[k].law.largest_torque_n_m * std::max(now, turning_[k]) * (time - last_look_);
+    work.most +=
+        2.0 * motors[k].law.largest_torque_n_m * std::max(now, turning_[k]) * (time - last_look_);
     turning_[k] = now;
   }
   last_look_ = time;
@@ -102,7 +116,9 @@ Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& stat
 
 bool MotorMeter::is_unlimited() const {
   const std::vector<Motor>& motors = world_.effects.of<Motor>();
-  return std::any_of(motors.begin(), motors.end(), [](const Motor& motor) { return !std::isfinite(motor.law.largest_torque_n_m); });
+  return std::any_of(motors.begin(), motors.end(), [](const Motor& motor) {
+    return !std::isfinite(motor.law.largest_torque_n_m);
+  });
 }
 
 }  // namespace tumble::effects

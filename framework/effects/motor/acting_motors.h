@@ -21,10 +21,10 @@ class MotorTerms final : public GroupTerms, public Control {
 
  private:
   struct Acts {
-    int entry;                 // in the world's list
-    int a, b;                  // places of its hinge's bodies
-    double torque = 0.0;       // that it holds [N m]
-    double next_look = 0.0;    // [s]
+    int entry;               // in the world's list
+    int a, b;                // places of its hinge's bodies
+    double torque = 0.0;     // that it holds [N m]
+    double next_look = 0.0;  // [s]
   };
   const Motor& of(const Acts& motor) const { return all_[static_cast<std::size_t>(motor.entry)]; }
 
@@ -37,14 +37,15 @@ class MotorTerms final : public GroupTerms, public Control {
 /// its rates at two looks, twice for what lies between.
 class MotorMeter final : public WorkMeter {
  public:
-  explicit MotorMeter(const World& world) : world_(world), turning_(world.effects.of<Motor>().size(), 0.0) {}
+  explicit MotorMeter(const World& world)
+      : world_(world), turning_(world.effects.of<Motor>().size(), 0.0) {}
   Work since_last(double time, const std::vector<RigidBodyState>& states) override;
   bool is_unlimited() const override;
 
  private:
   const World& world_;
-  std::vector<double> turning_;      // of each motor's hinge at the last look [rad/s]
-  double last_look_ = 0.0;           // [s]
+  std::vector<double> turning_;  // of each motor's hinge at the last look [rad/s]
+  double last_look_ = 0.0;       // [s]
 };
 
 }  // namespace tumble::effects

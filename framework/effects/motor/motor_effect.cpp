@@ -10,7 +10,7 @@
 
 namespace tumble::effects {
 
-extern const char* const kMotorSchema;   // schema.json
+extern const char* const kMotorSchema;  // schema.json
 
 namespace {
 
@@ -40,29 +40,42 @@ class MotorEffect final : public ListedEffect<MotorSpec, Motor> {
   void check(const scene::Scene& scene, const scene::Refuse& refuse) const override {
     for (const MotorSpec& motor : specs(scene)) check_motor(motor, scene, refuse);
   }
-  std::string describe(const MotorSpec& spec) const override { return fmt::format("in {}, looks every {:g} s", spec.joint, spec.period_s); }
+  std::string describe(const MotorSpec& spec) const override {
+    return fmt::format("in {}, looks every {:g} s", spec.joint, spec.period_s);
+  }
 
   void build(const scene::Scene& scene, const BodyIndex&, World& world) const override {
-    const std::vector<JointLink>& joints = world.effects.of<JointLink>();   // built before: joints stand above motors in the list of effects
+    // built before: joints stand above motors in the list of effects
+    const std::vector<JointLink>& joints = world.effects.of<JointLink>();
     for (const MotorSpec& spec : specs(scene)) {
-      const auto hinge = std::find_if(joints.begin(), joints.end(), [&](const JointLink& joint) { return joint.name == spec.joint && joint.kind == JointKind::kHinge; });
-      if (hinge == joints.end()) throw UserError("motor in '" + spec.joint + "'", "no hinge has that name", "name one of the scene's hinges");
+      const auto hinge = std::find_if(joints.begin(), joints.end(), [&](const JointLink& joint) {
+        return joint.name == spec.joint && joint.kind == JointKind::kHinge;
+      });
+      if (hinge == joints.end())
+        throw UserError("motor in '" + spec.joint + "'", "no hinge has that name",
+                        "name one of the scene's hinges");
       world.effects.of<Motor>().push_back({*hinge, spec});
     }
   }
-  std::vector<int> ends_of(const Motor& motor) const override { return {motor.hinge.a.body, motor.hinge.b.body}; }
+  std::vector<int> ends_of(const Motor& motor) const override {
+    return {motor.hinge.a.body, motor.hinge.b.body};
+  }
   void rename_ends(Motor& motor, const std::function<int(int)>& other) const override {
     for (Anchor* anchor : {&motor.hinge.a, &motor.hinge.b})
       if (anchor->body >= 0) anchor->body = other(anchor->body);
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries,
+                                          GroupPlaces& places) const override {
     return std::make_unique<MotorTerms>(acting, entries, places);
   }
-  std::unique_ptr<WorkMeter> work_meter(const World& world) const override { return count_in(world) > 0 ? std::make_unique<MotorMeter>(world) : nullptr; }
+  std::unique_ptr<WorkMeter> work_meter(const World& world) const override {
+    return count_in(world) > 0 ? std::make_unique<MotorMeter>(world) : nullptr;
+  }
 
  private:
-  static void check_motor(const MotorSpec& motor, const scene::Scene& scene, const scene::Refuse& refuse) {
+  static void check_motor(const MotorSpec& motor, const scene::Scene& scene,
+                          const scene::Refuse& refuse) {
     std::vector<std::string> hinges;
     const JointSpec* found = nullptr;
     for (const JointSpec& joint : scene.effects.of<JointSpec>()) {
@@ -72,9 +85,16 @@ class MotorEffect final : public ListedEffect<MotorSpec, Motor> {
     std::string there;
     for (const auto& hinge : hinges) there += (there.empty() ? "Hinges: " : ", ") + hinge;
     there = there.empty() ? "The scene has no hinge: add one to \"joints\"." : there + ".";
-    if (found == nullptr) refuse(motor.pointer + "/joint", "no joint is named '" + motor.joint + "'." + did_you_mean(motor.joint, hinges), there);
-    else if (found->kind != JointKind::kHinge) refuse(motor.pointer + "/joint", "joint '" + motor.joint + "' is no hinge, and a motor turns hinges only", there);
-    if (motor.stiffness_n_m_rad == 0.0 && motor.damping_n_m_s_rad == 0.0) refuse(motor.pointer, "the motor has neither stiffness_n_m_rad nor damping_n_m_s_rad: it would do nothing", "Give one of the two.");
+    if (found == nullptr)
+      refuse(motor.pointer + "/joint",
+             "no joint is named '" + motor.joint + "'." + did_you_mean(motor.joint, hinges), there);
+    else if (found->kind != JointKind::kHinge)
+      refuse(motor.pointer + "/joint",
+             "joint '" + motor.joint + "' is no hinge, and a motor turns hinges only", there);
+    if (motor.stiffness_n_m_rad == 0.0 && motor.damping_n_m_s_rad == 0.0)
+      refuse(motor.pointer,
+             "the motor has neither stiffness_n_m_rad nor damping_n_m_s_rad: it would do nothing",
+             "Give one of the two.");
   }
 };
 

@@ -8,7 +8,10 @@ namespace tumble::effects {
 Switch switch_of(const PointForce& force, int entry, bool on, double time) {
   const double size = force.force_world.norm();
   const Vector3d direction = size > 0 ? Vector3d(force.force_world / size) : Vector3d::UnitZ();
-  return {entry, on, {time, on ? EventKind::kForceOn : EventKind::kForceOff, force.body, -1, force.point_world, direction, 0.0, 0.0}};
+  return {entry,
+          on,
+          {time, on ? EventKind::kForceOn : EventKind::kForceOff, force.body, -1, force.point_world,
+           direction, 0.0, 0.0}};
 }
 
 void ActingPointForces::add(int body, const RigidBodyState& state, Wrench& sum) {
@@ -16,8 +19,11 @@ void ActingPointForces::add(int body, const RigidBodyState& state, Wrench& sum) 
     const PointForce& force = forces_[static_cast<std::size_t>(entry)];
     if (force.body != body) continue;
     ++calls_;
-    const Vector3d point_world = state.com_world + state.world_from_body.normalized() * points_body_[static_cast<std::size_t>(entry)];
-    const Wrench wrench = laws_.wrench_of_point_force(force.force_world, point_world, state.com_world);
+    const Vector3d point_world =
+        state.com_world +
+        state.world_from_body.normalized() * points_body_[static_cast<std::size_t>(entry)];
+    const Wrench wrench =
+        laws_.wrench_of_point_force(force.force_world, point_world, state.com_world);
     sum.force_world += wrench.force_world;
     sum.torque_world += wrench.torque_world;
   }
@@ -26,16 +32,21 @@ void ActingPointForces::add(int body, const RigidBodyState& state, Wrench& sum) 
 void ActingPointForces::add_acceleration(int body, Vector3d& sum_world) const {
   for (const int entry : active_) {
     const PointForce& force = forces_[static_cast<std::size_t>(entry)];
-    if (force.body == body) sum_world += world_.bodies[static_cast<std::size_t>(body)].inertia.inverse_mass * force.force_world;
+    if (force.body == body)
+      sum_world +=
+          world_.bodies[static_cast<std::size_t>(body)].inertia.inverse_mass * force.force_world;
   }
 }
 
-double ActingPointForces::work(int body, const RigidBodyState& from, const RigidBodyState& to) const {
+double ActingPointForces::work(int body, const RigidBodyState& from,
+                               const RigidBodyState& to) const {
   double sum = 0.0;
   for (const int entry : active_) {
     const PointForce& force = forces_[static_cast<std::size_t>(entry)];
     const Vector3d& point_body = points_body_[static_cast<std::size_t>(entry)];
-    if (force.body == body) sum += force.force_world.dot(to.com_world + to.world_from_body * point_body - from.com_world - from.world_from_body * point_body);
+    if (force.body == body)
+      sum += force.force_world.dot(to.com_world + to.world_from_body * point_body - from.com_world -
+                                   from.world_from_body * point_body);
   }
   return sum;
 }
@@ -45,13 +56,16 @@ double ActingPointForces::torque_bound(int body) const {
   double bound = 0.0;
   for (const int entry : active_) {
     const PointForce& force = forces_[static_cast<std::size_t>(entry)];
-    if (force.body == body) bound += force.force_world.norm() * points_body_[static_cast<std::size_t>(entry)].norm();
+    if (force.body == body)
+      bound += force.force_world.norm() * points_body_[static_cast<std::size_t>(entry)].norm();
   }
   return bound;
 }
 
 bool ActingPointForces::leaves_flight(int body) const {
-  return std::none_of(active_.begin(), active_.end(), [&](int entry) { return forces_[static_cast<std::size_t>(entry)].body == body; });
+  return std::none_of(active_.begin(), active_.end(), [&](int entry) {
+    return forces_[static_cast<std::size_t>(entry)].body == body;
+  });
 }
 
 std::vector<Switch> ActingPointForces::due(double time) const {
@@ -77,10 +91,12 @@ void ActingPointForces::turn(const Switch& what, const std::vector<RigidBodyStat
 void ActingPointForces::take_hold(int entry, const std::vector<RigidBodyState>& states) {
   const PointForce& force = forces_[static_cast<std::size_t>(entry)];
   const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
-  points_body_[static_cast<std::size_t>(entry)] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
+  points_body_[static_cast<std::size_t>(entry)] =
+      state.world_from_body.conjugate() * (force.point_world - state.com_world);
 }
 
-double ActingPointForces::stand_at(double time, const Memory& memory, const std::vector<RigidBodyState>& states) {
+double ActingPointForces::stand_at(double time, const Memory& memory,
+                                   const std::vector<RigidBodyState>& states) {
   double next = std::numeric_limits<double>::infinity();
   active_.clear();
   for (int entry = 0; entry < static_cast<int>(forces_.size()); ++entry) {
@@ -90,8 +106,11 @@ double ActingPointForces::stand_at(double time, const Memory& memory, const std:
     if (!(time >= force.start && time < force.end)) continue;
     active_.push_back(entry);
     const auto held = memory.find(entry);
-    if (held == memory.end()) take_hold(entry, states);
-    else points_body_[static_cast<std::size_t>(entry)] = Eigen::Map<const Vector3d>(held->second.data());
+    if (held == memory.end())
+      take_hold(entry, states);
+    else
+      points_body_[static_cast<std::size_t>(entry)] =
+          Eigen::Map<const Vector3d>(held->second.data());
   }
   return next;
 }
@@ -111,9 +130,11 @@ Work PointForceMeter::since_last(double time, const std::vector<RigidBodyState>&
     const PointForce& force = forces_[k];
     if (time < force.start) continue;
     const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
-    if (std::isnan(points_body_[k].x())) points_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
+    if (std::isnan(points_body_[k].x()))
+      points_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
     const Vector3d now = state.com_world + state.world_from_body * points_body_[k];
-    if (!std::isnan(points_world_[k].x()) && time <= force.end) work.done += force.force_world.dot(now - points_world_[k]);
+    if (!std::isnan(points_world_[k].x()) && time <= force.end)
+      work.done += force.force_world.dot(now - points_world_[k]);
     points_world_[k] = now;
   }
   return work;

@@ -13,7 +13,11 @@ Switch switch_of(const PointForce& force, int entry, bool on, double time);
 class ActingPointForces final : public SteadyForces {
  public:
   explicit ActingPointForces(const Acting& acting)
-      : world_(acting.world), laws_(acting.laws), calls_(acting.calls), forces_(world_.effects.of<PointForce>()), points_body_(forces_.size(), unset_vector()) {}
+      : world_(acting.world),
+        laws_(acting.laws),
+        calls_(acting.calls),
+        forces_(world_.effects.of<PointForce>()),
+        points_body_(forces_.size(), unset_vector()) {}
 
   void add(int body, const RigidBodyState& state, Wrench& sum) override;
   void add_acceleration(int body, Vector3d& sum_world) const override;
@@ -23,7 +27,8 @@ class ActingPointForces final : public SteadyForces {
 
   std::vector<Switch> due(double time) const override;
   void turn(const Switch& what, const std::vector<RigidBodyState>& states) override;
-  double stand_at(double time, const Memory& memory, const std::vector<RigidBodyState>& states) override;
+  double stand_at(double time, const Memory& memory,
+                  const std::vector<RigidBodyState>& states) override;
   Memory memory() const override;
 
  private:
@@ -33,20 +38,24 @@ class ActingPointForces final : public SteadyForces {
   const Laws& laws_;
   std::uint64_t& calls_;
   const std::vector<PointForce>& forces_;
-  std::vector<int> active_;              // entries that act, in the order in which they began
-  std::vector<Vector3d> points_body_;    // by entry, from when it begins to act: body frame [m]
+  std::vector<int> active_;            // entries that act, in the order in which they began
+  std::vector<Vector3d> points_body_;  // by entry, from when it begins to act: body frame [m]
 };
 
 /// The work that they do: force times the way of its point, exact where looks come often enough for
 /// the point's way to be straight.
 class PointForceMeter final : public WorkMeter {
  public:
-  explicit PointForceMeter(const World& world) : forces_(world.effects.of<PointForce>()), points_body_(forces_.size(), unset_vector()), points_world_(points_body_) {}
+  explicit PointForceMeter(const World& world)
+      : forces_(world.effects.of<PointForce>()),
+        points_body_(forces_.size(), unset_vector()),
+        points_world_(points_body_) {}
   Work since_last(double time, const std::vector<RigidBodyState>& states) override;
 
  private:
   const std::vector<PointForce>& forces_;
-  std::vector<Vector3d> points_body_, points_world_;   // by entry: where it acts, and where that was at the last look [m]
+  // by entry: where it acts, and where that was at the last look [m]
+  std::vector<Vector3d> points_body_, points_world_;
 };
 
 }  // namespace tumble::effects

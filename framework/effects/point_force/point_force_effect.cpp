@@ -10,7 +10,7 @@
 
 namespace tumble::effects {
 
-extern const char* const kPointForceSchema;   // schema.json
+extern const char* const kPointForceSchema;  // schema.json
 
 namespace {
 
@@ -36,31 +36,40 @@ class PointForceEffect final : public ListedEffect<PointForceSpec, PointForce> {
   void check(const scene::Scene& scene, const scene::Refuse& refuse) const override {
     const scene::BodiesByName bodies(scene);
     for (const PointForceSpec& force : specs(scene))
-      if (!bodies.can_move(force.body)) refuse(force.pointer + "/body", "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
+      if (!bodies.can_move(force.body))
+        refuse(force.pointer + "/body", "body '" + force.body + "' is immovable: no force moves it",
+               "Name a movable body.");
   }
   std::string describe(const PointForceSpec& spec) const override {
-    return fmt::format("{}: {:.4g} N from {:g} s for {:g} s", spec.body, spec.force_n.norm(), spec.start_s, spec.duration_s);
+    return fmt::format("{}: {:.4g} N from {:g} s for {:g} s", spec.body, spec.force_n.norm(),
+                       spec.start_s, spec.duration_s);
   }
   void visit_places(TypedLists& effects, const scene::VisitPlace& visit) const override {
-    for (PointForceSpec& force : effects.of<PointForceSpec>()) visit(force.point_m, scene::PlaceKind::kOther);
+    for (PointForceSpec& force : effects.of<PointForceSpec>())
+      visit(force.point_m, scene::PlaceKind::kOther);
   }
 
   void build(const scene::Scene& scene, const BodyIndex& index, World& world) const override {
     for (const PointForceSpec& spec : specs(scene)) {
       const std::string subject = "point force on '" + spec.body + "'";
       const int body = index.of(spec.body, subject);
-      if (world.bodies[static_cast<std::size_t>(body)].immovable()) throw UserError(subject, "the body is immovable", "push a movable body");
-      world.effects.of<PointForce>().push_back({body, spec.force_n, spec.point_m, spec.start_s, spec.start_s + spec.duration_s});
+      if (world.bodies[static_cast<std::size_t>(body)].immovable())
+        throw UserError(subject, "the body is immovable", "push a movable body");
+      world.effects.of<PointForce>().push_back(
+          {body, spec.force_n, spec.point_m, spec.start_s, spec.start_s + spec.duration_s});
     }
   }
   std::vector<int> ends_of(const PointForce& force) const override { return {force.body}; }
-  void rename_ends(PointForce& force, const std::function<int(int)>& other) const override { force.body = other(force.body); }
+  void rename_ends(PointForce& force, const std::function<int(int)>& other) const override {
+    force.body = other(force.body);
+  }
 
   std::unique_ptr<SteadyForces> steady_forces(const Acting& acting) const override {
     return count_in(acting.world) > 0 ? std::make_unique<ActingPointForces>(acting) : nullptr;
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws& laws) const override {
-    return {{static_cast<bool>(laws.wrench_of_point_force), "the force and torque of a point force", "a1"}};
+    return {{static_cast<bool>(laws.wrench_of_point_force), "the force and torque of a point force",
+             "a1"}};
   }
   std::vector<Switch> switches(const World& world) const override {
     std::vector<Switch> switches;
@@ -73,12 +82,18 @@ class PointForceEffect final : public ListedEffect<PointForceSpec, PointForce> {
     return switches;
   }
   bool pushes(const World& world, int body, double from) const override {
-    return std::any_of(held(world).begin(), held(world).end(), [&](const PointForce& force) { return force.body == body && from < force.end; });
+    return std::any_of(held(world).begin(), held(world).end(), [&](const PointForce& force) {
+      return force.body == body && from < force.end;
+    });
   }
-  std::unique_ptr<WorkMeter> work_meter(const World& world) const override { return count_in(world) > 0 ? std::make_unique<PointForceMeter>(world) : nullptr; }
+  std::unique_ptr<WorkMeter> work_meter(const World& world) const override {
+    return count_in(world) > 0 ? std::make_unique<PointForceMeter>(world) : nullptr;
+  }
 
   void draw(const scene::Scene& scene, Drawables& drawables) const override {
-    for (const PointForceSpec& spec : specs(scene)) drawables.arrows.push_back({spec.body, spec.force_n, spec.point_m, spec.start_s, spec.duration_s});
+    for (const PointForceSpec& spec : specs(scene))
+      drawables.arrows.push_back(
+          {spec.body, spec.force_n, spec.point_m, spec.start_s, spec.duration_s});
   }
 };
 

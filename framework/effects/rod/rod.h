@@ -12,15 +12,16 @@ namespace tumble::effects {
 struct RodSpec {
   std::string name;
   scene::AnchorSpec a, b;
-  double length_m = kUnset;         // of a file that leaves it out: the distance at the start
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  double length_m = kUnset;  // of a file that leaves it out: the distance at the start
+  // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  std::string pointer{};
 };
 
 /// What a world holds of it.
 struct RodLink {
   std::string name;
   Anchor a, b;
-  double length;                    // [m]
+  double length;  // [m]
 };
 
 }  // namespace tumble::effects

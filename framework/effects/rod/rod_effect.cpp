@@ -11,7 +11,7 @@
 
 namespace tumble::effects {
 
-extern const char* const kRodSchema;   // schema.json
+extern const char* const kRodSchema;  // schema.json
 
 namespace {
 
@@ -29,14 +29,21 @@ std::string digits(double value) {
 
 class RodTerms final : public GroupTerms {
  public:
-  RodTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<RodLink>()), rods_(placed_links(all_, entries, places)) {}
+  RodTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
+      : laws_(acting.laws),
+        calls_(acting.calls),
+        all_(acting.world.effects.of<RodLink>()),
+        rods_(placed_links(all_, entries, places)) {}
 
   std::size_t row_count() const override { return rods_.size(); }
   void append_rows(const std::vector<Body>& bodies, std::vector<Constraint>& rows) override {
     for (const PlacedLink& link : rods_) {
       ++calls_;
       const RodLink& rod = of(link);
-      rows.push_back({link.a.place, link.b.place, naming_link("rod", rod.name, [&] { return laws_.rod_row(bodies[link.a.place], link.a.point_body, bodies[link.b.place], link.b.point_body, rod.length); })});
+      rows.push_back({link.a.place, link.b.place, naming_link("rod", rod.name, [&] {
+                        return laws_.rod_row(bodies[link.a.place], link.a.point_body,
+                                             bodies[link.b.place], link.b.point_body, rod.length);
+                      })});
     }
   }
   double size() const override {
@@ -45,16 +52,24 @@ class RodTerms final : public GroupTerms {
     return longest;
   }
   void note_open(const std::vector<Body>& bodies, const NoteOpen& note) const override {
-    for (const PlacedLink& link : rods_) note(of(link).name, std::abs((link.a.point_among(bodies) - link.b.point_among(bodies)).norm() - of(link).length) / of(link).length);
+    for (const PlacedLink& link : rods_)
+      note(of(link).name,
+           std::abs((link.a.point_among(bodies) - link.b.point_among(bodies)).norm() -
+                    of(link).length) /
+               of(link).length);
   }
   // A rod's multiplier pushes A along the growing length: away from B.
-  void measure(const std::vector<Body>&, const VectorXd& multipliers, std::vector<double>& forces) override {
+  void measure(const std::vector<Body>&, const VectorXd& multipliers,
+               std::vector<double>& forces) override {
     Eigen::Index at = 0;
-    for (const PlacedLink& link : rods_) forces[static_cast<std::size_t>(link.entry)] = -multipliers[at++];
+    for (const PlacedLink& link : rods_)
+      forces[static_cast<std::size_t>(link.entry)] = -multipliers[at++];
   }
 
  private:
-  const RodLink& of(const PlacedLink& link) const { return all_[static_cast<std::size_t>(link.entry)]; }
+  const RodLink& of(const PlacedLink& link) const {
+    return all_[static_cast<std::size_t>(link.entry)];
+  }
 
   const Laws& laws_;
   std::uint64_t& calls_;
@@ -85,7 +100,9 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
       check_length(rod, bodies, refuse);
     }
   }
-  std::string describe(const RodSpec& spec) const override { return fmt::format("{}: {}, {:.4g} m", spec.name, between(spec), spec.length_m); }
+  std::string describe(const RodSpec& spec) const override {
+    return fmt::format("{}: {}, {:.4g} m", spec.name, between(spec), spec.length_m);
+  }
   double length_of(const RodSpec& spec) const override { return spec.length_m; }
 
   void build(const scene::Scene& scene, const BodyIndex& index, World& world) const override {
@@ -95,59 +112,81 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
     }
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries,
+                                          GroupPlaces& places) const override {
     return std::make_unique<RodTerms>(acting, entries, places);
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
-    std::vector<NeededLaw> needed{{static_cast<bool>(laws.rod_row), "the constraint of a rod", "a3"}};
+    std::vector<NeededLaw> needed{
+        {static_cast<bool>(laws.rod_row), "the constraint of a rod", "a3"}};
     append_laws_of_rows(scene, laws, needed);
     return needed;
   }
 
-  void append_held_rows(const World& world, const std::vector<RigidBodyState>& start, std::vector<Constraint>& rows) const override {
+  void append_held_rows(const World& world, const std::vector<RigidBodyState>& start,
+                        std::vector<Constraint>& rows) const override {
     for (const RodLink& rod : held(world)) {
       const auto [of_a, of_b] = distance_jacobians(rod.a, rod.b, start);
       rows.push_back({rod.a.body, rod.b.body, {of_a, of_b, kUnset, kUnset, kUnset}});
     }
   }
   void append_carriers(const World& world, std::vector<Carrier>& carriers) const override {
-    for (std::size_t k = 0; k < held(world).size(); ++k) carriers.push_back({held(world)[k].a, held(world)[k].b, held(world)[k].length, false, static_cast<int>(k)});
+    for (std::size_t k = 0; k < held(world).size(); ++k)
+      carriers.push_back(
+          {held(world)[k].a, held(world)[k].b, held(world)[k].length, false, static_cast<int>(k)});
   }
 
   std::vector<double> Frame::*measured_as() const override { return &Frame::rod_tensions; }
-  void append_pulls(const World& world, const std::vector<RigidBodyState>&, const std::vector<double>& measured, const Laws& laws, std::vector<Pull>& pulls) const override {
+  void append_pulls(const World& world, const std::vector<RigidBodyState>&,
+                    const std::vector<double>& measured, const Laws& laws,
+                    std::vector<Pull>& pulls) const override {
     for (std::size_t k = 0; k < measured.size(); ++k) {
       const RodLink& rod = held(world)[k];
-      pulls.push_back({rod.a.body, rod.b.body, std::abs(measured[k]), fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})", rod.name, laws.constraint_source)});
+      pulls.push_back(
+          {rod.a.body, rod.b.body, std::abs(measured[k]),
+           fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})",
+                       rod.name, laws.constraint_source)});
     }
   }
   std::vector<scene::LinkCheck> link_checks() const override { return {{"rod_length", "m"}}; }
-  std::pair<double, std::string> error_of(const std::string&, const scene::Scene& scene, std::size_t entry, const PoseOf& pose_of) const override {
+  std::pair<double, std::string> error_of(const std::string&, const scene::Scene& scene,
+                                          std::size_t entry, const PoseOf& pose_of) const override {
     const RodSpec& rod = specs(scene)[entry];
     const auto place = [&](const scene::AnchorSpec& anchor) -> Vector3d {
       const BodyPose* pose = pose_of(anchor.body);
-      return pose == nullptr ? anchor.point_m : Vector3d(pose->com_world + pose->world_from_body * anchor.point_m);
+      return pose == nullptr ? anchor.point_m
+                             : Vector3d(pose->com_world + pose->world_from_body * anchor.point_m);
     };
     const double length = (place(rod.b) - place(rod.a)).norm();
     return {std::abs(length - rod.length_m), fmt::format("{} is {:.9g} m long", rod.name, length)};
   }
   void draw(const scene::Scene& scene, Drawables& drawables) const override {
-    for (const RodSpec& spec : specs(scene)) drawables.bars.push_back({spec.name, {spec.a.body, spec.a.point_m}, {spec.b.body, spec.b.point_m}});
+    for (const RodSpec& spec : specs(scene))
+      drawables.bars.push_back(
+          {spec.name, {spec.a.body, spec.a.point_m}, {spec.b.body, spec.b.point_m}});
   }
 
  private:
-  static void check_length(const RodSpec& rod, const scene::BodiesByName& bodies, const scene::Refuse& refuse) {
+  static void check_length(const RodSpec& rod, const scene::BodiesByName& bodies,
+                           const scene::Refuse& refuse) {
     const auto place = [&](const scene::AnchorSpec& anchor) -> Vector3d {
       const scene::BodySpec* of = bodies.find(anchor.body);
-      return of == nullptr ? anchor.point_m : Vector3d(of->position_m + of->world_from_body * anchor.point_m);
+      return of == nullptr ? anchor.point_m
+                           : Vector3d(of->position_m + of->world_from_body * anchor.point_m);
     };
     const double found = (place(rod.b) - place(rod.a)).norm();
     if (rod.length_m == 0.0 || found == 0.0)
-      refuse(rod.pointer, "rod '" + rod.name + "' has no length: " + scene::ending(rod.a) + " and " + scene::ending(rod.b) + " are anchored at the same place", "Move one of them; for two bodies that share a point use a joint of kind \"ball\".");
+      refuse(rod.pointer,
+             "rod '" + rod.name + "' has no length: " + scene::ending(rod.a) + " and " +
+                 scene::ending(rod.b) + " are anchored at the same place",
+             "Move one of them; for two bodies that share a point use a joint of kind \"ball\".");
     const double off = found - rod.length_m;
     if (std::abs(off) > kRodFit * rod.length_m)
-      refuse(rod.pointer + "/length_m", "rod '" + rod.name + "' is " + digits(rod.length_m) + " m long, but its ends are " + digits(found) + " m apart at the start: " +
-             digits(std::abs(off)) + " m too " + (off > 0 ? "far" : "near"), "Leave length_m out (it is then measured), or move a body.");
+      refuse(rod.pointer + "/length_m",
+             "rod '" + rod.name + "' is " + digits(rod.length_m) + " m long, but its ends are " +
+                 digits(found) + " m apart at the start: " + digits(std::abs(off)) + " m too " +
+                 (off > 0 ? "far" : "near"),
+             "Leave length_m out (it is then measured), or move a body.");
   }
 };
 

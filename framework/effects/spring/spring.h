@@ -15,8 +15,9 @@ struct SpringSpec {
   scene::AnchorSpec a, b;
   double stiffness_n_m = kUnset;
   double damping_n_s_m = 0.0;
-  double rest_length_m = kUnset;    // of a file that leaves it out: the distance at the start
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  double rest_length_m = kUnset;  // of a file that leaves it out: the distance at the start
+  // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  std::string pointer{};
 };
 
 /// What a world holds of it.

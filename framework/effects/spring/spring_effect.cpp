@@ -9,29 +9,38 @@
 
 namespace tumble::effects {
 
-extern const char* const kSpringSchema;   // schema.json
+extern const char* const kSpringSchema;  // schema.json
 
 namespace {
 
 class SpringTerms final : public GroupTerms {
  public:
-  SpringTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<SpringLink>()), springs_(placed_links(all_, entries, places)) {}
+  SpringTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
+      : laws_(acting.laws),
+        calls_(acting.calls),
+        all_(acting.world.effects.of<SpringLink>()),
+        springs_(placed_links(all_, entries, places)) {}
 
   void add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) override {
     for (const PlacedLink& link : springs_) {
       ++calls_;
       const AnchorState a = link.a.state_among(bodies), b = link.b.state_among(bodies);
       const SpringLink& spring = all_[static_cast<std::size_t>(link.entry)];
-      const Vector3d force = naming_link("spring", spring.name, [&] { return laws_.spring_force(spring.spring, a, b); });
+      const Vector3d force = naming_link("spring", spring.name,
+                                         [&] { return laws_.spring_force(spring.spring, a, b); });
       add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
       add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
     }
   }
-  void measure(const std::vector<Body>& bodies, const VectorXd&, std::vector<double>& forces) override {
+  void measure(const std::vector<Body>& bodies, const VectorXd&,
+               std::vector<double>& forces) override {
     for (const PlacedLink& link : springs_) {
       const AnchorState a = link.a.state_among(bodies), b = link.b.state_among(bodies);
-      const Vector3d force = laws_.spring_force(all_[static_cast<std::size_t>(link.entry)].spring, a, b), way = b.point_world - a.point_world;
-      forces[static_cast<std::size_t>(link.entry)] = force.dot(way) < 0 ? -force.norm() : force.norm();
+      const Vector3d force = laws_.spring_force(all_[static_cast<std::size_t>(link.entry)].spring,
+                                                a, b),
+                     way = b.point_world - a.point_world;
+      forces[static_cast<std::size_t>(link.entry)] =
+          force.dot(way) < 0 ? -force.norm() : force.norm();
     }
   }
 
@@ -49,7 +58,9 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
   std::string stage() const override { return "forces"; }
   std::string counter() const override { return "spring_calls"; }
   std::string schema() const override { return kSpringSchema; }
-  Traits traits() const override { return {.ties = true, .stores_energy = true, .may_be_stiff = true}; }
+  Traits traits() const override {
+    return {.ties = true, .stores_energy = true, .may_be_stiff = true};
+  }
 
   void read(scene::Entry& entry, scene::Scene& scene) const override {
     SpringSpec spec;
@@ -62,56 +73,77 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
   }
   void check(const scene::Scene& scene, const scene::Refuse& refuse) const override {
     const scene::BodiesByName bodies(scene);
-    for (const SpringSpec& spring : specs(scene)) scene::check_ends("spring '" + spring.name + "'", spring.a, spring.b, spring.pointer, bodies, refuse);
+    for (const SpringSpec& spring : specs(scene))
+      scene::check_ends("spring '" + spring.name + "'", spring.a, spring.b, spring.pointer, bodies,
+                        refuse);
   }
   std::string describe(const SpringSpec& spec) const override {
-    return fmt::format("{}: {}, {:g} N/m, {:g} N s/m, {:.4g} m at rest", spec.name, between(spec), spec.stiffness_n_m, spec.damping_n_s_m, spec.rest_length_m);
+    return fmt::format("{}: {}, {:g} N/m, {:g} N s/m, {:.4g} m at rest", spec.name, between(spec),
+                       spec.stiffness_n_m, spec.damping_n_s_m, spec.rest_length_m);
   }
   double length_of(const SpringSpec& spec) const override { return spec.rest_length_m; }
 
   void build(const scene::Scene& scene, const BodyIndex& index, World& world) const override {
     for (const SpringSpec& spec : specs(scene)) {
       const auto [a, b] = anchors_of(spec, index, world);
-      world.effects.of<SpringLink>().push_back({spec.name, a, b, {spec.stiffness_n_m, spec.damping_n_s_m, spec.rest_length_m}});
+      world.effects.of<SpringLink>().push_back(
+          {spec.name, a, b, {spec.stiffness_n_m, spec.damping_n_s_m, spec.rest_length_m}});
     }
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries,
+                                          GroupPlaces& places) const override {
     return std::make_unique<SpringTerms>(acting, entries, places);
   }
-  std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws& laws) const override { return {{static_cast<bool>(laws.spring_force), "the force of a spring", "a3"}}; }
+  std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws& laws) const override {
+    return {{static_cast<bool>(laws.spring_force), "the force of a spring", "a3"}};
+  }
 
   // E = k/2 (L - L0)^2
-  void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {
+  void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states,
+                            double& sum) const override {
     for (const SpringLink& link : held(world)) {
-      const double stretch = (anchor_point(link.b, states) - anchor_point(link.a, states)).norm() - link.spring.rest_length;
+      const double stretch = (anchor_point(link.b, states) - anchor_point(link.a, states)).norm() -
+                             link.spring.rest_length;
       sum += 0.5 * link.spring.stiffness * stretch * stretch;
     }
   }
   // Its length is rounded as places are, so that its stretch is off by that.
-  void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {
+  void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states,
+                        double& sum) const override {
     for (const SpringLink& link : held(world)) {
       const Vector3d a = anchor_point(link.a, states), b = anchor_point(link.b, states);
       const double stretch = std::abs((a - b).norm() - link.spring.rest_length);
       sum += link.spring.stiffness * stretch * (stretch + a.norm() + b.norm());
     }
   }
-  void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start, std::vector<StiffRow>& rows) const override {
+  void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start,
+                         std::vector<StiffRow>& rows) const override {
     for (const SpringLink& link : held(world)) {
       const auto [of_a, of_b] = distance_jacobians(link.a, link.b, start);
-      rows.push_back({link.a.body, link.b.body, of_a, of_b, link.spring.stiffness, link.spring.damping, "spring '" + link.name + "'", "a softer spring or more damping", "damp the spring"});
+      rows.push_back({link.a.body, link.b.body, of_a, of_b, link.spring.stiffness,
+                      link.spring.damping, "spring '" + link.name + "'",
+                      "a softer spring or more damping", "damp the spring"});
     }
   }
 
   std::vector<double> Frame::*measured_as() const override { return &Frame::spring_forces; }
-  void append_pulls(const World& world, const std::vector<RigidBodyState>&, const std::vector<double>& measured, const Laws& laws, std::vector<Pull>& pulls) const override {
+  void append_pulls(const World& world, const std::vector<RigidBodyState>&,
+                    const std::vector<double>& measured, const Laws& laws,
+                    std::vector<Pull>& pulls) const override {
     for (std::size_t k = 0; k < measured.size(); ++k) {
       const SpringLink& link = held(world)[k];
-      pulls.push_back({link.a.body, link.b.body, std::abs(measured[k]), fmt::format("spring '{}' (spring_force of {})", link.name, laws.constraint_source)});
+      pulls.push_back(
+          {link.a.body, link.b.body, std::abs(measured[k]),
+           fmt::format("spring '{}' (spring_force of {})", link.name, laws.constraint_source)});
     }
   }
   void draw(const scene::Scene& scene, Drawables& drawables) const override {
-    for (const SpringSpec& spec : specs(scene)) drawables.coils.push_back({spec.name, {spec.a.body, spec.a.point_m}, {spec.b.body, spec.b.point_m}, spec.rest_length_m});
+    for (const SpringSpec& spec : specs(scene))
+      drawables.coils.push_back({spec.name,
+                                 {spec.a.body, spec.a.point_m},
+                                 {spec.b.body, spec.b.point_m},
+                                 spec.rest_length_m});
   }
 };
 

@@ -13,7 +13,8 @@ namespace {
 /// Moves moments to those about another origin, which lies at -shift: x becomes x + shift.
 Submerged shifted(const Submerged& moments, const Vector3d& shift) {
   const Matrix3d mixed = shift * moments.first.transpose();
-  return {moments.volume, moments.first + moments.volume * shift, moments.second + mixed + mixed.transpose() + moments.volume * shift * shift.transpose()};
+  return {moments.volume, moments.first + moments.volume * shift,
+          moments.second + mixed + mixed.transpose() + moments.volume * shift * shift.transpose()};
 }
 
 // Of the tetrahedron from the origin to a face:  d = a . (b x c),  V = d / 6,  int x = d s / 24,
@@ -23,7 +24,8 @@ void add_tetrahedron(const Vector3d& a, const Vector3d& b, const Vector3d& c, Su
   const Vector3d s = a + b + c;
   sum.volume += d / 6.0;
   sum.first += d / 24.0 * s;
-  sum.second += d / 120.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
+  sum.second +=
+      d / 120.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
 }
 
 // The part of a face under the plane through the origin: a triangle or a quadrilateral, in the
@@ -35,7 +37,8 @@ void add_cut_face(const std::array<Vector3d, 3>& corners, const Vector3d& normal
     const Vector3d &from = corners[i], &to = corners[(i + 1) % 3];
     const double here = normal.dot(from), there = normal.dot(to);
     if (here <= 0.0) kept[count++] = from;
-    if ((here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0)) kept[count++] = from + here / (here - there) * (to - from);
+    if ((here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0))
+      kept[count++] = from + here / (here - there) * (to - from);
   }
   for (std::size_t k = 2; k < count; ++k) add_tetrahedron(kept[0], kept[k - 1], kept[k], sum);
 }
@@ -44,11 +47,18 @@ void add_cut_face(const std::array<Vector3d, 3>& corners, const Vector3d& normal
 
 Submerged submerged_ball(double radius, const Vector3d& normal, double offset) {
   const double R = radius, d = std::clamp(offset, -R, R);
-  const auto between = [&](const auto& antiderivative) { return std::numbers::pi * (antiderivative(d) - antiderivative(-R)); };
-  const double along = between([&](double z) { return R * R * std::pow(z, 3) / 3.0 - std::pow(z, 5) / 5.0; });
-  const double across = 0.25 * between([&](double z) { return std::pow(R, 4) * z - 2.0 * R * R * std::pow(z, 3) / 3.0 + std::pow(z, 5) / 5.0; });
+  const auto between = [&](const auto& antiderivative) {
+    return std::numbers::pi * (antiderivative(d) - antiderivative(-R));
+  };
+  const double along =
+      between([&](double z) { return R * R * std::pow(z, 3) / 3.0 - std::pow(z, 5) / 5.0; });
+  const double across =
+      0.25 * between([&](double z) {
+        return std::pow(R, 4) * z - 2.0 * R * R * std::pow(z, 3) / 3.0 + std::pow(z, 5) / 5.0;
+      });
   const Matrix3d n = normal * normal.transpose();
-  return {between([&](double z) { return R * R * z - z * z * z / 3.0; }), between([&](double z) { return R * R * z * z / 2.0 - std::pow(z, 4) / 4.0; }) * normal,
+  return {between([&](double z) { return R * R * z - z * z * z / 3.0; }),
+          between([&](double z) { return R * R * z * z / 2.0 - std::pow(z, 4) / 4.0; }) * normal,
           along * n + across * (Matrix3d::Identity() - n)};
 }
 
@@ -57,15 +67,20 @@ Submerged submerged_ellipsoid(const Ellipsoid& ellipsoid, const Vector3d& normal
   const Eigen::DiagonalMatrix<double, 3> A(ellipsoid.semi_axes_body);
   const Vector3d direction = A * normal;
   const double length = direction.norm(), stretch = ellipsoid.semi_axes_body.prod();
-  const Submerged ball = submerged_ball(1.0, direction / length, (offset - normal.dot(ellipsoid.center_body)) / length);
-  return shifted({stretch * ball.volume, stretch * (A * ball.first), stretch * (A * ball.second * A)}, ellipsoid.center_body);
+  const Submerged ball = submerged_ball(1.0, direction / length,
+                                        (offset - normal.dot(ellipsoid.center_body)) / length);
+  return shifted(
+      {stretch * ball.volume, stretch * (A * ball.first), stretch * (A * ball.second * A)},
+      ellipsoid.center_body);
 }
 
 Submerged submerged_mesh(const TriangleMesh& mesh, const Vector3d& normal, double offset) {
-  const Vector3d origin = offset * normal;   // in the plane
+  const Vector3d origin = offset * normal;  // in the plane
   Submerged sum;
   for (const Face& face : mesh.faces) {
-    const auto corner = [&](std::size_t k) -> Vector3d { return mesh.vertices[static_cast<std::size_t>(face[k])] - origin; };
+    const auto corner = [&](std::size_t k) -> Vector3d {
+      return mesh.vertices[static_cast<std::size_t>(face[k])] - origin;
+    };
     add_cut_face({corner(0), corner(1), corner(2)}, normal, sum);
   }
   return shifted(sum, origin);
@@ -73,18 +88,24 @@ Submerged submerged_mesh(const TriangleMesh& mesh, const Vector3d& normal, doubl
 
 Floatable::Floatable(const Shape& shape) : solid_(TriangleMesh{}), radius_(bounding_radius(shape)) {
   require(!std::holds_alternative<HalfSpace>(shape), "a half-space does not float");
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) solid_ = *sphere;
-  else if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) solid_ = *ellipsoid;
-  else if (const auto* mesh = std::get_if<MeshSolid>(&shape)) solid_ = mesh->mesh_body;
-  else solid_ = surface_of(shape);
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    solid_ = *sphere;
+  else if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape))
+    solid_ = *ellipsoid;
+  else if (const auto* mesh = std::get_if<MeshSolid>(&shape))
+    solid_ = mesh->mesh_body;
+  else
+    solid_ = surface_of(shape);
   whole_ = under(Vector3d::UnitZ(), radius_);
 }
 
 Submerged Floatable::under(const Vector3d& normal_body, double offset) const {
   if (offset <= -radius_) return {};
   if (offset >= radius_ && whole_.volume > 0.0) return whole_;
-  if (const auto* sphere = std::get_if<Sphere>(&solid_)) return submerged_ball(sphere->radius, normal_body, offset);
-  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&solid_)) return submerged_ellipsoid(*ellipsoid, normal_body, offset);
+  if (const auto* sphere = std::get_if<Sphere>(&solid_))
+    return submerged_ball(sphere->radius, normal_body, offset);
+  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&solid_))
+    return submerged_ellipsoid(*ellipsoid, normal_body, offset);
   return submerged_mesh(std::get<TriangleMesh>(solid_), normal_body, offset);
 }
 

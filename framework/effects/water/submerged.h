@@ -11,13 +11,14 @@ namespace tumble::effects {
 /// The part of a solid on the negative side of a plane. All in one frame, moments about its origin.
 ///   volume = int 1 dV,   first = int x dV,   second = int x x' dV
 struct Submerged {
-  double volume = 0.0;                           // [m^3]
-  Vector3d first = Vector3d::Zero();             // (3) [m^4]
-  Matrix3d second = Matrix3d::Zero();            // (3, 3) [m^5]
+  double volume = 0.0;                 // [m^3]
+  Vector3d first = Vector3d::Zero();   // (3) [m^4]
+  Matrix3d second = Matrix3d::Zero();  // (3, 3) [m^5]
 };
 
 /// Of a ball about the origin: the cap x . n <= offset.  [-R, d] along n:
-///   V = pi (R^2 z - z^3 / 3),   int z = pi (R^2 z^2 / 2 - z^4 / 4),   int z^2 = pi (R^2 z^3 / 3 - z^5 / 5),   int x^2 = pi / 4 (R^4 z - 2 R^2 z^3 / 3 + z^5 / 5)
+///   V = pi (R^2 z - z^3 / 3),   int z = pi (R^2 z^2 / 2 - z^4 / 4),
+///       int z^2 = pi (R^2 z^3 / 3 - z^5 / 5),   int x^2 = pi / 4 (R^4 z - 2 R^2 z^3 / 3 + z^5 / 5)
 /// @param normal  (3), unit, out of what is under the plane  @param offset  [m]
 Submerged submerged_ball(double radius, const Vector3d& normal, double offset);
 
@@ -38,7 +39,8 @@ class Floatable {
 
   Submerged under(const Vector3d& normal_body, double offset) const;
   const Submerged& whole() const { return whole_; }
-  double radius() const { return radius_; }      // of a ball about the body's origin that holds it [m]
+  // of a ball about the body's origin that holds it [m]
+  double radius() const { return radius_; }
 
  private:
   std::variant<Sphere, Ellipsoid, TriangleMesh> solid_;

@@ -18,18 +18,19 @@ namespace tumble::effects {
 
 /// What a scene says of it, at most once.
 struct WaterSpec {
-  Vector3d surface_m = Vector3d::Zero();         // a point of its surface
+  Vector3d surface_m = Vector3d::Zero();  // a point of its surface
   double density_kg_m3 = 1000.0;
-  double drag_1_s = 0.0;                         // k
-  Vector3d stream_m_s = Vector3d::Zero();        // u, world
-  std::string pointer{};                         // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  double drag_1_s = 0.0;                   // k
+  Vector3d stream_m_s = Vector3d::Zero();  // u, world
+  // JSON pointer of the entry that asked for it, for messages; empty: made in memory
+  std::string pointer{};
 };
 
 /// What a world holds of it: one for each movable body.
 struct Floating {
   int body;
   WaterSpec water;
-  double gravity;                                // g [m/s^2]
+  double gravity;  // g [m/s^2]
   Floatable solid;
 };
 

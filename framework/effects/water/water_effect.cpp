@@ -11,22 +11,24 @@
 
 namespace tumble::effects {
 
-extern const char* const kWaterSchema;   // schema.json
+extern const char* const kWaterSchema;  // schema.json
 
 namespace {
 
 const Vector3d kSheetColor(0.10, 0.36, 0.52);
-constexpr double kSinePerTurn = 1e-12;   // of gravity: across the vertical, which decimals may leave
+// of gravity: across the vertical, which decimals may leave
+constexpr double kSinePerTurn = 1e-12;
 
 /// What is under the level, in the body's frame, and the level's normal there.
 struct Immersion {
-  Matrix3d R;                  // world from body
+  Matrix3d R;  // world from body
   Vector3d up_body;
-  double depth;                // of the body's centre [m]
+  double depth;  // of the body's centre [m]
   Submerged under;
 };
 
-Immersion immersion_of(const Floating& floating, const Vector3d& com_world, const Quaterniond& world_from_body) {
+Immersion immersion_of(const Floating& floating, const Vector3d& com_world,
+                       const Quaterniond& world_from_body) {
   Immersion now;
   now.R = world_from_body.normalized().toRotationMatrix();
   now.up_body = now.R.transpose() * Vector3d::UnitZ();
@@ -36,28 +38,37 @@ Immersion immersion_of(const Floating& floating, const Vector3d& com_world, cons
 }
 
 /// tr(S) w - S w: what a turning solid's points have of angular momentum, for density 1.
-Vector3d turning(const Matrix3d& second, const Vector3d& omega) { return second.trace() * omega - second * omega; }
+Vector3d turning(const Matrix3d& second, const Vector3d& omega) {
+  return second.trace() * omega - second * omega;
+}
 
 Wrench wrench_on(const Floating& floating, const Body& body, const Immersion& now) {
   const WaterSpec& water = floating.water;
   const auto& [volume, first, second] = now.under;
-  const Vector3d up = now.up_body, past = now.R.transpose() * (body.velocity_world - water.stream_m_s), omega = now.R.transpose() * body.omega_world;
+  const Vector3d up = now.up_body,
+                 past = now.R.transpose() * (body.velocity_world - water.stream_m_s),
+                 omega = now.R.transpose() * body.omega_world;
   const double g = floating.gravity, k = water.drag_1_s;
-  const Vector3d force = water.density_kg_m3 * (volume * g * up - k * (volume * past + omega.cross(first)));
-  const Vector3d torque = water.density_kg_m3 * (first.cross(g * up) - k * (first.cross(past) + turning(second, omega)));
+  const Vector3d force =
+      water.density_kg_m3 * (volume * g * up - k * (volume * past + omega.cross(first)));
+  const Vector3d torque = water.density_kg_m3 *
+                          (first.cross(g * up) - k * (first.cross(past) + turning(second, omega)));
   return {now.R * force, now.R * torque};
 }
 
 double energy_of(const Floating& floating, const RigidBodyState& state) {
   const Immersion now = immersion_of(floating, state.com_world, state.world_from_body);
-  return floating.water.density_kg_m3 * floating.gravity * (now.under.volume * now.depth - now.up_body.dot(now.under.first));
+  return floating.water.density_kg_m3 * floating.gravity *
+         (now.under.volume * now.depth - now.up_body.dot(now.under.first));
 }
 
 class WaterTerms final : public GroupTerms {
  public:
-  WaterTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls) {
+  WaterTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
+      : calls_(acting.calls) {
     for (const int entry : entries) {
-      const Floating& floating = acting.world.effects.of<Floating>()[static_cast<std::size_t>(entry)];
+      const Floating& floating =
+          acting.world.effects.of<Floating>()[static_cast<std::size_t>(entry)];
       floating_.push_back({places.place_of(floating.body), &floating});
     }
   }
@@ -66,7 +77,7 @@ class WaterTerms final : public GroupTerms {
     for (const auto& [place, floating] : floating_) {
       const Body& body = bodies[static_cast<std::size_t>(place)];
       const Immersion now = immersion_of(*floating, body.com_world, body.world_from_body);
-      if (!(now.under.volume > 0.0)) continue;   // in the air
+      if (!(now.under.volume > 0.0)) continue;  // in the air
       ++calls_;
       const Wrench wrench = wrench_on(*floating, body, now);
       wrenches[static_cast<std::size_t>(place)].force_world += wrench.force_world;
@@ -76,7 +87,7 @@ class WaterTerms final : public GroupTerms {
 
  private:
   std::uint64_t& calls_;
-  std::vector<std::pair<int, const Floating*>> floating_;   // by place in the group
+  std::vector<std::pair<int, const Floating*>> floating_;  // by place in the group
 };
 
 /// A stream does at most  rho k V |u|^2 / 4  of work a second: the force -k (v - u) gives most
@@ -85,7 +96,8 @@ class StreamMeter final : public WorkMeter {
  public:
   explicit StreamMeter(const World& world) {
     for (const Floating& floating : world.effects.of<Floating>())
-      most_ += 0.25 * floating.water.density_kg_m3 * floating.water.drag_1_s * floating.solid.whole().volume * floating.water.stream_m_s.squaredNorm();
+      most_ += 0.25 * floating.water.density_kg_m3 * floating.water.drag_1_s *
+               floating.solid.whole().volume * floating.water.stream_m_s.squaredNorm();
   }
   Work since_last(double time, const std::vector<RigidBodyState>&) override {
     const double passed = time - std::exchange(last_look_, time);
@@ -93,8 +105,8 @@ class StreamMeter final : public WorkMeter {
   }
 
  private:
-  double most_ = 0.0;          // [W]
-  double last_look_ = 0.0;     // [s]
+  double most_ = 0.0;       // [W]
+  double last_look_ = 0.0;  // [s]
 };
 
 class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
@@ -117,46 +129,71 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
   }
   void check(const scene::Scene& scene, const scene::Refuse& refuse) const override {
     for (const WaterSpec& water : specs(scene)) {
-      if (!water.stream_m_s.isZero(0.0) && water.drag_1_s == 0.0) refuse(water.pointer + "/stream_m_s", "the water streams, but has no drag to carry anything by", "Add drag_1_s.");
-      if (water.stream_m_s.z() != 0.0) refuse(water.pointer + "/stream_m_s", "the water streams through its own level", "Give a stream along it: z must be 0.");
+      if (!water.stream_m_s.isZero(0.0) && water.drag_1_s == 0.0)
+        refuse(water.pointer + "/stream_m_s",
+               "the water streams, but has no drag to carry anything by", "Add drag_1_s.");
+      if (water.stream_m_s.z() != 0.0)
+        refuse(water.pointer + "/stream_m_s", "the water streams through its own level",
+               "Give a stream along it: z must be 0.");
     }
   }
   std::string describe(const WaterSpec& spec) const override {
-    std::string text = fmt::format("up to z = {:g} m, {:g} kg/m^3, drag {:g} 1/s", spec.surface_m.z(), spec.density_kg_m3, spec.drag_1_s);
-    if (!spec.stream_m_s.isZero(0.0)) text += fmt::format(", streams at ({:g}, {:g}, {:g}) m/s", spec.stream_m_s.x(), spec.stream_m_s.y(), spec.stream_m_s.z());
+    std::string text = fmt::format("up to z = {:g} m, {:g} kg/m^3, drag {:g} 1/s",
+                                   spec.surface_m.z(), spec.density_kg_m3, spec.drag_1_s);
+    if (!spec.stream_m_s.isZero(0.0))
+      text += fmt::format(", streams at ({:g}, {:g}, {:g}) m/s", spec.stream_m_s.x(),
+                          spec.stream_m_s.y(), spec.stream_m_s.z());
     return text;
   }
   void visit_places(TypedLists& effects, const scene::VisitPlace& visit) const override {
-    for (WaterSpec& water : effects.of<WaterSpec>()) visit(water.surface_m, scene::PlaceKind::kOther);
+    for (WaterSpec& water : effects.of<WaterSpec>())
+      visit(water.surface_m, scene::PlaceKind::kOther);
   }
 
   void build(const scene::Scene& scene, const BodyIndex&, World& world) const override {
     for (const WaterSpec& spec : specs(scene)) {
-      const Vector3d gravity = world.gravity_world.value_or(Vector3d::Zero());   // stands above water in the list of effects
+      // stands above water in the list of effects
+      const Vector3d gravity = world.gravity_world.value_or(Vector3d::Zero());
       if (!(gravity.z() < 0.0) || gravity.head<2>().norm() > kSinePerTurn * gravity.norm())
-        throw UserError(scene::place_of(scene, spec.pointer), "water lies level across gravity, and gravity is not straight down", "give gravity along -z, such as \"gravity_m_s2\": [0, 0, -9.81], or leave water out");
+        throw UserError(
+            scene::place_of(scene, spec.pointer),
+            "water lies level across gravity, and gravity is not straight down",
+            "give gravity along -z, such as \"gravity_m_s2\": [0, 0, -9.81], or leave water out");
       for (std::size_t i = 0; i < world.bodies.size(); ++i)
-        if (!world.bodies[i].immovable()) world.effects.of<Floating>().push_back({static_cast<int>(i), spec, gravity.norm(), Floatable(world.bodies[i].shape)});
+        if (!world.bodies[i].immovable())
+          world.effects.of<Floating>().push_back(
+              {static_cast<int>(i), spec, gravity.norm(), Floatable(world.bodies[i].shape)});
     }
   }
   std::vector<int> ends_of(const Floating& floating) const override { return {floating.body}; }
-  void rename_ends(Floating& floating, const std::function<int(int)>& other) const override { floating.body = other(floating.body); }
+  void rename_ends(Floating& floating, const std::function<int(int)>& other) const override {
+    floating.body = other(floating.body);
+  }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries,
+                                          GroupPlaces& places) const override {
     return std::make_unique<WaterTerms>(acting, entries, places);
   }
 
-  void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {
-    for (const Floating& floating : held(world)) sum += energy_of(floating, states[static_cast<std::size_t>(floating.body)]);
+  void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states,
+                            double& sum) const override {
+    for (const Floating& floating : held(world))
+      sum += energy_of(floating, states[static_cast<std::size_t>(floating.body)]);
   }
-  void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {
+  void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states,
+                        double& sum) const override {
     for (const Floating& floating : held(world)) {
-      const double z = states[static_cast<std::size_t>(floating.body)].com_world.z(), reach = std::abs(floating.water.surface_m.z()) + std::abs(z) + floating.solid.radius();
-      sum += floating.water.density_kg_m3 * floating.gravity * floating.solid.whole().volume * reach;
+      const double z = states[static_cast<std::size_t>(floating.body)].com_world.z(),
+                   reach = std::abs(floating.water.surface_m.z()) + std::abs(z) +
+                           floating.solid.radius();
+      sum +=
+          floating.water.density_kg_m3 * floating.gravity * floating.solid.whole().volume * reach;
     }
   }
   std::unique_ptr<WorkMeter> work_meter(const World& world) const override {
-    const bool streams = std::any_of(held(world).begin(), held(world).end(), [](const Floating& floating) { return !floating.water.stream_m_s.isZero(0.0); });
+    const bool streams = std::any_of(
+        held(world).begin(), held(world).end(),
+        [](const Floating& floating) { return !floating.water.stream_m_s.isZero(0.0); });
     return streams ? std::make_unique<StreamMeter>(world) : nullptr;
   }
 
@@ -165,41 +202,62 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
       const double k = floating.water.density_kg_m3 * floating.water.drag_1_s;
       if (k == 0.0) continue;
       const Submerged& whole = floating.solid.whole();
-      const double least = symmetric_eigen(Matrix3d(whole.second.trace() * Matrix3d::Identity() - whole.second)).values[0];
-      drains.push_back({floating.body, k * whole.volume, k * least, fmt::format("the water's drag on body '{}'", world.bodies[static_cast<std::size_t>(floating.body)].name), "less drag_1_s"});
+      const double least =
+          symmetric_eigen(Matrix3d(whole.second.trace() * Matrix3d::Identity() - whole.second))
+              .values[0];
+      drains.push_back({floating.body, k * whole.volume, k * least,
+                        fmt::format("the water's drag on body '{}'",
+                                    world.bodies[static_cast<std::size_t>(floating.body)].name),
+                        "less drag_1_s"});
     }
   }
   // Up and down: k = rho g A, A the area that the level cuts where the run starts; of a body that
   // starts clear of it, its mean over the body's shortest way through.
-  void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start, std::vector<StiffRow>& rows) const override {
+  void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start,
+                         std::vector<StiffRow>& rows) const override {
     for (const Floating& floating : held(world)) {
       const RigidBodyState& state = start[static_cast<std::size_t>(floating.body)];
       Vector6d up = Vector6d::Zero();
       up[2] = 1.0;
-      const double stiffness = floating.water.density_kg_m3 * floating.gravity * area_at_level(floating, state);
-      rows.push_back({floating.body, -1, up, Vector6d::Zero(), stiffness, 0.0, fmt::format("body '{}' in the water", world.bodies[static_cast<std::size_t>(floating.body)].name), "a larger body", "give the water drag_1_s"});
+      const double stiffness =
+          floating.water.density_kg_m3 * floating.gravity * area_at_level(floating, state);
+      rows.push_back({floating.body, -1, up, Vector6d::Zero(), stiffness, 0.0,
+                      fmt::format("body '{}' in the water",
+                                  world.bodies[static_cast<std::size_t>(floating.body)].name),
+                      "a larger body", "give the water drag_1_s"});
     }
   }
-  void append_pulls(const World& world, const std::vector<RigidBodyState>& states, const std::vector<double>&, const Laws&, std::vector<Pull>& pulls) const override {
+  void append_pulls(const World& world, const std::vector<RigidBodyState>& states,
+                    const std::vector<double>&, const Laws&,
+                    std::vector<Pull>& pulls) const override {
     for (const Floating& floating : held(world)) {
       const RigidBodyState& state = states[static_cast<std::size_t>(floating.body)];
       const Inertia& inertia = world.bodies[static_cast<std::size_t>(floating.body)].inertia;
-      const Body body{inertia, state.com_world, state.world_from_body, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
-      pulls.push_back({floating.body, -1, wrench_on(floating, body, immersion_of(floating, state.com_world, state.world_from_body)).force_world.norm(), "water (the framework's own)"});
+      const Body body{inertia, state.com_world, state.world_from_body,
+                      inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
+      pulls.push_back(
+          {floating.body, -1,
+           wrench_on(floating, body, immersion_of(floating, state.com_world, state.world_from_body))
+               .force_world.norm(),
+           "water (the framework's own)"});
     }
   }
 
   void draw(const scene::Scene& scene, Drawables& drawables) const override {
-    for (const WaterSpec& water : specs(scene)) drawables.sheets.push_back({water.surface_m.z(), kSheetColor});
+    for (const WaterSpec& water : specs(scene))
+      drawables.sheets.push_back({water.surface_m.z(), kSheetColor});
   }
 
  private:
   static double area_at_level(const Floating& floating, const RigidBodyState& state) {
-    constexpr double kPart = 1e-4;   // of the radius: a difference quotient over this way
+    constexpr double kPart = 1e-4;  // of the radius: a difference quotient over this way
     const double way = kPart * floating.solid.radius();
     if (!(way > 0.0)) return 0.0;
-    const Vector3d lower = state.com_world - way * Vector3d::UnitZ(), upper = state.com_world + way * Vector3d::UnitZ();
-    const double area = (immersion_of(floating, lower, state.world_from_body).under.volume - immersion_of(floating, upper, state.world_from_body).under.volume) / (2.0 * way);
+    const Vector3d lower = state.com_world - way * Vector3d::UnitZ(),
+                   upper = state.com_world + way * Vector3d::UnitZ();
+    const double area = (immersion_of(floating, lower, state.world_from_body).under.volume -
+                         immersion_of(floating, upper, state.world_from_body).under.volume) /
+                        (2.0 * way);
     return area > 0.0 ? area : floating.solid.whole().volume / floating.solid.radius();
   }
 };

@@ -15,7 +15,7 @@ namespace tumble::engines::built {
 constexpr std::string_view kWithout = TUMBLE_WITHOUT;
 
 constexpr bool kCollision = kWithout != "collision";
-constexpr bool kContact = kCollision && kWithout != "contact";   // begins where bodies collide
+constexpr bool kContact = kCollision && kWithout != "contact";  // begins where bodies collide
 constexpr bool kFriction = kWithout != "friction";
 constexpr bool kSleep = kWithout != "sleep";
 constexpr bool kCallback = kWithout != "callback";

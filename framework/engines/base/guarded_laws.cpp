@@ -20,7 +20,7 @@ struct Guard {
     try {
       return call();
     } catch (const StoppedRun&) {
-      throw;   // out of a derivative that the method asked for
+      throw;  // out of a derivative that the method asked for
     } catch (const NotImplemented&) {
       throw;
     } catch (const UserError&) {
@@ -35,7 +35,9 @@ struct Guard {
     if (!fine) throw StoppedRun(fmt::format("{} returned {}", subject(), what));
   }
   void need_size(Eigen::Index found, Eigen::Index expected) const {
-    if (found != expected) throw StoppedRun(fmt::format("{} returned {} numbers instead of {}", subject(), found, expected));
+    if (found != expected)
+      throw StoppedRun(
+          fmt::format("{} returned {} numbers instead of {}", subject(), found, expected));
   }
 };
 
@@ -47,7 +49,8 @@ void guard_impulses(const Laws& laws, Laws& safe) {
   const std::string& source = laws.impulse_source;
   if (laws.relative_normal_velocity) {
     const Guard guard{"collision", "relative_normal_velocity", source};
-    safe.relative_normal_velocity = [guard, law = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+    safe.relative_normal_velocity = [guard, law = laws.relative_normal_velocity](
+                                        const Contact& contact, const Body& a, const Body& b) {
       const double velocity = guard([&] { return law(contact, a, b); });
       guard.need(std::isfinite(velocity), kNotANumber);
       return velocity;
@@ -55,7 +58,9 @@ void guard_impulses(const Laws& laws, Laws& safe) {
   }
   if (laws.collision_impulse) {
     const Guard guard{"collision", "collision_impulse", source};
-    safe.collision_impulse = [guard, law = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double restitution) {
+    safe.collision_impulse = [guard, law = laws.collision_impulse](const Contact& contact,
+                                                                   const Body& a, const Body& b,
+                                                                   double restitution) {
       const double impulse = guard([&] { return law(contact, a, b, restitution); });
       guard.need(std::isfinite(impulse), kNotANumber);
       return impulse;
@@ -63,7 +68,9 @@ void guard_impulses(const Laws& laws, Laws& safe) {
   }
   if (laws.apply_impulse) {
     const Guard guard{"collision", "apply_impulse", source};
-    safe.apply_impulse = [guard, law = laws.apply_impulse](const Body& body, const Vector3d& impulse_world, const Vector3d& point_world) {
+    safe.apply_impulse = [guard, law = laws.apply_impulse](const Body& body,
+                                                           const Vector3d& impulse_world,
+                                                           const Vector3d& point_world) {
       const Velocity after = guard([&] { return law(body, impulse_world, point_world); });
       guard.need(after.linear_world.allFinite() && after.angular_world.allFinite(), kNotANumber);
       return after;
@@ -71,7 +78,9 @@ void guard_impulses(const Laws& laws, Laws& safe) {
   }
   if (laws.wrench_of_point_force) {
     const Guard guard{"point force", "wrench_of_point_force", source};
-    safe.wrench_of_point_force = [guard, law = laws.wrench_of_point_force](const Vector3d& force, const Vector3d& point, const Vector3d& com) {
+    safe.wrench_of_point_force = [guard, law = laws.wrench_of_point_force](const Vector3d& force,
+                                                                           const Vector3d& point,
+                                                                           const Vector3d& com) {
       const Wrench wrench = guard([&] { return law(force, point, com); });
       guard.need(wrench.force_world.allFinite() && wrench.torque_world.allFinite(), kNotANumber);
       return wrench;
@@ -83,7 +92,8 @@ void guard_motion(const Laws& laws, Laws& safe) {
   const std::string& source = laws.integrator_source;
   if (laws.integrate_step) {
     const Guard guard{"integration", "integrate_step", source};
-    safe.integrate_step = [guard, law = laws.integrate_step](const OdeFunction& f, double t, const VectorXd& y, double h) {
+    safe.integrate_step = [guard, law = laws.integrate_step](const OdeFunction& f, double t,
+                                                             const VectorXd& y, double h) {
       const VectorXd end = guard([&] { return law(f, t, y, h); });
       guard.need_size(end.size(), y.size());
       guard.need(end.allFinite(), kNotANumber);
@@ -92,7 +102,9 @@ void guard_motion(const Laws& laws, Laws& safe) {
   }
   if (laws.state_derivative) {
     const Guard guard{"integration", "state_derivative", source};
-    safe.state_derivative = [guard, law = laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+    safe.state_derivative = [guard, law = laws.state_derivative](const RigidBodyState& state,
+                                                                 const Inertia& inertia,
+                                                                 const Wrench& wrench) {
       const VectorXd rate = guard([&] { return law(state, inertia, wrench); });
       guard.need_size(rate.size(), kStateSize);
       // Out of a state that is no number nothing better can come: that is the method's doing.
@@ -110,8 +122,9 @@ void guard_motion(const Laws& laws, Laws& safe) {
   }
   if (laws.find_impact_time) {
     const Guard guard{"time of impact", "find_impact_time", source};
-    safe.find_impact_time = [guard, law = laws.find_impact_time](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high,
-                                                                double tolerance) {
+    safe.find_impact_time = [guard, law = laws.find_impact_time](
+                                const ScalarFunction& gap, const ScalarFunction& rate, double low,
+                                double high, double tolerance) {
       return guard([&] { return law(gap, rate, low, high, tolerance); });
     };
   }
@@ -121,7 +134,8 @@ void guard_constraints(const Laws& laws, Laws& safe) {
   const std::string& source = laws.constraint_source;
   if (laws.spring_force) {
     const Guard guard{"springs", "spring_force", source};
-    safe.spring_force = [guard, law = laws.spring_force](const Spring& spring, const AnchorState& a, const AnchorState& b) {
+    safe.spring_force = [guard, law = laws.spring_force](const Spring& spring, const AnchorState& a,
+                                                         const AnchorState& b) {
       const Vector3d force = guard([&] { return law(spring, a, b); });
       guard.need(force.allFinite(), kNotANumber);
       return force;
@@ -129,15 +143,21 @@ void guard_constraints(const Laws& laws, Laws& safe) {
   }
   if (laws.rod_row) {
     const Guard guard{"rods", "rod_row", source};
-    safe.rod_row = [guard, law = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
+    safe.rod_row = [guard, law = laws.rod_row](const Body& a, const Vector3d& point_a,
+                                               const Body& b, const Vector3d& point_b,
+                                               double length) {
       const ConstraintRow row = guard([&] { return law(a, point_a, b, point_b, length); });
-      guard.need(row.jacobian_a.allFinite() && row.jacobian_b.allFinite() && std::isfinite(row.value) && std::isfinite(row.rate) && std::isfinite(row.velocity_product), kNotANumber);
+      guard.need(row.jacobian_a.allFinite() && row.jacobian_b.allFinite() &&
+                     std::isfinite(row.value) && std::isfinite(row.rate) &&
+                     std::isfinite(row.velocity_product),
+                 kNotANumber);
       return row;
     };
   }
   if (laws.baumgarte_acceleration) {
     const Guard guard{"rods and joints", "baumgarte_acceleration", source};
-    safe.baumgarte_acceleration = [guard, law = laws.baumgarte_acceleration](double value, double rate, double time_constant_s) {
+    safe.baumgarte_acceleration = [guard, law = laws.baumgarte_acceleration](
+                                      double value, double rate, double time_constant_s) {
       const double acceleration = guard([&] { return law(value, rate, time_constant_s); });
       guard.need(std::isfinite(acceleration), kNotANumber);
       return acceleration;

@@ -7,10 +7,10 @@
 
 namespace tumble::engines {
 
+using tumble::naming;
 using tumble::OutOfTime;
 using tumble::StoppedForGood;
 using tumble::StoppedRun;
-using tumble::naming;
 
 /// The same laws; each throws StoppedRun where it fails, naming itself and its author.
 /// `NotImplemented` and `UserError` pass through: a law that is not written is no failure of a run.

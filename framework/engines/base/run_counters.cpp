@@ -5,26 +5,60 @@
 namespace tumble::engines {
 
 void RunCounters::add(const RunCounters& other) {
-  for (const auto count :
-       {&RunCounters::steps, &RunCounters::synchronisations, &RunCounters::shortened_steps, &RunCounters::integrations, &RunCounters::undone_integrations, &RunCounters::derivative_evaluations,
-        &RunCounters::candidate_pairs, &RunCounters::pair_checks, &RunCounters::rollbacks, &RunCounters::anti_messages, &RunCounters::states_kept,
-        &RunCounters::impacts, &RunCounters::impulses, &RunCounters::micro_impacts, &RunCounters::nudges, &RunCounters::bodies_put_to_rest,
-        &RunCounters::bodies_woken, &RunCounters::callback_calls, &RunCounters::constraint_solves,
-        &RunCounters::constraint_corrections, &RunCounters::contact_solves, &RunCounters::contact_points, &RunCounters::contact_sweeps,
-        &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings, &RunCounters::heap_steps,
-        &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::passages_begun, &RunCounters::passages_let_go, &RunCounters::impacts_at_home, &RunCounters::impacts_across, &RunCounters::rounds, &RunCounters::held_back})
+  for (const auto count : {&RunCounters::steps,
+                           &RunCounters::synchronisations,
+                           &RunCounters::shortened_steps,
+                           &RunCounters::integrations,
+                           &RunCounters::undone_integrations,
+                           &RunCounters::derivative_evaluations,
+                           &RunCounters::candidate_pairs,
+                           &RunCounters::pair_checks,
+                           &RunCounters::rollbacks,
+                           &RunCounters::anti_messages,
+                           &RunCounters::states_kept,
+                           &RunCounters::impacts,
+                           &RunCounters::impulses,
+                           &RunCounters::micro_impacts,
+                           &RunCounters::nudges,
+                           &RunCounters::bodies_put_to_rest,
+                           &RunCounters::bodies_woken,
+                           &RunCounters::callback_calls,
+                           &RunCounters::constraint_solves,
+                           &RunCounters::constraint_corrections,
+                           &RunCounters::contact_solves,
+                           &RunCounters::contact_points,
+                           &RunCounters::contact_sweeps,
+                           &RunCounters::contact_factorisations,
+                           &RunCounters::contact_unsolved,
+                           &RunCounters::contacts_begun,
+                           &RunCounters::contacts_ended,
+                           &RunCounters::contact_landings,
+                           &RunCounters::heap_steps,
+                           &RunCounters::friction_points,
+                           &RunCounters::bodies_put_to_sleep,
+                           &RunCounters::body_steps_asleep,
+                           &RunCounters::passages_begun,
+                           &RunCounters::passages_let_go,
+                           &RunCounters::impacts_at_home,
+                           &RunCounters::impacts_across,
+                           &RunCounters::rounds,
+                           &RunCounters::held_back})
     this->*count += other.*count;
   for (std::size_t k = 0; k < effect_calls.size(); ++k) effect_calls[k] += other.effect_calls[k];
   for (const auto seconds :
-       {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
-        &RunCounters::control_seconds, &RunCounters::force_seconds, &RunCounters::sleep_seconds, &RunCounters::together_seconds, &RunCounters::alone_seconds, &RunCounters::record_seconds})
+       {&RunCounters::integration_seconds, &RunCounters::collision_seconds,
+        &RunCounters::impact_seconds, &RunCounters::constraint_seconds,
+        &RunCounters::contact_seconds, &RunCounters::control_seconds, &RunCounters::force_seconds,
+        &RunCounters::sleep_seconds, &RunCounters::together_seconds, &RunCounters::alone_seconds,
+        &RunCounters::record_seconds})
     this->*seconds += other.*seconds;
   most_states = std::max(most_states, other.most_states);
   collision.gap_evaluations += other.collision.gap_evaluations;
   collision.root_findings += other.collision.root_findings;
   watch.add(other.watch);
   for (const std::string& notice : other.notices)
-    if (std::find(notices.begin(), notices.end(), notice) == notices.end()) notices.push_back(notice);
+    if (std::find(notices.begin(), notices.end(), notice) == notices.end())
+      notices.push_back(notice);
 }
 
 Counters RunCounters::named() const {
@@ -71,7 +105,8 @@ Counters RunCounters::named() const {
                   {"rounds_of_threads", rounds},
                   {"held_back", held_back},
                   {"most_states_of_a_body", most_states}};
-  for (std::size_t k = 0; k < effects::all().size(); ++k) named.counts[effects::all()[k]->counter()] = effect_calls[k];
+  for (std::size_t k = 0; k < effects::all().size(); ++k)
+    named.counts[effects::all()[k]->counter()] = effect_calls[k];
   named.stage_seconds = {{"integration", integration_seconds},
                          {"collision", collision_seconds},
                          {"impacts", impact_seconds},
@@ -98,10 +133,13 @@ bool DiscontinuityCount::is_first_at_its_instant(const Event& event) {
 }
 
 void DiscontinuityCount::event(const Event& event) {
-  const bool is_one = event.kind != EventKind::kSleep && event.kind != EventKind::kWake && event.kind != EventKind::kStick && event.kind != EventKind::kSlide;
+  const bool is_one = event.kind != EventKind::kSleep && event.kind != EventKind::kWake &&
+                      event.kind != EventKind::kStick && event.kind != EventKind::kSlide;
   const bool holds_from_the_start = event.kind == EventKind::kContact && event.time == 0.0;
-  const bool is_change_of_sliding = event.kind == EventKind::kStick || event.kind == EventKind::kSlide;
-  if (is_change_of_sliding && event.time > 0.0) ++sliding_changes_;   // at 0 it holds from the start
+  const bool is_change_of_sliding =
+      event.kind == EventKind::kStick || event.kind == EventKind::kSlide;
+  // at 0 it holds from the start
+  if (is_change_of_sliding && event.time > 0.0) ++sliding_changes_;
   if (is_one && !holds_from_the_start && is_first_at_its_instant(event)) ++count_;
   sink_.event(event);
 }
@@ -113,7 +151,8 @@ void DiscontinuityCount::end(const Counters& counters, const std::string& stoppe
   sink_.end(with_count, stopped_by);
 }
 
-double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies, double simulated_s, double step_s) {
+double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies,
+                                       double simulated_s, double step_s) {
   if (movable_bodies <= 0 || !(simulated_s > 0)) return 0.0;
   return 2.0 * static_cast<double>(discontinuities) * step_s / (movable_bodies * simulated_s);
 }
@@ -121,8 +160,10 @@ double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movabl
 double discontinuities_a_body_and_step(const Trajectory& run) {
   const auto count = run.counters.counts.find("discontinuities");
   if (count == run.counters.counts.end() || run.frames.empty()) return 0.0;
-  const auto movable = std::count_if(run.bodies.begin(), run.bodies.end(), [](const TrajectoryBody& body) { return !body.immovable; });
-  return discontinuities_a_body_and_step(count->second, static_cast<int>(movable), run.frames.back().time, run.info.step_s);
+  const auto movable = std::count_if(run.bodies.begin(), run.bodies.end(),
+                                     [](const TrajectoryBody& body) { return !body.immovable; });
+  return discontinuities_a_body_and_step(count->second, static_cast<int>(movable),
+                                         run.frames.back().time, run.info.step_s);
 }
 
 }  // namespace tumble::engines

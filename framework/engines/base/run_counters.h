@@ -17,24 +17,35 @@
 namespace tumble::engines {
 
 struct RunCounters {
-  std::uint64_t steps = 0, synchronisations = 0, shortened_steps = 0, integrations = 0, undone_integrations = 0, derivative_evaluations = 0;
-  std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0, nudges = 0, micro_impacts = 0;
+  std::uint64_t steps = 0, synchronisations = 0, shortened_steps = 0, integrations = 0,
+                undone_integrations = 0, derivative_evaluations = 0;
+  std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0, nudges = 0,
+                micro_impacts = 0;
   std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0;
   std::uint64_t callback_calls = 0;
-  std::array<std::uint64_t, effects::kMost> effect_calls{};   // by place in effects::all()
+  std::array<std::uint64_t, effects::kMost> effect_calls{};  // by place in effects::all()
   std::uint64_t constraint_solves = 0, constraint_corrections = 0;
-  std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0, contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0, contacts_ended = 0, contact_landings = 0, heap_steps = 0, friction_points = 0;
-  std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;   // states_kept: the most at any time
+  std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0,
+                contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0,
+                contacts_ended = 0, contact_landings = 0, heap_steps = 0, friction_points = 0;
+  // states_kept: the most at any time
+  std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;
-  std::uint64_t passages_begun = 0, passages_let_go = 0;   // of processes; fewer are let go where the run ends on some
-  std::uint64_t impacts_at_home = 0, impacts_across = 0, least_of_a_thread = 0;   // of threads: see named()
-  std::uint64_t rounds = 0, held_back = 0, most_states = 0;   // of threads; events that had to wait for global virtual time; of one body at any time
+  // of processes; fewer are let go where the run ends on some
+  std::uint64_t passages_begun = 0, passages_let_go = 0;
+  // of threads: see named()
+  std::uint64_t impacts_at_home = 0, impacts_across = 0, least_of_a_thread = 0;
+  // of threads; events that had to wait for global virtual time; of one body at any time
+  std::uint64_t rounds = 0, held_back = 0, most_states = 0;
   collision::ImpactCost collision;
-  std::vector<std::string> notices;   // once each
-  RunWatch watch;                     // what is not to be trusted
-  double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0, record_seconds = 0.0;
-  double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0, force_seconds = 0.0, sleep_seconds = 0.0;
-  double together_seconds = 0.0, alone_seconds = 0.0;   // of threads, CPU: the busiest of each round, and what one does while the others wait
+  std::vector<std::string> notices;  // once each
+  RunWatch watch;                    // what is not to be trusted
+  double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0,
+         record_seconds = 0.0;
+  double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0,
+         force_seconds = 0.0, sleep_seconds = 0.0;
+  // of threads, CPU: the busiest of each round, and what one does while the others wait
+  double together_seconds = 0.0, alone_seconds = 0.0;
 
   /// Adds what another has counted: a thread, or a part of the world.
   void add(const RunCounters& other);
@@ -59,7 +70,9 @@ class DiscontinuityCount final : public TrajectorySink {
  public:
   explicit DiscontinuityCount(TrajectorySink& sink) : sink_(sink) {}
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
+    sink_.begin(info, bodies);
+  }
   void frame(const Frame& frame) override { sink_.frame(frame); }
   void event(const Event& event) override;
   void end(const Counters& counters, const std::string& stopped_by) override;
@@ -70,9 +83,9 @@ class DiscontinuityCount final : public TrajectorySink {
 
   TrajectorySink& sink_;
   std::uint64_t count_ = 0, sliding_changes_ = 0;
-  double instant_ = kUnset;                                // of the event before [s]
-  std::pair<int, int> pair_;                               // the first at that instant,
-  std::set<std::pair<int, int>> others_;                   // and those after it
+  double instant_ = kUnset;               // of the event before [s]
+  std::pair<int, int> pair_;              // the first at that instant,
+  std::set<std::pair<int, int>> others_;  // and those after it
 };
 
 /// w h: discontinuities a body and largest step, each counted for its two bodies,  w h = 2 D h / (n
@@ -82,7 +95,8 @@ class DiscontinuityCount final : public TrajectorySink {
 /// @return 0 where nothing moves or no time passes [-]
 /// Source: our model of cost (report/engines_model.h); what a discontinuity is: B. Mirtich,
 /// "Timewarp Rigid Body Simulation", SIGGRAPH 2000.
-double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies, double simulated_s, double step_s);
+double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies,
+                                       double simulated_s, double step_s);
 
 /// The same of a run that has ended: as far as its last frame.
 double discontinuities_a_body_and_step(const Trajectory& run);

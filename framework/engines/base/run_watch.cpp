@@ -16,11 +16,26 @@ struct Words {
 
 const Words& words_of(RunWatch::Kind kind) {
   static const Words kWords[] = {
-      {"link_open", "rods and joints hold together: farther apart than this part of their size they are another mechanism", "masses that differ less"},
-      {"projection_open", "the correction onto rods and joints ends on them: here it did not, and what follows is of another mechanism", "masses that differ less"},
-      {"contact_unsolved", "impulses of contacts keep bodies apart and within friction: here none were found that do, by this part of the speed", "less friction, or masses that differ less"},
-      {"energy_rises", "beside what forces and motors bring in, nothing does: what rises is made by the step, over all that the scene has to give", "another method (a2's rk4_step)"},
-      {"turn_unresolved", "beyond half a turn a step cannot be told from a turn the other way round: orientations, and what hangs on them, are not to be trusted", "a slower body, or --propagator auto where nothing but gravity acts on it"},
+      {"link_open",
+       "rods and joints hold together: farther apart than this part of their size they are another "
+       "mechanism",
+       "masses that differ less"},
+      {"projection_open",
+       "the correction onto rods and joints ends on them: here it did not, and what follows is of "
+       "another mechanism",
+       "masses that differ less"},
+      {"contact_unsolved",
+       "impulses of contacts keep bodies apart and within friction: here none were found that do, "
+       "by this part of the speed",
+       "less friction, or masses that differ less"},
+      {"energy_rises",
+       "beside what forces and motors bring in, nothing does: what rises is made by the step, over "
+       "all that the scene has to give",
+       "another method (a2's rk4_step)"},
+      {"turn_unresolved",
+       "beyond half a turn a step cannot be told from a turn the other way round: orientations, "
+       "and what hangs on them, are not to be trusted",
+       "a slower body, or --propagator auto where nothing but gravity acts on it"},
   };
   return kWords[static_cast<std::size_t>(kind)];
 }
@@ -29,23 +44,28 @@ const Words& words_of(RunWatch::Kind kind) {
 // is off by the fourth power of the step, of other errors half a step is the first to try.
 double likely_part(RunWatch::Kind kind, double times_what_is_allowed) {
   constexpr double kOrder = 4.0, kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
-  if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);   // a radian a step
+  // a radian a step
+  if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);
   if (kind != RunWatch::Kind::kEnergyRises) return kMost;
-  return std::min(kMost, std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / kOrder)));
+  return std::min(kMost,
+                  std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / kOrder)));
 }
 
-bool is_worse(double candidate, double known) { return std::isnan(candidate) ? !std::isnan(known) : candidate > known; }
+bool is_worse(double candidate, double known) {
+  return std::isnan(candidate) ? !std::isnan(known) : candidate > known;
+}
 
 }  // namespace
 
 void RunWatch::note(Kind kind, const std::string& subject, const Size& size) {
-  if (size.found <= size.allowed) return;   // never true of NaN, which is noted
+  if (size.found <= size.allowed) return;  // never true of NaN, which is noted
   const auto [found, is_new] = incidents_.try_emplace(kind, Incident{size, size, subject, {}, 0});
   Incident& incident = found->second;
   ++incident.count;
   incident.subjects.insert(subject);
   if (size.time < incident.first.time) incident.first = size;
-  if (is_new || !is_worse(size.found / size.allowed, incident.worst.found / incident.worst.allowed)) return;
+  if (is_new || !is_worse(size.found / size.allowed, incident.worst.found / incident.worst.allowed))
+    return;
   incident.worst = size;
   incident.worst_subject = subject;
 }
@@ -59,7 +79,8 @@ void RunWatch::add(const RunWatch& other) {
     ours.count += theirs.count;
     ours.subjects.insert(theirs.subjects.begin(), theirs.subjects.end());
     if (theirs.first.time < ours.first.time) ours.first = theirs.first;
-    if (!is_worse(theirs.worst.found / theirs.worst.allowed, ours.worst.found / ours.worst.allowed)) continue;
+    if (!is_worse(theirs.worst.found / theirs.worst.allowed, ours.worst.found / ours.worst.allowed))
+      continue;
     ours.worst = theirs.worst;
     ours.worst_subject = theirs.worst_subject;
   }
@@ -71,24 +92,30 @@ std::vector<RunFault> RunWatch::faults() const {
   std::vector<RunFault> faults;
   double step = std::numeric_limits<double>::infinity();
   for (const auto& [kind, incident] : incidents_)
-    if (incident.worst.step > 0) step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed) * incident.worst.step);
+    if (incident.worst.step > 0)
+      step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed) *
+                                incident.worst.step);
   // A criterion of stability that the step breaks explains all that follows, and its step is
   // computed, not a guess from a size.
   if (std::isfinite(named_step_)) step = named_step_;
-  const std::string said = std::isfinite(named_step_) ? fmt::format("{:.4g}", step) : fmt::format("{:.2g}", step);
+  const std::string said =
+      std::isfinite(named_step_) ? fmt::format("{:.4g}", step) : fmt::format("{:.2g}", step);
   for (const auto& [kind, incident] : incidents_) {
     const Words& words = words_of(kind);
     RunFault fault;
     fault.kind = words.kind;
     fault.subject = incident.worst_subject;
-    if (incident.subjects.size() > 1) fault.subject += fmt::format(" (and {} more)", incident.subjects.size() - 1);
+    if (incident.subjects.size() > 1)
+      fault.subject += fmt::format(" (and {} more)", incident.subjects.size() - 1);
     fault.worst = incident.worst.found;
     fault.allowed = incident.worst.allowed;
     fault.first_s = incident.first.time;
     fault.worst_s = incident.worst.time;
     fault.count = incident.count;
     fault.meaning = words.meaning;
-    fault.remedy = std::isfinite(step) ? fmt::format("a step of at most {} s (\"step_s\"), or {}", said, words.remedy) : words.remedy;
+    fault.remedy = std::isfinite(step) ? fmt::format("a step of at most {} s (\"step_s\"), or {}",
+                                                     said, words.remedy)
+                                       : words.remedy;
     faults.push_back(std::move(fault));
   }
   return faults;
@@ -99,7 +126,11 @@ std::string names_of(const World& world, const std::vector<int>& bodies) {
   std::string names;
   for (std::size_t k = 0; k < std::min(kMost, bodies.size()); ++k) {
     const bool is_last = k + 1 == bodies.size();
-    names += fmt::format("{}'{}'", k == 0 ? "" : is_last ? " and " : ", ", world.bodies[static_cast<std::size_t>(bodies[k])].name);
+    names += fmt::format("{}'{}'",
+                         k == 0    ? ""
+                         : is_last ? " and "
+                                   : ", ",
+                         world.bodies[static_cast<std::size_t>(bodies[k])].name);
   }
   if (bodies.size() > kMost) names += fmt::format(" and {} more", bodies.size() - kMost);
   return names;

@@ -40,10 +40,16 @@ inline constexpr double kTurnResolved = std::numbers::pi;
 
 class RunWatch {
  public:
-  enum class Kind : std::uint8_t { kLinkOpen, kProjectionOpen, kContactUnsolved, kEnergyRises, kTurnUnresolved };
+  enum class Kind : std::uint8_t {
+    kLinkOpen,
+    kProjectionOpen,
+    kContactUnsolved,
+    kEnergyRises,
+    kTurnUnresolved
+  };
   struct Size {
-    double found, allowed;         // relative, [rad] of an angle
-    double time, step;             // [s]
+    double found, allowed;  // relative, [rad] of an angle
+    double time, step;      // [s]
   };
 
   /// Keeps what is above what is allowed, or is not a number.
@@ -65,7 +71,7 @@ class RunWatch {
   };
 
   std::map<Kind, Incident> incidents_;
-  double named_step_ = kUnset;     // [s]
+  double named_step_ = kUnset;  // [s]
 };
 
 /// "'a', 'b' and 3 more". @param bodies  of the world

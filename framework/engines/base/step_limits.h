@@ -23,11 +23,16 @@ inline constexpr long most_impacts(int bodies) { return 500L * bodies; }
 /// Events at one instant, each caused by the last: an impact passes through a chain of touching
 /// bodies in as many as it has. A timewarp looks at all that a body flew at its instant, so the
 /// price of finding out goes with the square.
-inline constexpr std::uint32_t most_microsteps(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
+inline constexpr std::uint32_t most_microsteps(int bodies) {
+  return 1000 + 10 * static_cast<std::uint32_t>(bodies);
+}
 
 /// @param bodies  names, as "bodies 'a' and 'b'"
 inline std::string endless_impacts_message(double time, const std::string& bodies) {
-  return fmt::format("at t = {:.6f} s, {}: time stands still, they meet again and again; a persistent contact is needed there, or a larger \"rest_speed_m_s\"", time, bodies);
+  return fmt::format(
+      "at t = {:.6f} s, {}: time stands still, they meet again and again; a persistent contact is "
+      "needed there, or a larger \"rest_speed_m_s\"",
+      time, bodies);
 }
 
 }  // namespace tumble::engines

@@ -13,20 +13,25 @@
 namespace tumble::engines {
 
 // Of A against B at a contact, with these velocities of theirs. [m/s]
-Vector3d PersistentContacts::relative_velocity(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities) {
+Vector3d PersistentContacts::relative_velocity(const ContactProblem& problem, std::size_t contact,
+                                               const std::vector<Velocity>& velocities) {
   const PushingContact& c = problem.contacts[contact];
   const auto velocity = [&](int body) -> Vector3d {
-    return velocities[body].linear_world + velocities[body].angular_world.cross(c.point_world - problem.bodies[body].com_world);
+    return velocities[body].linear_world +
+           velocities[body].angular_world.cross(c.point_world - problem.bodies[body].com_world);
   };
   return velocity(c.body_a) - velocity(c.body_b);
 }
 
 // How fast the two come together there. [m/s], > 0 approaching
-double PersistentContacts::approach(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities) {
-  return -problem.contacts[contact].normal_b_to_a_world.dot(relative_velocity(problem, contact, velocities));
+double PersistentContacts::approach(const ContactProblem& problem, std::size_t contact,
+                                    const std::vector<Velocity>& velocities) {
+  return -problem.contacts[contact].normal_b_to_a_world.dot(
+      relative_velocity(problem, contact, velocities));
 }
 
-double PersistentContacts::slip_speed(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities) {
+double PersistentContacts::slip_speed(const ContactProblem& problem, std::size_t contact,
+                                      const std::vector<Velocity>& velocities) {
   const PushingContact& c = problem.contacts[contact];
   const Vector3d relative = relative_velocity(problem, contact, velocities) - c.slip_target_world;
   return (relative - relative.dot(c.normal_b_to_a_world) * c.normal_b_to_a_world).norm();
@@ -34,18 +39,24 @@ double PersistentContacts::slip_speed(const ContactProblem& problem, std::size_t
 
 bool PersistentContacts::is_active(const StepContact& step_contact) const {
   const double margin = geometry_.margin(step_contact.pair);
-  return step_contact.point.gap - margin <= margin + kContact.still * restitution_threshold_ * memory_.longest_step;
+  return step_contact.point.gap - margin <=
+         margin + kContact.still * restitution_threshold_ * memory_.longest_step;
 }
 
 // At the step's start; the problem's own are those of its end, of driven bodies too.
-std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem) const {
+std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& island,
+                                                         const std::vector<StepContact>& contacts,
+                                                         const ContactProblem& problem) const {
   std::vector<Velocity> now = velocities_of(problem);
-  for (std::size_t k = 0; k < island.bodies.size(); ++k) {   // the problem's first bodies are the island's
+  // the problem's first bodies are the island's
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
     const Body body = moving_.body_at_impact(island.bodies[k]);
     now[k] = {body.velocity_world, body.omega_world};
   }
   const auto set_driven = [&](int body, int place) {
-    if (moving_.is_driven(body)) now[static_cast<std::size_t>(place)].linear_world = prescribed_velocity(moving_.world().bodies[static_cast<std::size_t>(body)], moving_.time());
+    if (moving_.is_driven(body))
+      now[static_cast<std::size_t>(place)].linear_world = prescribed_velocity(
+          moving_.world().bodies[static_cast<std::size_t>(body)], moving_.time());
   };
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     set_driven(contacts[i].pair.first, problem.contacts[i].body_a);
@@ -61,8 +72,11 @@ std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& is
 // that rocks would be lifted by v0 h / 2 each time, which is more energy than it has wherever v0 <
 // g h.
 // @return whether there are any
-bool PersistentContacts::allow_separation(const ContactIsland& island, std::vector<StepContact>& contacts, ContactProblem& problem) const {
-  if (!island.linked.empty()) return false;   // what hangs on links is not lifted by itself: their reactions are part of what parts it
+bool PersistentContacts::allow_separation(const ContactIsland& island,
+                                          std::vector<StepContact>& contacts,
+                                          ContactProblem& problem) const {
+  // what hangs on links is not lifted by itself: their reactions are part of what parts it
+  if (!island.linked.empty()) return false;
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   bool any = false;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -74,27 +88,36 @@ bool PersistentContacts::allow_separation(const ContactIsland& island, std::vect
   return any;
 }
 
-void PersistentContacts::keep_together(std::vector<StepContact>& contacts, ContactProblem& problem) {
+void PersistentContacts::keep_together(std::vector<StepContact>& contacts,
+                                       ContactProblem& problem) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (!contacts[i].activates) contacts[i].target = problem.contacts[i].target = 0.0;
 }
 
 // Does a point that is apart press, or would its path be under the surface, with this answer?
-bool PersistentContacts::is_activated(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) const {
+bool PersistentContacts::is_activated(const ContactIsland& island,
+                                      const std::vector<StepContact>& contacts,
+                                      const ContactProblem& problem,
+                                      const ContactSolution& solution, double h) const {
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!contacts[i].activates) continue;
-    const double way = 0.5 * h * (approach(problem, i, now) + approach(problem, i, solution.velocities));
-    if (solution.impulses_world[i].squaredNorm() > 0.0 || way > contacts[i].point.gap - geometry_.margin(contacts[i].pair)) return true;
+    const double way =
+        0.5 * h * (approach(problem, i, now) + approach(problem, i, solution.velocities));
+    if (solution.impulses_world[i].squaredNorm() > 0.0 ||
+        way > contacts[i].point.gap - geometry_.margin(contacts[i].pair))
+      return true;
   }
   return false;
 }
 
 // When gaps close that nothing keeps open, from the velocities at the step's ends:
 //   gap(t) = r + v0 t + (v1 - v0) t^2 / (2 h).
-std::vector<PersistentContacts::Activation> PersistentContacts::predict_activations(const ContactIsland& island, const std::vector<StepContact>& contacts, double h) {
+std::vector<PersistentContacts::Activation> PersistentContacts::predict_activations(
+    const ContactIsland& island, const std::vector<StepContact>& contacts, double h) {
   std::vector<StepContact> active;
-  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(active), [](const StepContact& step_contact) { return !step_contact.activates; });
+  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(active),
+               [](const StepContact& step_contact) { return !step_contact.activates; });
   const ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   std::vector<Velocity> then = velocities_of(problem);
@@ -106,10 +129,12 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!contacts[i].activates) continue;
     const double distance = contacts[i].point.gap - geometry_.margin(contacts[i].pair);
-    const double v0 = approach(problem, i, now), v1 = approach(problem, i, then), bend = (v1 - v0) / h;
+    const double v0 = approach(problem, i, now), v1 = approach(problem, i, then),
+                 bend = (v1 - v0) / h;
     const double square = v0 * v0 + 2 * bend * distance, speed = std::sqrt(std::max(0.0, square));
     const bool comes = square >= 0 && v0 + speed > 0;
-    const double t = comes ? 2 * distance / (v0 + speed) : h;   // the smaller root, in the form that does not cancel
+    // the smaller root, in the form that does not cancel
+    const double t = comes ? 2 * distance / (v0 + speed) : h;
     activations.push_back({i, t, speed, v0, comes && t <= h});
   }
   return activations;
@@ -119,26 +144,36 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
 // threshold the step ends; slower ones stay, with the velocity at the end that closes the gap by
 // then; others must not come nearer than that.
 // @return an earlier target (or the same after an impact) to begin the step again with
-std::optional<double> PersistentContacts::handle_activations(const ContactIsland& island, std::vector<StepContact>& contacts, double h) {
+std::optional<double> PersistentContacts::handle_activations(const ContactIsland& island,
+                                                             std::vector<StepContact>& contacts,
+                                                             double h) {
   const std::vector<Activation> activations = predict_activations(island, contacts, h);
   std::vector<bool> stays(contacts.size(), true);
   double first = h;
   for (const Activation& activation : activations)
-    if (activation.within && activation.speed > restitution_threshold_) first = std::min(first, activation.time);
-  const double end = first <= kContact.soon * memory_.longest_step ? first : kContact.before_activation * first;
-  if (first < h && end < (1 - kContact.shortest_step) * h && h > kContact.shortest_step * kContact.soon * memory_.longest_step) return moving_.time() + end;
+    if (activation.within && activation.speed > restitution_threshold_)
+      first = std::min(first, activation.time);
+  const double end =
+      first <= kContact.soon * memory_.longest_step ? first : kContact.before_activation * first;
+  if (first < h && end < (1 - kContact.shortest_step) * h &&
+      h > kContact.shortest_step * kContact.soon * memory_.longest_step)
+    return moving_.time() + end;
   std::vector<StepContact> impacts;
   for (const Activation& activation : activations) {
     StepContact& step_contact = contacts[activation.step_contact];
-    stays[activation.step_contact] = !(activation.within && activation.speed > restitution_threshold_);
-    const double steady = 2 * (step_contact.point.gap - geometry_.margin(step_contact.pair)) / h;   // from this speed evenly to none it closes its gap at the step's end
+    stays[activation.step_contact] =
+        !(activation.within && activation.speed > restitution_threshold_);
+    // from this speed evenly to none it closes its gap at the step's end
+    const double steady = 2 * (step_contact.point.gap - geometry_.margin(step_contact.pair)) / h;
     step_contact.activates = false;
     step_contact.target = std::min(0.0, activation.approach - steady);
-    if (activation.within && stays[activation.step_contact] && activation.approach > steady) impacts.push_back({step_contact.pair, step_contact.point, -steady, false});
+    if (activation.within && stays[activation.step_contact] && activation.approach > steady)
+      impacts.push_back({step_contact.pair, step_contact.point, -steady, false});
   }
   if (!impacts.empty()) {
     for (const StepContact& step_contact : contacts)
-      if (is_active(step_contact)) impacts.push_back({step_contact.pair, step_contact.point, 0.0, false});
+      if (is_active(step_contact))
+        impacts.push_back({step_contact.pair, step_contact.point, 0.0, false});
     if (apply_impact(island, std::move(impacts))) return moving_.target();
   }
   std::size_t i = 0;
@@ -147,19 +182,24 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
 }
 
 // Points that touch and come together: their velocities jump. @return whether any did
-bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island, const std::vector<StepContact>& contacts) {
-  if (std::none_of(contacts.begin(), contacts.end(), [&](const StepContact& step_contact) { return is_active(step_contact); })) return false;
+bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island,
+                                                 const std::vector<StepContact>& contacts) {
+  if (std::none_of(contacts.begin(), contacts.end(),
+                   [&](const StepContact& step_contact) { return is_active(step_contact); }))
+    return false;
   // The corners of an edge that lands flat take part together, though by rounding one of them
   // closes its gap first.
   std::vector<StepContact> down;
   for (const StepContact& step_contact : contacts) {
     const double size = geometry_.size_of(step_contact.pair);
-    if (is_active(step_contact) || step_contact.point.gap < kSixDigits * size) down.push_back({step_contact.pair, step_contact.point, 0.0, false});
+    if (is_active(step_contact) || step_contact.point.gap < kSixDigits * size)
+      down.push_back({step_contact.pair, step_contact.point, 0.0, false});
   }
   return apply_impact(island, std::move(down));
 }
 
-std::vector<int> PersistentContacts::touched_bodies(const ContactIsland& island, const std::vector<StepContact>& contacts) {
+std::vector<int> PersistentContacts::touched_bodies(const ContactIsland& island,
+                                                    const std::vector<StepContact>& contacts) {
   std::vector<int> bodies = island.bodies;
   for (const StepContact& step_contact : contacts) {
     bodies.push_back(step_contact.pair.first);
@@ -169,13 +209,18 @@ std::vector<int> PersistentContacts::touched_bodies(const ContactIsland& island,
 }
 
 bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<StepContact> down) {
-  std::stable_sort(down.begin(), down.end(), [](const StepContact& a, const StepContact& b) { return a.pair < b.pair; });
+  std::stable_sort(down.begin(), down.end(),
+                   [](const StepContact& a, const StepContact& b) { return a.pair < b.pair; });
   const ContactProblem problem = problem_of(island, down, moving_.states(), 0.0);
   const std::vector<Velocity> before = velocities_of(problem);
   // An approach by less than a margin in a step is left to the step's impulses.
   const bool any = [&] {
     for (std::size_t i = 0; i < down.size(); ++i)
-      if ((is_active(down[i]) || down[i].target < 0) && approach(problem, i, before) + down[i].target > std::max(kCreep * restitution_threshold_, geometry_.margin(down[i].pair) / memory_.longest_step)) return true;
+      if ((is_active(down[i]) || down[i].target < 0) &&
+          approach(problem, i, before) + down[i].target >
+              std::max(kCreep * restitution_threshold_,
+                       geometry_.margin(down[i].pair) / memory_.longest_step))
+        return true;
     return false;
   }();
   if (!any) return false;
@@ -189,28 +234,40 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     RigidBodyState state = moving_.state(body);
     state.momentum_world = inertia.mass * solution.velocities[k].linear_world;
-    state.angular_momentum_world = angular_momentum_of(solution.velocities[k].angular_world, state.world_from_body, inertia);
+    state.angular_momentum_world =
+        angular_momentum_of(solution.velocities[k].angular_world, state.world_from_body, inertia);
     moving_.set_state(body, state);
   }
   ++counters_.contact_landings;
   // The first event has the energy of all; none is given where links end in, or bodies touch, what
   // is driven in different ways.
-  const Vector3d driven = ImpactBodies(moving_, laws_).driven_velocity(touched_bodies(island, down)).value_or(Vector3d::Constant(kUnset));
+  const Vector3d driven = ImpactBodies(moving_, laws_)
+                              .driven_velocity(touched_bodies(island, down))
+                              .value_or(Vector3d::Constant(kUnset));
   EnergyOfImpact energy;
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
     const WorldBody& body = moving_.world().bodies[static_cast<std::size_t>(island.bodies[k])];
-    energy.add(body.inertia, moving_.state(island.bodies[k]).world_from_body, before[k], solution.velocities[k], driven);
+    energy.add(body.inertia, moving_.state(island.bodies[k]).world_from_body, before[k],
+               solution.velocities[k], driven);
   }
-  double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
-  for (std::size_t from = 0, to = 0; from < down.size(); from = to) {   // the largest impulse of a pair stands for it
+  // unsolved: never more is all that can be asked
+  double excess = energy.excess(
+      solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities)
+                         : energy.change);
+  // the largest impulse of a pair stands for it
+  for (std::size_t from = 0, to = 0; from < down.size(); from = to) {
     std::size_t largest = from;
     for (; to < down.size() && down[to].pair == down[from].pair; ++to)
-      if (solution.impulses_world[to].squaredNorm() > solution.impulses_world[largest].squaredNorm()) largest = to;
+      if (solution.impulses_world[to].squaredNorm() >
+          solution.impulses_world[largest].squaredNorm())
+        largest = to;
     const double speed = approach(problem, largest, before);
     if (!(speed > restitution_threshold_)) continue;
     const PushingContact& c = problem.contacts[largest];
-    sink_.event({moving_.time(), EventKind::kCollision, down[largest].pair.first, down[largest].pair.second, c.point_world, c.normal_b_to_a_world,
-                 solution.impulses_world[largest].dot(c.normal_b_to_a_world), -speed, -approach(problem, largest, solution.velocities), energy.change, excess});
+    sink_.event({moving_.time(), EventKind::kCollision, down[largest].pair.first,
+                 down[largest].pair.second, c.point_world, c.normal_b_to_a_world,
+                 solution.impulses_world[largest].dot(c.normal_b_to_a_world), -speed,
+                 -approach(problem, largest, solution.velocities), energy.change, excess});
     energy.change = excess = 0.0;
   }
   return true;

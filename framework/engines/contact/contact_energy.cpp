@@ -22,7 +22,7 @@ bool PersistentContacts::gains_energy(const ContactIsland& island) {
     if (moving_.is_driven(pair.first) || moving_.is_driven(pair.second)) return false;
   const World& world = moving_.world();
   const Vector3d gravity = world.gravity_world.value_or(Vector3d::Zero());
-  double gain = 0.0, moves_before = 0.0, moves_after = 0.0, unseen = 0.0, terms = 0.0;   // [J]
+  double gain = 0.0, moves_before = 0.0, moves_after = 0.0, unseen = 0.0, terms = 0.0;  // [J]
   for (const int index : island.bodies) {
     const WorldBody& body = world.bodies[static_cast<std::size_t>(index)];
     const RigidBodyState &start = moving_.state(index), &end = moving_.path_end(index);
@@ -31,10 +31,12 @@ bool PersistentContacts::gains_energy(const ContactIsland& island) {
     moves_after += kinetic_energy(end, body.inertia);
     gain -= moving_.steady_work(index, start, end);
     terms += mass * gravity.cwiseAbs().dot(start.com_world.cwiseAbs());
-    unseen += mass * (restitution_threshold_ * restitution_threshold_ + kSixDigits * gravity.norm() * moving_.shape(index).bounding_radius());
+    unseen += mass * (restitution_threshold_ * restitution_threshold_ +
+                      kSixDigits * gravity.norm() * moving_.shape(index).bounding_radius());
   }
   gain += moves_after - moves_before;
-  return gain > kEnergyRises * std::max(moves_before, moves_after) + unseen + kDeviations * kEpsilon * terms;
+  return gain > kEnergyRises * std::max(moves_before, moves_after) + unseen +
+                    kDeviations * kEpsilon * terms;
 }
 
 }  // namespace tumble::engines

@@ -23,16 +23,27 @@ Vector3d ContactGeometry::point_of(Pair pair, const collision::ManifoldPoint& p)
 
 double ContactGeometry::friction(Pair pair) const {
   if (!built::kFriction) return 0.0;
-  return std::min(moving_.world().bodies[pair.first].friction, moving_.world().bodies[pair.second].friction);
+  return std::min(moving_.world().bodies[pair.first].friction,
+                  moving_.world().bodies[pair.second].friction);
 }
 
-bool ContactGeometry::is_inelastic(Pair pair) const { return std::min(moving_.world().bodies[pair.first].restitution, moving_.world().bodies[pair.second].restitution) == 0.0; }
+bool ContactGeometry::is_inelastic(Pair pair) const {
+  return std::min(moving_.world().bodies[pair.first].restitution,
+                  moving_.world().bodies[pair.second].restitution) == 0.0;
+}
 
-double ContactGeometry::size_of(Pair pair) const { return std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius()); }
+double ContactGeometry::size_of(Pair pair) const {
+  return std::min(moving_.shape(pair.first).bounding_radius(),
+                  moving_.shape(pair.second).bounding_radius());
+}
 
 double ContactGeometry::margin(Pair pair) const {
   const double size = size_of(pair);
-  const auto far = [&](int body) { return moving_.world().bodies[body].immovable() ? 0.0 : moving_.state(body).com_world.cwiseAbs().maxCoeff(); };
+  const auto far = [&](int body) {
+    return moving_.world().bodies[body].immovable()
+               ? 0.0
+               : moving_.state(body).com_world.cwiseAbs().maxCoeff();
+  };
   return kContact.margin * size + kRoundOff * (size + std::max(far(pair.first), far(pair.second)));
 }
 
@@ -40,49 +51,70 @@ collision::Pose ContactGeometry::pose(int body, const std::vector<RigidBodyState
   return {states[body].com_world, states[body].world_from_body};
 }
 
-ContactManifold ContactGeometry::points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const {
-  ContactManifold points = collision::manifold_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach,
-                                         moving_.pair_cache(pair.first, pair.second));
+ContactManifold ContactGeometry::points_at(Pair pair, const std::vector<RigidBodyState>& states,
+                                           double reach) const {
+  ContactManifold points = collision::manifold_points(
+      moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second),
+      pose(pair.second, states), reach, moving_.pair_cache(pair.first, pair.second));
   // Two that touch at corners may face each other along any direction, and a column along it may go
   // in at a narrow side and out at the far end: no point is deeper than the two are in each other.
-  if (std::any_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) { return p.gap < -kContact.deep * size_of(pair); })) {
+  if (std::any_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) {
+        return p.gap < -kContact.deep * size_of(pair);
+      })) {
     const collision::Gap deepest = gap_of(pair, states);
-    std::erase_if(points, [&](const collision::ManifoldPoint& p) { return p.gap < std::min(0.0, (1 + kContact.depth_error) * deepest.distance); });
-    if (points.empty() && deepest.distance <= reach) points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
+    std::erase_if(points, [&](const collision::ManifoldPoint& p) {
+      return p.gap < std::min(0.0, (1 + kContact.depth_error) * deepest.distance);
+    });
+    if (points.empty() && deepest.distance <= reach)
+      points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world,
+                        deepest.distance});
   }
   return points;
 }
 
 collision::Gap ContactGeometry::gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
-  return collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
+  return collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states),
+                                moving_.shape(pair.second), pose(pair.second, states),
                                 moving_.pair_cache(pair.first, pair.second));
 }
 
 // Above `limit` a bound from below.
-double ContactGeometry::distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit) const {
-  return collision::gap_distance(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
+double ContactGeometry::distance_of(Pair pair, const std::vector<RigidBodyState>& states,
+                                    double limit) const {
+  return collision::gap_distance(moving_.shape(pair.first), pose(pair.first, states),
+                                 moving_.shape(pair.second), pose(pair.second, states),
                                  moving_.pair_cache(pair.first, pair.second), limit);
 }
 
 double ContactGeometry::least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
-  return collision::least_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));
+  return collision::least_gap(moving_.shape(pair.first), pose(pair.first, states),
+                              moving_.shape(pair.second), pose(pair.second, states));
 }
 
-bool ContactGeometry::are_balls(Pair pair) const { return moving_.shape(pair.first).is_ball() && moving_.shape(pair.second).is_ball(); }
+bool ContactGeometry::are_balls(Pair pair) const {
+  return moving_.shape(pair.first).is_ball() && moving_.shape(pair.second).is_ball();
+}
 
 // A ball has one point on another, however far it has gone from where it was.
-double ContactGeometry::same_within(Pair pair) const { return are_balls(pair) ? std::numeric_limits<double>::infinity() : kContact.midway * size_of(pair); }
+double ContactGeometry::same_within(Pair pair) const {
+  return are_balls(pair) ? std::numeric_limits<double>::infinity()
+                         : kContact.midway * size_of(pair);
+}
 
 // The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where
 // none lies as near as that.
-const collision::ManifoldPoint* ContactGeometry::same_point(Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
-                                                        const std::vector<RigidBodyState>& at, double near) {
-  const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d { return s.world_from_body.conjugate() * (x - s.com_world); };
+const collision::ManifoldPoint* ContactGeometry::same_point(
+    Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at,
+    const ContactManifold& points, const std::vector<RigidBodyState>& at, double near) {
+  const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d {
+    return s.world_from_body.conjugate() * (x - s.com_world);
+  };
   const collision::ManifoldPoint* best = nullptr;
   double distance = near;
   for (const collision::ManifoldPoint& q : points) {
-    const double d = std::min((in(p_at[pair.first], p.point_a_world) - in(at[pair.first], q.point_a_world)).norm(),
-                              (in(p_at[pair.second], p.point_b_world) - in(at[pair.second], q.point_b_world)).norm());
+    const double d = std::min(
+        (in(p_at[pair.first], p.point_a_world) - in(at[pair.first], q.point_a_world)).norm(),
+        (in(p_at[pair.second], p.point_b_world) - in(at[pair.second], q.point_b_world)).norm());
     if (d >= distance) continue;
     distance = d;
     best = &q;
@@ -96,13 +128,21 @@ double ContactGeometry::large_island_margin(Pair pair) const {
 
 // Of two that overlap by `gap`: columns through their surfaces may go in and out elsewhere, deeper
 // than the two are or not as deep.
-ContactManifold ContactGeometry::points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const {
+ContactManifold ContactGeometry::points_of_overlap(Pair pair,
+                                                   const std::vector<RigidBodyState>& states,
+                                                   double reach, double gap) const {
   ContactManifold points = points_at(pair, states, reach);
   if (gap >= 0.0) return points;
-  std::erase_if(points, [&](const collision::ManifoldPoint& p) { return p.gap < (1 + kContact.depth_error) * gap; });
-  if (std::any_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) { return p.gap < (1 - kContact.depth_error) * gap; })) return points;
+  std::erase_if(points, [&](const collision::ManifoldPoint& p) {
+    return p.gap < (1 + kContact.depth_error) * gap;
+  });
+  if (std::any_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) {
+        return p.gap < (1 - kContact.depth_error) * gap;
+      }))
+    return points;
   const collision::Gap deepest = gap_of(pair, states);
-  points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
+  points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world,
+                    deepest.distance});
   return points;
 }
 

@@ -23,7 +23,7 @@ Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_worl
 
 class ContactGeometry {
  public:
-  using Pair = std::pair<int, int>;   // bodies, first < second
+  using Pair = std::pair<int, int>;  // bodies, first < second
 
   explicit ContactGeometry(MovingWorld& moving) : moving_(moving) {}
 
@@ -42,16 +42,21 @@ class ContactGeometry {
   // In these places (states by body index):
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
   /// @param reach  points farther apart are not looked at [m]
-  ContactManifold points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
+  ContactManifold points_at(Pair pair, const std::vector<RigidBodyState>& states,
+                            double reach) const;
   /// Of two that overlap by `gap` (< 0) or may come together: no point is deeper than the two are,
   /// and one is as deep.
-  ContactManifold points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const;
+  ContactManifold points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states,
+                                    double reach, double gap) const;
   collision::Gap gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   /// @param limit  of larger gaps any bound from below will do [m]
-  double distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit = std::numeric_limits<double>::infinity()) const;
+  double distance_of(Pair pair, const std::vector<RigidBodyState>& states,
+                     double limit = std::numeric_limits<double>::infinity()) const;
   /// A bound from below, at once. [m]
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
-  bool overlap(Pair pair, const std::vector<RigidBodyState>& states) const { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; }
+  bool overlap(Pair pair, const std::vector<RigidBodyState>& states) const {
+    return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0;
+  }
 
   /// Where the force of a contact point acts. World frame. [m]
   Vector3d point_of(Pair pair, const collision::ManifoldPoint& point) const;
@@ -59,8 +64,11 @@ class ContactGeometry {
   double same_within(Pair pair) const;
   /// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where
   /// none lies as near as `near` [m].
-  static const collision::ManifoldPoint* same_point(Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
-                                                const std::vector<RigidBodyState>& at, double near);
+  static const collision::ManifoldPoint* same_point(Pair pair, const collision::ManifoldPoint& p,
+                                                    const std::vector<RigidBodyState>& p_at,
+                                                    const ContactManifold& points,
+                                                    const std::vector<RigidBodyState>& at,
+                                                    double near);
 
  private:
   MovingWorld& moving_;

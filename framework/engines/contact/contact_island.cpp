@@ -10,8 +10,9 @@ Matrix3d inverse_inertia_world(const WorldBody& body, const Quaterniond& q) {
 
 }  // namespace
 
-int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
-                           ContactProblem& problem) {
+int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places,
+               const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
+               ContactProblem& problem) {
   const auto [found, is_new] = places.try_emplace(body, static_cast<int>(problem.bodies.size()));
   if (!is_new) return found->second;
   const WorldBody& b = moving.world().bodies[body];
@@ -22,7 +23,8 @@ int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>
     if (velocities) pushed.velocity_world = prescribed_velocity(b, t);
   } else {
     pushed.inverse_mass = b.inertia.inverse_mass;
-    pushed.inverse_inertia_world = inverse_inertia_world(b, velocities ? velocities->world_from_body : states[body].world_from_body);
+    pushed.inverse_inertia_world = inverse_inertia_world(
+        b, velocities ? velocities->world_from_body : states[body].world_from_body);
     if (velocities) {
       pushed.velocity_world = b.inertia.inverse_mass * velocities->momentum_world;
       pushed.omega_world = omega_of(*velocities, b.inertia);
@@ -32,12 +34,16 @@ int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>
   return found->second;
 }
 
-void add_island_rows(MovingWorld& moving, const ContactIsland& island, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places,
-                               ContactProblem& problem) {
-  for (const int index : island.linked) engines::add_rows(moving.linked_groups()[static_cast<std::size_t>(index)], states, t, places, problem);
+void add_island_rows(MovingWorld& moving, const ContactIsland& island,
+                     const std::vector<RigidBodyState>& states, double t,
+                     const std::map<int, int>& places, bool of_places, ContactProblem& problem) {
+  for (const int index : island.linked)
+    engines::add_rows(moving.linked_groups()[static_cast<std::size_t>(index)], states, t, places,
+                      problem);
   if (!of_places) return keep_rates(problem);
   problem.row_targets.resize(static_cast<Eigen::Index>(problem.rows.size()));
-  for (std::size_t k = 0; k < problem.rows.size(); ++k) problem.row_targets[static_cast<Eigen::Index>(k)] = -problem.rows[k].row.value;
+  for (std::size_t k = 0; k < problem.rows.size(); ++k)
+    problem.row_targets[static_cast<Eigen::Index>(k)] = -problem.rows[k].row.value;
 }
 
 }  // namespace tumble::engines

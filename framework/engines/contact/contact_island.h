@@ -12,12 +12,13 @@
 namespace tumble::engines {
 
 struct ContactIsland {
-  using Pair = std::pair<int, int>;   // bodies, first < second
-  std::vector<int> bodies;            // that can move, ascending
-  std::vector<Pair> pairs;            // in contact
-  std::vector<Pair> near;             // pairs with a body of the island that may meet in the step; those in contact among them
-  std::vector<int> linked;            // places in MovingWorld::linked_groups()
-  bool large = false;                  // many bodies, solved in steps (large_islands.cpp)
+  using Pair = std::pair<int, int>;  // bodies, first < second
+  std::vector<int> bodies;           // that can move, ascending
+  std::vector<Pair> pairs;           // in contact
+  // pairs with a body of the island that may meet in the step; those in contact among them
+  std::vector<Pair> near;
+  std::vector<int> linked;  // places in MovingWorld::linked_groups()
+  bool large = false;       // many bodies, solved in steps (large_islands.cpp)
 };
 
 /// Puts a body into a contact problem, once.
@@ -25,11 +26,15 @@ struct ContactIsland {
 /// position correction
 /// @param places      of bodies in the problem; the new one is entered
 /// @return its place
-int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities, ContactProblem& problem);
+int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places,
+               const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
+               ContactProblem& problem);
 
 /// Rods and joints of an island as rows of a problem. @pre its bodies are placed
 /// @param of_places  true: the errors of places go; false: what the free step has made of
 /// velocities stays
-void add_island_rows(MovingWorld& moving, const ContactIsland& island, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places, ContactProblem& problem);
+void add_island_rows(MovingWorld& moving, const ContactIsland& island,
+                     const std::vector<RigidBodyState>& states, double t,
+                     const std::map<int, int>& places, bool of_places, ContactProblem& problem);
 
 }  // namespace tumble::engines

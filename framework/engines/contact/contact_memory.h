@@ -15,42 +15,45 @@ namespace tumble::engines {
 
 /// An impulse that acted at a contact: the warm start of the next problem.
 struct KnownImpulse {
-  Vector3d point_body_a, impulse_world;   // [m], on A [N s]
-  double duration;                        // of the step that it was spread over [s]
+  Vector3d point_body_a, impulse_world;  // [m], on A [N s]
+  double duration;                       // of the step that it was spread over [s]
 };
 
 /// The end of sliding that is being looked for: two steps of different lengths say what stops it.
 struct SlidingSearch {
   std::pair<int, int> pair;
-  double start, duration, impulse;        // [s], [s], [N s]
+  double start, duration, impulse;  // [s], [s], [N s]
   bool found;
 };
 
 struct ContactMemory {
-  using Pair = std::pair<int, int>;       // bodies, first < second
+  using Pair = std::pair<int, int>;  // bodies, first < second
 
-  std::set<Pair> persistent;              // pairs in contact
-  double longest_step = 0.0;              // so far [s]
+  std::set<Pair> persistent;  // pairs in contact
+  double longest_step = 0.0;  // so far [s]
   // Warm start: of the last step, and of attempts at the one that has begun.
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
-  std::set<Pair> stuck;                   // pairs with friction that did not slide in the last step
+  std::set<Pair> stuck;  // pairs with friction that did not slide in the last step
   // Large islands: bodies whose island has, or has had since it last came to rest, too many impacts
   // a step to locate each.
   std::set<int> in_large_island;
-  double impacts_counted_from = -kInfinity;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
+  // impacts that cut a step were counted since [s], and how many of each island, by its first body
+  double impacts_counted_from = -kInfinity;
   std::map<int, int> impacts_counted;
-  double activated_at = -kInfinity;              // points landed last [s], and how often at that instant
+  // points landed last [s], and how often at that instant
+  double activated_at = -kInfinity;
   int activations_there = 0;
   // Ends of sliding.
-  double searched_from = -kInfinity;          // were looked for since [s], and how often
+  double searched_from = -kInfinity;  // were looked for since [s], and how often
   int searches = 0;
   std::optional<SlidingSearch> sliding_search;
   // Progress: how often the step was cut since, and sweeps of the solver, for impulses and for
   // corrections.
-  double cut_since = -kInfinity;              // [s]
+  double cut_since = -kInfinity;  // [s]
   long cuts = 0;
   std::uint64_t sweeps = 0;
-  int asked_last = -1;                    // body of the island that last asked for an earlier target
+  // body of the island that last asked for an earlier target
+  int asked_last = -1;
 };
 
 }  // namespace tumble::engines

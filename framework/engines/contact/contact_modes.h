@@ -17,8 +17,12 @@ namespace tumble::engines {
 
 class ContactModes {
  public:
-  ContactModes(MovingWorld& moving, const PersistentContacts& contacts, double restitution_threshold, TrajectorySink& sink)
-      : moving_(moving), contacts_(contacts), restitution_threshold_(restitution_threshold), sink_(sink) {}
+  ContactModes(MovingWorld& moving, const PersistentContacts& contacts,
+               double restitution_threshold, TrajectorySink& sink)
+      : moving_(moving),
+        contacts_(contacts),
+        restitution_threshold_(restitution_threshold),
+        sink_(sink) {}
 
   /// The contacts of the step under way have their forces: tells of pairs that stick or slide from
   /// its beginning on.
@@ -29,14 +33,14 @@ class ContactModes {
  private:
   struct Mode {
     bool slides, reported_sliding;
-    double told, seen;           // [s]
+    double told, seen;  // [s]
   };
 
   double slip_of(const ContactPoint& point);
 
   MovingWorld& moving_;
   const PersistentContacts& contacts_;
-  double restitution_threshold_;            // [m/s]
+  double restitution_threshold_;  // [m/s]
   TrajectorySink& sink_;
   std::map<PersistentContacts::Pair, Mode> modes_;
 };

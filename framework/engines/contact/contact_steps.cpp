@@ -12,7 +12,8 @@
 namespace tumble::engines {
 namespace {
 
-Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega, const Vector3d& point) {
+Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega,
+                     const Vector3d& point) {
   return velocity + omega.cross(point - body.com_world);
 }
 
@@ -22,7 +23,10 @@ Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vec
 // those that they have now. With `ends`, the places that contact will leave them in: there a free
 // body's momenta would be other velocities, and impulses change momenta. Without that, a body that
 // spins about its slender axis gains or loses energy in proportion to the step.
-ContactProblem PersistentContacts::problem_of(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends) {
+ContactProblem PersistentContacts::problem_of(const ContactIsland& island,
+                                              const std::vector<StepContact>& contacts,
+                                              const std::vector<RigidBodyState>& states, double h,
+                                              const std::vector<RigidBodyState>* ends) {
   ContactProblem problem;
   std::map<int, int> places;
   const bool at_once = h == 0.0;
@@ -34,8 +38,10 @@ ContactProblem PersistentContacts::problem_of(const ContactIsland& island, const
   }
   for (const StepContact& step_contact : contacts) {
     PushingContact contact;
-    contact.body_a = place_body(moving_, step_contact.pair.first, t, places, states, &states[step_contact.pair.first], problem);
-    contact.body_b = place_body(moving_, step_contact.pair.second, t, places, states, &states[step_contact.pair.second], problem);
+    contact.body_a = place_body(moving_, step_contact.pair.first, t, places, states,
+                                &states[step_contact.pair.first], problem);
+    contact.body_b = place_body(moving_, step_contact.pair.second, t, places, states,
+                                &states[step_contact.pair.second], problem);
     contact.point_world = geometry_.point_of(step_contact.pair, step_contact.point);
     contact.normal_b_to_a_world = step_contact.point.normal_b_to_a_world;
     contact.friction = geometry_.friction(step_contact.pair);
@@ -43,7 +49,11 @@ ContactProblem PersistentContacts::problem_of(const ContactIsland& island, const
     contact.slip_target_world = step_contact.slip_target_world;
     problem.contacts.push_back(contact);
   }
-  if (!at_once) warm_start(contacts, states, h, island.large ? kContact.warm_start_within_in_large_island : kContact.warm_start_within, problem);
+  if (!at_once)
+    warm_start(
+        contacts, states, h,
+        island.large ? kContact.warm_start_within_in_large_island : kContact.warm_start_within,
+        problem);
   add_island_rows(moving_, island, moving_.states(), moving_.time(), places, false, problem);
   return problem;
 }
@@ -56,7 +66,9 @@ const std::vector<KnownImpulse>* PersistentContacts::known_impulses(Pair pair) c
 }
 
 // Impulses that are known already, each to the point that is nearest to where it acted.
-void PersistentContacts::warm_start(const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const {
+void PersistentContacts::warm_start(const std::vector<StepContact>& contacts,
+                                    const std::vector<RigidBodyState>& states, double h,
+                                    double farthest, ContactProblem& problem) const {
   for (std::size_t from = 0, to = 0; from < contacts.size(); from = to) {
     const Pair& pair = contacts[from].pair;
     while (to < contacts.size() && contacts[to].pair == pair) ++to;
@@ -75,28 +87,37 @@ void PersistentContacts::warm_start(const std::vector<StepContact>& contacts, co
         nearest = &problem.contacts[i];
       }
       // A longer step needs more where the force lasts, no more where it was an impact.
-      if (nearest) nearest->warm_start_world += std::min(1.0, h / known.duration) * known.impulse_world;
+      if (nearest)
+        nearest->warm_start_world += std::min(1.0, h / known.duration) * known.impulse_world;
     }
   }
 }
 
-ContactSolution PersistentContacts::solve(const ContactIsland& island, const ContactProblem& problem, double h) {
+ContactSolution PersistentContacts::solve(const ContactIsland& island,
+                                          const ContactProblem& problem, double h) {
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
   const auto smooth = [](const PushingContact& c) { return c.friction == 0.0; };
   const bool frictionless = std::all_of(problem.contacts.begin(), problem.contacts.end(), smooth);
-  if (!frictionless) counters_.friction_points += static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(), [&](const auto& c) { return !smooth(c); }));
+  if (!frictionless)
+    counters_.friction_points +=
+        static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(),
+                                                 [&](const auto& c) { return !smooth(c); }));
   if (!frictionless || !problem.rows.empty() || problem.contacts.size() > kContact.many_contacts) {
     ContactOptions options;
     if (problem.contacts.size() > kContact.few) options.tolerance = kContact.solved;
-    if (speed(island) > kContact.moving * restitution_threshold_) options.enough = kContact.solved;   // what stands has to be found to the last digit
-    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kContact.many_contacts) {
+    // what stands has to be found to the last digit
+    if (speed(island) > kContact.moving * restitution_threshold_) options.enough = kContact.solved;
+    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep &&
+        problem.contacts.size() > kContact.many_contacts) {
       options.tolerance = kContact.solved_in_large_island;
       options.largest_direct = 0;
       options.most_sweeps_alone = kContact.sweeps_in_step;
     }
-    ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
-    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a warm start can mislead: once more from zero, with every means
+    ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options)
+                                                       : solve_contacts(problem, options);
+    // a warm start can mislead: once more from zero, with every means
+    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {
       ContactProblem afresh = problem;
       for (PushingContact& contact : afresh.contacts) contact.warm_start_world.setZero();
       ContactOptions every;
@@ -113,7 +134,8 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
     return solution;
   }
   // The laws' part: A f + b are accelerations, f forces.
-  const Eigen::Index m = static_cast<Eigen::Index>(problem.contacts.size()), n = 6 * static_cast<Eigen::Index>(problem.bodies.size());
+  const Eigen::Index m = static_cast<Eigen::Index>(problem.contacts.size()),
+                     n = 6 * static_cast<Eigen::Index>(problem.bodies.size());
   MatrixXd J = MatrixXd::Zero(m, n), MJ = MatrixXd::Zero(n, m);
   VectorXd b(m);
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -121,7 +143,8 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
     double rate = 0.0;
     for (const auto& [index, sign] : {std::pair{c.body_a, 1.0}, std::pair{c.body_b, -1.0}}) {
       const PushedBody& body = problem.bodies[index];
-      const Vector3d push = sign * c.normal_b_to_a_world, turn = (c.point_world - body.com_world).cross(push);
+      const Vector3d push = sign * c.normal_b_to_a_world,
+                     turn = (c.point_world - body.com_world).cross(push);
       J.block<1, 3>(i, 6 * index) = push.transpose();
       J.block<1, 3>(i, 6 * index + 3) = turn.transpose();
       MJ.block<3, 1>(6 * index, i) = body.inverse_mass * push;
@@ -130,8 +153,13 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
     }
     b[i] = (rate - c.target) / h;
   }
-  const VectorXd f = naming("body '" + moving_.world().bodies[island.bodies.front()].name + "' and what it touches", [&] { return laws_.contact_forces(J * MJ, b); });
-  if (f.size() != m) throw StoppedRun("persistent contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
+  const VectorXd f = naming(
+      "body '" + moving_.world().bodies[island.bodies.front()].name + "' and what it touches",
+      [&] { return laws_.contact_forces(J * MJ, b); });
+  if (f.size() != m)
+    throw StoppedRun("persistent contact (contact_forces of " + laws_.constraint_source +
+                     ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) +
+                     " points");
   const VectorXd change = MJ * (h * f);
   ContactSolution solution;
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -139,59 +167,81 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
     solution.modes.push_back(f[i] > 0 ? ContactMode::kSlide : ContactMode::kOpen);
   }
   for (std::size_t k = 0; k < problem.bodies.size(); ++k)
-    solution.velocities.push_back({problem.bodies[k].velocity_world + change.segment<3>(6 * static_cast<Eigen::Index>(k)),
-                                   problem.bodies[k].omega_world + change.segment<3>(6 * static_cast<Eigen::Index>(k) + 3)});
+    solution.velocities.push_back(
+        {problem.bodies[k].velocity_world + change.segment<3>(6 * static_cast<Eigen::Index>(k)),
+         problem.bodies[k].omega_world + change.segment<3>(6 * static_cast<Eigen::Index>(k) + 3)});
   solution.converged = true;
   return solution;
 }
 
-void PersistentContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
-  const bool is_heap = island.large || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.many_contacts);
+void PersistentContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution,
+                                       double h) {
+  const bool is_heap = island.large || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep &&
+                                        solution.impulses_world.size() > kContact.many_contacts);
   const double allowed = is_heap ? kContact.unsolved_in_large_island : kContactSolved;
   if (solution.converged || solution.residual <= allowed) return;
-  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
+  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies),
+                 {solution.residual, allowed, moving_.time(), h});
 }
 
-void PersistentContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
+void PersistentContacts::require_numbers(const ContactIsland& island,
+                                         const ContactSolution& solution) const {
   for (std::size_t k = 0; k < island.bodies.size(); ++k)
-    if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
-      throw StoppedRun("persistent contact: the impulses on body '" + moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
+    if (!solution.velocities[k].linear_world.allFinite() ||
+        !solution.velocities[k].angular_world.allFinite())
+      throw StoppedRun("persistent contact: the impulses on body '" +
+                       moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
 }
 
 // Puts a solution's impulses where the next problem of these pairs finds its warm start.
-void PersistentContacts::remember(const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
+void PersistentContacts::remember(const std::vector<StepContact>& contacts,
+                                  const ContactProblem& problem, const ContactSolution& solution,
+                                  double h,
+                                  std::map<Pair, std::vector<KnownImpulse>>& store) const {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     std::vector<KnownImpulse>& known = store[contacts[i].pair];
     if (i == 0 || contacts[i].pair != contacts[i - 1].pair) known.clear();
     const RigidBodyState& a = moving_.state(contacts[i].pair.first);
-    known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
+    known.push_back(
+        {a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world),
+         solution.impulses_world[i], h});
   }
 }
 
 // What the next step remembers of this one's impulses.
-void PersistentContacts::keep_warm_start(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) {
+void PersistentContacts::keep_warm_start(const ContactIsland& island,
+                                         const std::vector<StepContact>& contacts,
+                                         const ContactProblem& problem,
+                                         const ContactSolution& solution, double h) {
   note_unsolved(island, solution, h);
   remember(contacts, problem, solution, h, next_impulses_);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
+    const bool slides =
+        solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) &&
+        slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
     if (i == 0 || contacts[i].pair != contacts[i - 1].pair) next_stuck_.insert(contacts[i].pair);
     if (slides) next_stuck_.erase(contacts[i].pair);
-    if (!force.isZero(0.0)) forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point, contacts[i].point.normal_b_to_a_world, force});
+    if (!force.isZero(0.0))
+      forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point,
+                         contacts[i].point.normal_b_to_a_world, force});
   }
 }
 
 // Where a pair that slid and would stick at the end of the step stops sliding: when the friction
 // that stops it is all there can be. What stops the slip is A + F s, with F the steady forces along
 // it, the available friction M s; two steps of different lengths tell A and F.
-std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& contacts, const ContactSolution& solution, double h) {
+std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem,
+                                                          const std::vector<StepContact>& contacts,
+                                                          const ContactSolution& solution,
+                                                          double h) {
   if (contacts.size() > kContact.few) return std::nullopt;
   const Pair* stopping = nullptr;
   double least = 1.0, stopping_impulse = 0.0, available = 0.0;
   for (std::size_t i = 0; i < contacts.size();) {
     const Pair& pair = contacts[i].pair;
     Vector3d along = Vector3d::Zero();
-    Vector3d slips = Vector3d::Zero();   // of the point that slides fastest
+    Vector3d slips = Vector3d::Zero();  // of the point that slides fastest
     double limit = 0.0, slip = 0.0, speed = 0.0;
     bool sticks = true;
     for (; i < contacts.size() && contacts[i].pair == pair; ++i) {
@@ -200,10 +250,12 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
       const auto velocity = [&](int body) -> Vector3d {
         const Body b = moving_.body_at_impact(body);
         const Vector3d arm = geometry_.point_of(pair, contacts[i].point) - b.com_world;
-        if (!moving_.world().bodies[body].immovable()) speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
+        if (!moving_.world().bodies[body].immovable())
+          speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
         return b.velocity_world + b.omega_world.cross(arm);
       };
-      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;   // at the step's start, where it touched then
+      // at the step's start, where it touched then
+      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;
       if (const Vector3d slides = relative - relative.dot(n) * n; slides.norm() > slip) {
         slips = slides;
         slip = slides.norm();
@@ -212,15 +264,20 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
       const double normal = solution.impulses_world[i].dot(n);
       along += solution.impulses_world[i] - normal * n;
       limit += c.friction * normal;
-      sticks = sticks && (solution.modes[i] == ContactMode::kStick || (solution.modes[i] == ContactMode::kOpen && normal == 0.0));
+      sticks = sticks && (solution.modes[i] == ContactMode::kStick ||
+                          (solution.modes[i] == ContactMode::kOpen && normal == 0.0));
     }
     // What friction stops within a billionth of the step has stopped.
-    const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass + moving_.world().bodies[pair.second].inertia.inverse_mass);
-    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) || slip <= kNegligible * (speed + within_step)) continue;
+    const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass +
+                                        moving_.world().bodies[pair.second].inertia.inverse_mass);
+    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) ||
+        slip <= kNegligible * (speed + within_step))
+      continue;
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
-    stopping_impulse = -along.dot(slips) / slip;   // signed: on a slope gravity may do more than stop it, and friction holds it then
+    // signed: on a slope gravity may do more than stop it, and friction holds it then
+    stopping_impulse = -along.dot(slips) / slip;
     available = limit;
   }
   if (!stopping) return std::nullopt;
@@ -229,21 +286,28 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
     memory_.searches = 0;
   }
   if (++memory_.searches > kContact.most_searches) return std::nullopt;
-  if (memory_.sliding_search && memory_.sliding_search->pair == *stopping && memory_.sliding_search->start == moving_.time()) {
+  if (memory_.sliding_search && memory_.sliding_search->pair == *stopping &&
+      memory_.sliding_search->start == moving_.time()) {
     if (memory_.sliding_search->found) return std::nullopt;
-    const double F = (memory_.sliding_search->impulse - stopping_impulse) / (memory_.sliding_search->duration - h), A = stopping_impulse - F * h, M = available / h;
+    const double F = (memory_.sliding_search->impulse - stopping_impulse) /
+                     (memory_.sliding_search->duration - h),
+                 A = stopping_impulse - F * h, M = available / h;
     const double stop = A / (M - F);
-    if (!(stop > kContact.shortest_step * memory_.longest_step) || !(stop < memory_.sliding_search->duration)) return std::nullopt;
+    if (!(stop > kContact.shortest_step * memory_.longest_step) ||
+        !(stop < memory_.sliding_search->duration))
+      return std::nullopt;
     memory_.sliding_search->found = true;
     return moving_.time() + stop;
   }
-  if (least >= 1 - kSolverResidue || h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
+  if (least >= 1 - kSolverResidue || h <= kContact.shortest_step * memory_.longest_step)
+    return std::nullopt;
   memory_.sliding_search = SlidingSearch{*stopping, moving_.time(), h, stopping_impulse, false};
   return moving_.time() + h * std::max(least, kContact.soon);
 }
 
 // Does a contact become active in this step that did not touch before?
-bool PersistentContacts::activates(const std::vector<StepContact>& contacts, const ContactSolution& solution) {
+bool PersistentContacts::activates(const std::vector<StepContact>& contacts,
+                                   const ContactSolution& solution) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].activates && solution.impulses_world[i].squaredNorm() > 0.0) return true;
   return false;
@@ -251,9 +315,12 @@ bool PersistentContacts::activates(const std::vector<StepContact>& contacts, con
 
 // Where the island's bodies come out with these impulses.
 // @param at  where the problem took the inertia of the bodies, null: at the end of their free paths
-std::vector<RigidBodyState> PersistentContacts::ends_of(const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution, double h, bool activation, const std::vector<RigidBodyState>* at) const {
+std::vector<RigidBodyState> PersistentContacts::ends_of(
+    const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution,
+    double h, bool activation, const std::vector<RigidBodyState>* at) const {
   std::vector<RigidBodyState> ends = moving_.states();
-  for (std::size_t k = 0; k < island.bodies.size(); ++k) {   // the problem's first bodies are the island's
+  // the problem's first bodies are the island's
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
     const int body = island.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
@@ -261,13 +328,17 @@ std::vector<RigidBodyState> PersistentContacts::ends_of(const ContactIsland& isl
     if (activation) {
       end.com_world += h * after.linear_world;
       end.world_from_body = turned(end.world_from_body, h * after.angular_world);
-      end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
+      end.angular_momentum_world =
+          angular_momentum_of(after.angular_world, end.world_from_body, inertia);
     } else {
       const RigidBodyState& free = moving_.path_end(body);
       const Vector3d turning = after.angular_world - problem.bodies[k].omega_world;
-      end.com_world = free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
+      end.com_world =
+          free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
       end.world_from_body = turned(free.world_from_body, 0.5 * h * turning);
-      end.angular_momentum_world = free.angular_momentum_world + angular_momentum_of(turning, (at ? (*at)[body] : free).world_from_body, inertia);
+      end.angular_momentum_world =
+          free.angular_momentum_world +
+          angular_momentum_of(turning, (at ? (*at)[body] : free).world_from_body, inertia);
     }
     end.momentum_world = inertia.mass * after.linear_world;
   }
@@ -276,21 +347,30 @@ std::vector<RigidBodyState> PersistentContacts::ends_of(const ContactIsland& isl
 
 // The angle that the fastest of the island's bodies turns in the step; a ball looks the same
 // however it turns.
-double PersistentContacts::largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends, double h) const {
+double PersistentContacts::largest_turn(const ContactIsland& island,
+                                        const std::vector<RigidBodyState>& ends, double h) const {
   double turn = 0.0;
   for (const int body : island.bodies)
-    if (!moving_.shape(body).is_ball()) turn = std::max(turn, omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h);
+    if (!moving_.shape(body).is_ball())
+      turn = std::max(turn, omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h);
   return turn;
 }
 
 // The angle that the normal between two balls turns most in the step: the one that slides or rolls
 // on the other follows its curve.
-double PersistentContacts::turn_of_normals(const ContactIsland& island, const std::vector<RigidBodyState>& ends) const {
+double PersistentContacts::turn_of_normals(const ContactIsland& island,
+                                           const std::vector<RigidBodyState>& ends) const {
   double turn = 0.0;
   for (const Pair& pair : island.pairs) {
     if (!geometry_.are_balls(pair) || points_.at(pair).empty()) continue;
-    const auto end = [&](int body) -> Vector3d { return moving_.world().bodies[body].immovable() ? prescribed_position(moving_.world().bodies[body], moving_.target()) : ends[body].com_world; };
-    const Vector3d start = moving_.state(pair.first).com_world - moving_.state(pair.second).com_world, stop = end(pair.first) - end(pair.second);
+    const auto end = [&](int body) -> Vector3d {
+      return moving_.world().bodies[body].immovable()
+                 ? prescribed_position(moving_.world().bodies[body], moving_.target())
+                 : ends[body].com_world;
+    };
+    const Vector3d start =
+                       moving_.state(pair.first).com_world - moving_.state(pair.second).com_world,
+                   stop = end(pair.first) - end(pair.second);
     turn = std::max(turn, std::atan2(start.cross(stop).norm(), start.dot(stop)));
   }
   return turn;
@@ -300,19 +380,23 @@ double PersistentContacts::turn_of_normals(const ContactIsland& island, const st
 // targets that make the velocities at the step's end fit the surfaces there: J_middle v' = target -
 // (J_end - J_middle) v'. Without that a body that tips over its edge gains or loses energy in
 // proportion to the step.
-std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& ends,
-                                                                    std::vector<RigidBodyState>& middle) const {
+std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway(
+    const ContactIsland& island, const std::vector<StepContact>& contacts,
+    const std::vector<RigidBodyState>& ends, std::vector<RigidBodyState>& middle) const {
   const std::vector<RigidBodyState>& starts = moving_.states();
   for (const int body : island.bodies) {
     middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
-    middle[body].world_from_body = starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
+    middle[body].world_from_body =
+        starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
   }
-  const auto slip = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::ManifoldPoint& p) -> Vector3d {
+  const auto slip = [&](Pair pair, const std::vector<RigidBodyState>& at,
+                        const collision::ManifoldPoint& p) -> Vector3d {
     const Vector3d point = geometry_.point_of(pair, p);
     const auto velocity = [&](int body) -> Vector3d {
       const WorldBody& b = moving_.world().bodies[body];
       if (b.immovable()) return prescribed_velocity(b, moving_.target());
-      return b.inertia.inverse_mass * ends[body].momentum_world + omega_of(ends[body], b.inertia).cross(point - at[body].com_world);
+      return b.inertia.inverse_mass * ends[body].momentum_world +
+             omega_of(ends[body], b.inertia).cross(point - at[body].com_world);
     };
     return velocity(pair.first) - velocity(pair.second);
   };
@@ -321,21 +405,34 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway
   for (const Pair& pair : island.pairs) {
     std::size_t to = from;
     while (to < contacts.size() && contacts[to].pair == pair) ++to;
-    double farthest = 0.0;   // no point of the contact can be farther off by the step's end
-    for (std::size_t i = from; i < to; ++i) farthest = std::max({farthest, contacts[i].start_gap, contacts[i].point.gap});
+    double farthest = 0.0;  // no point of the contact can be farther off by the step's end
+    for (std::size_t i = from; i < to; ++i)
+      farthest = std::max({farthest, contacts[i].start_gap, contacts[i].point.gap});
     for (const int body : {pair.first, pair.second})
-      farthest += (ends[body].com_world - starts[body].com_world).norm() +
-                  (moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius() * starts[body].world_from_body.angularDistance(ends[body].world_from_body));
-    const double near = geometry_.same_within(pair), reach = geometry_.are_balls(pair) ? geometry_.size_of(pair) : std::min(near, farthest + geometry_.margin(pair));
-    const ContactManifold at_middle = geometry_.points_at(pair, middle, reach), at_end = geometry_.points_at(pair, ends, reach);
+      farthest +=
+          (ends[body].com_world - starts[body].com_world).norm() +
+          (moving_.shape(body).is_half_space()
+               ? 0.0
+               : moving_.shape(body).bounding_radius() *
+                     starts[body].world_from_body.angularDistance(ends[body].world_from_body));
+    const double near = geometry_.same_within(pair),
+                 reach = geometry_.are_balls(pair)
+                             ? geometry_.size_of(pair)
+                             : std::min(near, farthest + geometry_.margin(pair));
+    const ContactManifold at_middle = geometry_.points_at(pair, middle, reach),
+                          at_end = geometry_.points_at(pair, ends, reach);
     for (std::size_t i = from; i < to; ++i) {
       StepContact step_contact = contacts[i];
-      const collision::ManifoldPoint* mid = geometry_.same_point(pair, step_contact.point, starts, at_middle, middle, near);
-      const collision::ManifoldPoint* end = mid ? geometry_.same_point(pair, *mid, middle, at_end, ends, near) : nullptr;
+      const collision::ManifoldPoint* mid =
+          geometry_.same_point(pair, step_contact.point, starts, at_middle, middle, near);
+      const collision::ManifoldPoint* end =
+          mid ? geometry_.same_point(pair, *mid, middle, at_end, ends, near) : nullptr;
       if (mid && end) {
         step_contact.point = *mid;
-        const Vector3d at_end_point = slip(pair, ends, *end), at_mid_point = slip(pair, middle, *mid);
-        step_contact.target -= end->normal_b_to_a_world.dot(at_end_point) - mid->normal_b_to_a_world.dot(at_mid_point);
+        const Vector3d at_end_point = slip(pair, ends, *end),
+                       at_mid_point = slip(pair, middle, *mid);
+        step_contact.target -=
+            end->normal_b_to_a_world.dot(at_end_point) - mid->normal_b_to_a_world.dot(at_mid_point);
         step_contact.slip_target_world = at_mid_point - at_end_point;
       }
       result.push_back(step_contact);
@@ -346,21 +443,30 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway
 }
 
 // @return whether no overlap was left
-bool PersistentContacts::set_paths(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem,
-                                 const ContactSolution& solution, double h, bool activation, const std::vector<RigidBodyState>* at) {
+bool PersistentContacts::set_paths(const ContactIsland& island,
+                                   const std::vector<StepContact>& contacts,
+                                   const std::vector<RigidBodyState>& contacts_at,
+                                   const ContactProblem& problem, const ContactSolution& solution,
+                                   double h, bool activation,
+                                   const std::vector<RigidBodyState>* at) {
   std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation, at);
-  std::vector<ActiveContact> active;   // where nothing turns, points stay as near as they are
+  std::vector<ActiveContact> active;  // where nothing turns, points stay as near as they are
   if (&contacts_at != &moving_.states() && !activation && contacts.size() <= kContact.many_contacts)
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (contacts[i].start_gap < kContact.far_at_start * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
+      if (contacts[i].start_gap < kContact.far_at_start * geometry_.margin(contacts[i].pair) &&
+          solution.impulses_world[i].squaredNorm() > 0.0)
+        active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
-  const bool apart = correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
+  const bool apart =
+      correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
   // The path goes where position correction has moved its end, however short the step: velocities
   // along it are no momenta. What rods and joints hold is put right where a step ends within it
   // (MovingWorld::commit).
   for (const int body : island.bodies) {
-    if (activation) set_straight_path(body, ends[body]);
-    else moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
+    if (activation)
+      set_straight_path(body, ends[body]);
+    else
+      moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
     moving_.refuse_fast_turning(body);
   }
   return apart;
@@ -371,7 +477,8 @@ void PersistentContacts::set_straight_path(int body, const RigidBodyState& end) 
   const Inertia& inertia = moving_.world().bodies[body].inertia;
   RigidBodyState start = moving_.state(body);
   start.momentum_world = end.momentum_world;
-  start.angular_momentum_world = angular_momentum_of(omega_of(end, inertia), start.world_from_body, inertia);
+  start.angular_momentum_world =
+      angular_momentum_of(omega_of(end, inertia), start.world_from_body, inertia);
   moving_.set_path(body, start, end, SmoothPath::Momenta::kEven);
 }
 

@@ -30,10 +30,11 @@ Matrix3d inverse_effective_mass(const Body& body, const Vector3d& point_world);
 /// Kinetic energy of bodies whose velocities jump, seen from a frame that moves with what is
 /// driven: there walls do no work.
 struct EnergyOfImpact {
-  double before = 0.0, change = 0.0;   // [J]; NaN where bodies driven in different ways take part
-  double mass = 0.0;                   // of all that is moved [kg]
+  double before = 0.0, change = 0.0;  // [J]; NaN where bodies driven in different ways take part
+  double mass = 0.0;                  // of all that is moved [kg]
 
-  void add(const Inertia& inertia, const Quaterniond& world_from_body, const Velocity& from, const Velocity& to, const Vector3d& seen_from_world);
+  void add(const Inertia& inertia, const Quaterniond& world_from_body, const Velocity& from,
+           const Velocity& to, const Vector3d& seen_from_world);
   /// How far the change is from what the law says, or above 0, over the energy before; over that of
   /// kNegligibleSpeed where there is less.
   double excess(double by_law) const;
@@ -46,11 +47,12 @@ std::vector<Velocity> velocities_of(const ContactProblem& problem);
 /// B at each contact. [J]
 /// @param impulses_world  by contact, on A [N s];   from, to  velocities before and after, by body
 /// of the problem
-double work_of(const ContactProblem& problem, const std::vector<Vector3d>& impulses_world, const std::vector<Velocity>& from, const std::vector<Velocity>& to);
+double work_of(const ContactProblem& problem, const std::vector<Vector3d>& impulses_world,
+               const std::vector<Velocity>& from, const std::vector<Velocity>& to);
 
 /// Two bodies that touch at a point, as impulses there find them.
 struct TouchedPoint {
-  int a, b;                        // bodies
+  int a, b;  // bodies
   Vector3d point_world, normal_b_to_a_world;
 };
 
@@ -77,16 +79,22 @@ class ImpactBodies {
 
   /// How the two answer to impulses at a point.
   struct Answer {
-    Matrix3d free_world = Matrix3d::Zero();              // K of the free bodies [1/kg]
-    Eigen::Matrix<double, 3, Eigen::Dynamic> directions; // of which `held` speaks: the normal; with friction two tangents besides
-    MatrixXd held;                                       // K with what holds them, in these directions [1/kg]
+    Matrix3d free_world = Matrix3d::Zero();  // K of the free bodies [1/kg]
+    // of which `held` speaks: the normal; with friction two tangents besides
+    Eigen::Matrix<double, 3, Eigen::Dynamic> directions;
+    // K with what holds them, in these directions [1/kg]
+    MatrixXd held;
     struct Reaction {
       int group;
-      MatrixXd velocities;                               // (6 a body of the group, directions): by the links, per unit impulse
+      // (6 a body of the group, directions): by the links, per unit impulse
+      MatrixXd velocities;
     };
-    std::vector<Reaction> reactions;                     // empty: no rod or joint holds them, or they were not asked for
+    // empty: no rod or joint holds them, or they were not asked for
+    std::vector<Reaction> reactions;
 
-    double free_along(const Vector3d& direction) const { return direction.dot(free_world * direction); }
+    double free_along(const Vector3d& direction) const {
+      return direction.dot(free_world * direction);
+    }
     /// Along the normal.
     double held_normal() const { return held(0, 0); }
     Matrix3d held_world() const { return directions * held * directions.transpose(); }
@@ -96,7 +104,8 @@ class ImpactBodies {
 
   /// Impulse on A at the point, its opposite on B, and what links make of it.
   /// @return what that did to the kinetic energy
-  EnergyOfImpact push(const TouchedPoint& touched, const Answer& answer, const Vector3d& impulse_world);
+  EnergyOfImpact push(const TouchedPoint& touched, const Answer& answer,
+                      const Vector3d& impulse_world);
 
   /// The velocity of what is driven among these bodies and the ends of their links; 0 without;
   /// nothing where they differ. [m/s]
@@ -109,8 +118,8 @@ class ImpactBodies {
   const Laws& laws_;
   std::map<int, Body> bodies_;
   std::set<int> changed_;
-  std::map<int, LinkedBodies::Instant> instants_;   // of groups that have been asked
-  std::set<int> on_constraints_;                    // groups
+  std::map<int, LinkedBodies::Instant> instants_;  // of groups that have been asked
+  std::set<int> on_constraints_;                   // groups
 };
 
 }  // namespace tumble::engines

@@ -12,7 +12,8 @@
 #include "framework/engines/stepping/start_overlaps.h"
 
 namespace tumble::engines {
-ImpactDetection::ImpactDetection(MovingWorld& moving, const Laws& laws, RunCounters& counters) : moving_(moving), laws_(laws), counters_(counters) {
+ImpactDetection::ImpactDetection(MovingWorld& moving, const Laws& laws, RunCounters& counters)
+    : moving_(moving), laws_(laws), counters_(counters) {
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].collides) colliding_.push_back(i);
 }
@@ -30,8 +31,12 @@ void ImpactDetection::refuse_overlap(const std::string& where, const scene::Scen
   for (int i = 0; i < moving_.size(); ++i) {
     for (int j = i + 1; j < moving_.size(); ++j) {
       if (!moving_.may_collide(i, j)) continue;
-      const collision::Pose pose_i = moving_.motion_at(i, 0.0).pose, pose_j = moving_.motion_at(j, 0.0).pose;
-      look_at_start(i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j, kRoundOff * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j), near);
+      const collision::Pose pose_i = moving_.motion_at(i, 0.0).pose,
+                            pose_j = moving_.motion_at(j, 0.0).pose;
+      look_at_start(
+          i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j,
+          kRoundOff * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j),
+          near);
     }
   }
   refuse_overlaps(where, scene, near);
@@ -43,17 +48,23 @@ bool ImpactDetection::may_meet(int a, int b) {
   if (moving_.shape(a).is_half_space()) std::swap(a, b);
   if (!moving_.shape(b).is_half_space()) return true;
   const collision::SweptBox box = moving_.swept_box(a);
-  const collision::Pose start = moving_.motion_at(b, moving_.time()).pose, end = moving_.motion_at(b, moving_.target()).pose;
+  const collision::Pose start = moving_.motion_at(b, moving_.time()).pose,
+                        end = moving_.motion_at(b, moving_.target()).pose;
   const Vector3d n = start.world_from_body.toRotationMatrix().col(2);
   const Vector3d middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
   const double lowest = n.dot(middle) - n.cwiseAbs().dot(half);
   const scene::PrescribedMotion& m = moving_.world().bodies[b].motion;
-  const double shake = m.amplitude_m.norm() * std::min(2.0, std::pow(m.angular_frequency_rad_s * (moving_.target() - moving_.time()), 2));
+  const double shake =
+      m.amplitude_m.norm() *
+      std::min(2.0, std::pow(m.angular_frequency_rad_s * (moving_.target() - moving_.time()), 2));
   return lowest <= std::max(n.dot(start.com_world), n.dot(end.com_world)) + shake;
 }
 
 std::vector<ImpactDetection::Pair> ImpactDetection::candidates() {
-  if (colliding_.size() < 2 || std::none_of(colliding_.begin(), colliding_.end(), [&](int body) { return moving_.can_move(body) || moving_.is_driven(body); })) return {};
+  if (colliding_.size() < 2 || std::none_of(colliding_.begin(), colliding_.end(), [&](int body) {
+        return moving_.can_move(body) || moving_.is_driven(body);
+      }))
+    return {};
   const StageTimer timer(counters_.collision_seconds);
   std::vector<Pair> pairs = pairs_of_boxes();
   if (ask_for_ends(pairs)) pairs = pairs_of_boxes();
@@ -70,7 +81,9 @@ std::vector<ImpactDetection::Pair> ImpactDetection::pairs_of_boxes() {
     a = colliding_[a];
     b = colliding_[b];
   }
-  std::erase_if(pairs, [&](const Pair& pair) { return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second); });
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second);
+  });
   return pairs;
 }
 
@@ -95,7 +108,8 @@ std::optional<Earliest> ImpactDetection::find_earliest(const std::vector<Pair>& 
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [a, b] = pairs[k];
     options.cache = moving_.pair_cache(a, b);
-    const auto impact = collision::first_impact(moving_.shape(a), moving_.motion(a), moving_.shape(b), moving_.motion(b), moving_.time(),
+    const auto impact = collision::first_impact(moving_.shape(a), moving_.motion(a),
+                                                moving_.shape(b), moving_.motion(b), moving_.time(),
                                                 until, options, &counters_.collision);
     if (!impact || (earliest && impact->time >= earliest->time)) continue;
     earliest = Earliest{impact->time, k};
@@ -108,28 +122,37 @@ std::optional<Earliest> ImpactDetection::find_earliest(const std::vector<Pair>& 
 // Of those that are farther apart than what counts as touching a bound from below.
 double ImpactDetection::gap_on_path(Pair pair, double t) {
   const auto [a, b] = pair;
-  const collision::Pose pose_a = moving_.motion_at(a, t).pose, pose_b = moving_.motion_at(b, t).pose;
+  const collision::Pose pose_a = moving_.motion_at(a, t).pose,
+                        pose_b = moving_.motion_at(b, t).pose;
   const double least = collision::least_gap(moving_.shape(a), pose_a, moving_.shape(b), pose_b);
   const double touching = touching_distance(pair);
   if (least > touching) return least;
   ++counters_.collision.gap_evaluations;
-  return collision::gap_distance(moving_.shape(a), pose_a, moving_.shape(b), pose_b, moving_.pair_cache(a, b), touching);
+  return collision::gap_distance(moving_.shape(a), pose_a, moving_.shape(b), pose_b,
+                                 moving_.pair_cache(a, b), touching);
 }
 
 collision::Gap ImpactDetection::gap(Pair pair) const {
-  return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), moving_.pair_cache(pair.first, pair.second));
+  return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first),
+                                moving_.shape(pair.second), pose_of(pair.second),
+                                moving_.pair_cache(pair.first, pair.second));
 }
 
 double ImpactDetection::touching_distance(Pair pair) const {
   // Times are doubles too: within one spacing of the time a pair moves by its speed times that.
-  const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() + moving_.velocity_of(pair.second, moving_.time()).norm();
-  return kRoundOff * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
+  const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() +
+                       moving_.velocity_of(pair.second, moving_.time()).norm();
+  return kRoundOff * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first),
+                                           moving_.shape(pair.second), pose_of(pair.second))) +
          kFewRoundings * kEpsilon * moving_.time() * speed;
 }
 
 // Sizes say what lies flat; how far from the world's origin the two are only adds what their places
 // are rounded by.
-std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
+std::vector<Vector3d> touching_points(const collision::CollisionShape& a,
+                                      const collision::Pose& pose_a,
+                                      const collision::CollisionShape& b,
+                                      const collision::Pose& pose_b, const collision::Gap& gap,
                                       double rounding) {
   const Vector3d point_world = 0.5 * (gap.point_a_world + gap.point_b_world);
   if (a.is_ball() || b.is_ball()) return {point_world};
@@ -137,7 +160,8 @@ std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const 
   for (const collision::CollisionShape* shape : {&a, &b})
     if (!shape->is_half_space()) size += shape->bounding_radius();
   // A face that leans by a billionth lies flat.
-  const collision::FlatHull patch = collision::contact_patch(a, pose_a, b, pose_b, gap, kNegligible * size + rounding);
+  const collision::FlatHull patch =
+      collision::contact_patch(a, pose_a, b, pose_b, gap, kNegligible * size + rounding);
   if (patch.corners.size() < 2) return {point_world};
   std::vector<Vector3d> points{patch.middle};
   points.insert(points.end(), patch.corners.begin(), patch.corners.end());
@@ -145,13 +169,16 @@ std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const 
 }
 
 std::vector<Vector3d> ImpactDetection::touching_points(Pair pair, const collision::Gap& gap) const {
-  return engines::touching_points(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), gap, touching_distance(pair));
+  return engines::touching_points(moving_.shape(pair.first), pose_of(pair.first),
+                                  moving_.shape(pair.second), pose_of(pair.second), gap,
+                                  touching_distance(pair));
 }
 
 // The last guard: bounds hold for every method of integration that moves bodies smoothly, but what
 // a student wrote may not. An overlap at the end that is deeper than round-off is traced back to
 // where it began.
-std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pairs, double target) {
+std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pairs,
+                                                     double target) {
   std::optional<Earliest> earliest;
   apart_at_target_ = true;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -159,7 +186,8 @@ std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pa
     const double touching = touching_distance(pairs[k]), gap = gap_on_path(pairs[k], high);
     apart_at_target_ = apart_at_target_ && gap > touching;
     if (gap >= -touching) continue;
-    for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
+    for (double middle = 0.5 * (low + high); middle > low && middle < high;
+         middle = 0.5 * (low + high))
       (gap_on_path(pairs[k], middle) < 0 ? high : low) = middle;
     if (!earliest || low < earliest->time) earliest = Earliest{low, k};
   }
@@ -173,12 +201,19 @@ void ImpactDetection::separate(const std::vector<Pair>& pairs) {
     bool clean = true;
     for (const auto& pair : pairs) {
       const auto [a, b] = pair;
-      if (collision::least_gap(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b)) > 0) continue;
-      if (collision::gap_distance(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b), moving_.pair_cache(a, b), 0.0) >= 0) continue;
+      if (collision::least_gap(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b)) > 0)
+        continue;
+      if (collision::gap_distance(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b),
+                                  moving_.pair_cache(a, b), 0.0) >= 0)
+        continue;
       const collision::Gap gap = this->gap(pair);
       clean = false;
-      const double mass_a = moving_.can_move(pair.first) ? moving_.world().bodies[pair.first].inertia.inverse_mass : 0.0;
-      const double mass_b = moving_.can_move(pair.second) ? moving_.world().bodies[pair.second].inertia.inverse_mass : 0.0;
+      const double mass_a = moving_.can_move(pair.first)
+                                ? moving_.world().bodies[pair.first].inertia.inverse_mass
+                                : 0.0;
+      const double mass_b = moving_.can_move(pair.second)
+                                ? moving_.world().bodies[pair.second].inertia.inverse_mass
+                                : 0.0;
       // The other one in every second round: a body between two others is not moved to and fro.
       const bool swap = round % 2 == 1 && mass_a > 0 && mass_b > 0;
       const int mover = (mass_a >= mass_b) != swap ? pair.first : pair.second;

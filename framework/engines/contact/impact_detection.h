@@ -13,19 +13,22 @@ namespace tumble::engines {
 
 /// The first impact of a step.
 struct Earliest {
-  double time;         // [s]
-  std::size_t pair;    // place in the list of pairs that was asked about
+  double time;       // [s]
+  std::size_t pair;  // place in the list of pairs that was asked about
 };
 
 /// The middle of where two solids touch, then the corners of that region if it is more than a
 /// point. World frame. [m]
 /// @param rounding  what rounding leaves of the places there [m]
-std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
+std::vector<Vector3d> touching_points(const collision::CollisionShape& a,
+                                      const collision::Pose& pose_a,
+                                      const collision::CollisionShape& b,
+                                      const collision::Pose& pose_b, const collision::Gap& gap,
                                       double rounding);
 
 class ImpactDetection {
  public:
-  using Pair = std::pair<int, int>;   // bodies, first < second
+  using Pair = std::pair<int, int>;  // bodies, first < second
 
   ImpactDetection(MovingWorld& moving, const Laws& laws, RunCounters& counters);
 
@@ -61,14 +64,15 @@ class ImpactDetection {
   std::optional<Earliest> find_earliest(const std::vector<Pair>& pairs);
   std::optional<Earliest> find_missed(const std::vector<Pair>& pairs, double target);
   double gap_on_path(Pair pair, double t);
-  collision::Pose pose_of(int body) const { return {moving_.state(body).com_world, moving_.state(body).world_from_body}; }
-  
+  collision::Pose pose_of(int body) const {
+    return {moving_.state(body).com_world, moving_.state(body).world_from_body};
+  }
 
   MovingWorld& moving_;
   const Laws& laws_;
   RunCounters& counters_;
   bool apart_at_target_ = false;
-  std::vector<int> colliding_;   // bodies that may touch others, ascending
+  std::vector<int> colliding_;  // bodies that may touch others, ascending
 };
 
 }  // namespace tumble::engines

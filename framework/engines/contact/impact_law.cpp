@@ -13,24 +13,29 @@ namespace tumble::engines {
 namespace {
 
 double speed_at(const Body& body, const Vector3d& point_world) {
-  return body.velocity_world.norm() + body.omega_world.norm() * (point_world - body.com_world).norm();
+  return body.velocity_world.norm() +
+         body.omega_world.norm() * (point_world - body.com_world).norm();
 }
 
 }  // namespace
 
-Approach fastest_approach(const Laws& laws, const TouchedRegion& region, const Body& a, const Body& b, double threshold) {
+Approach fastest_approach(const Laws& laws, const TouchedRegion& region, const Body& a,
+                          const Body& b, double threshold) {
   Approach fastest{kInfinity, &region.points_world[0]};
   for (const Vector3d& point : region.points_world) {
-    const double velocity = laws.relative_normal_velocity({point, region.normal_b_to_a_world}, a, b);
+    const double velocity =
+        laws.relative_normal_velocity({point, region.normal_b_to_a_world}, a, b);
     if (velocity < fastest.velocity) fastest = {velocity, &point};
     if (&point == &region.points_world[0] && velocity < -threshold) break;
   }
   return fastest;
 }
 
-void ApproachThreshold::look(const Laws& laws, const TouchedRegion& region, const Body& a, const Body& b) {
+void ApproachThreshold::look(const Laws& laws, const TouchedRegion& region, const Body& a,
+                             const Body& b) {
   for (const Vector3d& point : region.points_world) {
-    fastest_ = std::max(fastest_, std::abs(laws.relative_normal_velocity({point, region.normal_b_to_a_world}, a, b)));
+    fastest_ = std::max(fastest_, std::abs(laws.relative_normal_velocity(
+                                      {point, region.normal_b_to_a_world}, a, b)));
     sliding_ = std::max({sliding_, speed_at(a, point), speed_at(b, point)});
   }
 }
@@ -38,11 +43,16 @@ void ApproachThreshold::look(const Laws& laws, const TouchedRegion& region, cons
 // Approach slower than a part of the fastest one is what rounding leaves of "not approaching"; so
 // is what rounding leaves of the speeds along the surface that cancel in it (a ball sliding in a
 // groove).
-double ApproachThreshold::value() const { return std::max(kSolverRounding * fastest_, kRoundOff * sliding_); }
+double ApproachThreshold::value() const {
+  return std::max(kSolverRounding * fastest_, kRoundOff * sliding_);
+}
 
 std::string left_approaching_message(const Laws& laws) {
-  return fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too "
-                     "little size, or a persistent contact is needed there", laws.impulse_source);
+  return fmt::format(
+      "collision (collision_impulse, apply_impulse of {}) left them approaching, however often it "
+      "was applied: the impulse has no effect, the wrong sign or too "
+      "little size, or a persistent contact is needed there",
+      laws.impulse_source);
 }
 
 double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
@@ -50,12 +60,19 @@ double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
 }
 
 bool comes_to_rest(const BallOnSupport& ball) {
-  const Vector3d &gravity = ball.gravity_world, &up = ball.up_world, &velocity = ball.relative_velocity_world;
-  const double level = std::max(kSolverResidue, ball.radius > ball.rounding ? ball.rounding / ball.radius : 0.0);
-  if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
+  const Vector3d &gravity = ball.gravity_world, &up = ball.up_world,
+                 &velocity = ball.relative_velocity_world;
+  const double level =
+      std::max(kSolverResidue, ball.radius > ball.rounding ? ball.rounding / ball.radius : 0.0);
+  if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm())
+    return false;
   const Matrix3d& inertia = ball.inertia_body;
-  if (ball.turns && (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() > kRoundOff * inertia.norm()) return false;
-  return velocity.norm() < ball.restitution_threshold && velocity.dot(up) <= ball.restitution * ball.restitution_threshold + kRoundOff * ball.fastest;
+  if (ball.turns &&
+      (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() > kRoundOff * inertia.norm())
+    return false;
+  return velocity.norm() < ball.restitution_threshold &&
+         velocity.dot(up) <=
+             ball.restitution * ball.restitution_threshold + kRoundOff * ball.fastest;
 }
 
 }  // namespace tumble::engines

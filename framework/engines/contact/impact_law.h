@@ -18,17 +18,19 @@ namespace tumble::engines {
 /// Where two bodies touch.
 struct TouchedRegion {
   Vector3d normal_b_to_a_world;
-  const std::vector<Vector3d>& points_world;   // the middle, then the corners if it is more than a point
+  // the middle, then the corners if it is more than a point
+  const std::vector<Vector3d>& points_world;
 };
 
 struct Approach {
-  double velocity;               // [m/s], negative when approaching
-  const Vector3d* point_world;   // of the region's points
+  double velocity;              // [m/s], negative when approaching
+  const Vector3d* point_world;  // of the region's points
 };
 
 /// The middle counts first, so that a flat landing does not tip over its corners in turn.
 /// @param threshold  what counts as approaching [m/s], see ApproachThreshold
-Approach fastest_approach(const Laws& laws, const TouchedRegion& region, const Body& a, const Body& b, double threshold);
+Approach fastest_approach(const Laws& laws, const TouchedRegion& region, const Body& a,
+                          const Body& b, double threshold);
 
 /// What rounding leaves of "not approaching", from the velocities before the first impulse.
 class ApproachThreshold {
@@ -40,7 +42,7 @@ class ApproachThreshold {
   double fastest() const { return fastest_; }
 
  private:
-  double fastest_ = 0.0, sliding_ = 0.0;   // [m/s]
+  double fastest_ = 0.0, sliding_ = 0.0;  // [m/s]
 };
 
 /// More rounds of impulses than any right law needs: restitution 0.99 in a row of 50 balls takes
@@ -54,26 +56,33 @@ std::string left_approaching_message(const Laws& laws);
 /// infinitely often in no time: it is sent apart at the rest speed (a micro-collision, Mirtich
 /// 1996). Pushes at several points approach that speed together, each round by a part of what is
 /// missing.
-inline constexpr double kFastEnough = 0.5;   // of the restitution threshold: what separates so fast gets no further push
-inline constexpr int kMostPushes = 200;      // rounds
+// of the restitution threshold: what separates so fast gets no further push
+inline constexpr double kFastEnough = 0.5;
+inline constexpr int kMostPushes = 200;  // rounds
 
 /// Not by the law that is being judged: a record of what the impulse did. [m/s]
 double normal_velocity(const Contact& contact, const Body& a, const Body& b);
 
 /// Kinetic energy that the laws' impulse changes: half the impulse times the sum of the normal
 /// velocities before and after. [J]
-inline double work_of_impulse(double impulse, double approach, double restitution) { return 0.5 * impulse * (1 - restitution) * approach; }
+inline double work_of_impulse(double impulse, double approach, double restitution) {
+  return 0.5 * impulse * (1 - restitution) * approach;
+}
 
 /// A ball that has met a support.
 struct BallOnSupport {
-  Vector3d gravity_world;                  // [m/s^2]
-  Vector3d up_world;                       // unit, away from the support
-  double radius = 0.0, rounding = 0.0;     // [m]: of the ball; of the place where the two touch, from which the normal's own rounding follows
-  Matrix3d inertia_body;                   // [kg m^2]
+  Vector3d gravity_world;  // [m/s^2]
+  Vector3d up_world;       // unit, away from the support
+  // [m]: of the ball; of the place where the two touch, from which the normal's own rounding
+  // follows
+  double radius = 0.0, rounding = 0.0;
+  Matrix3d inertia_body;  // [kg m^2]
   bool turns = false;
-  Vector3d relative_velocity_world;        // of the ball against the support, after its impacts [m/s]
+  // of the ball against the support, after its impacts [m/s]
+  Vector3d relative_velocity_world;
   double restitution = 0.0;
-  double restitution_threshold = 0.0, fastest = 0.0;  // [m/s]: fastest: of the impacts at this instant
+  // [m/s]: fastest: of the impacts at this instant
+  double restitution_threshold = 0.0, fastest = 0.0;
 };
 
 /// Whether it stays there: gravity presses it straight against the support (without friction a

@@ -24,59 +24,80 @@ namespace tumble::engines {
 bool PersistentContacts::is_large(const ContactIsland& island) const {
   if (!island.linked.empty()) return false;
   if (!locates()) return island.bodies.size() > kContact.few;
-  const bool in_large_island = std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return memory_.in_large_island.contains(body); });
-  return in_large_island && speed(island) > kContact.moving * restitution_threshold_;   // what comes to rest is let down to the last digit
+  const bool in_large_island =
+      std::any_of(island.bodies.begin(), island.bodies.end(),
+                  [&](int body) { return memory_.in_large_island.contains(body); });
+  // what comes to rest is let down to the last digit
+  return in_large_island && speed(island) > kContact.moving * restitution_threshold_;
 }
 
 void PersistentContacts::report_large_islands() {
-  const std::string words = fmt::format("islands of more than {} bodies with more than {} impacts a step are solved in steps until they rest (heap_steps): right to first order in the step. "
-                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every impact at its instant, and takes longer", kContact.few, kContact.most_located_impacts);
-  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
+  const std::string words = fmt::format(
+      "islands of more than {} bodies with more than {} impacts a step are solved in steps until "
+      "they rest (heap_steps): right to first order in the step. "
+      "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every impact at its instant, and "
+      "takes longer",
+      kContact.few, kContact.most_located_impacts);
+  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) ==
+      counters_.notices.end())
+    counters_.notices.push_back(words);
 }
 
 // An impact is about to cut the step for this island. Too many of them, and it is solved in steps
 // from now on, until it rests or separates.
 bool PersistentContacts::becomes_large(const ContactIsland& island) {
-  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few) return false;
+  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() ||
+      island.bodies.size() <= kContact.few)
+    return false;
   if (!(moving_.time() < memory_.impacts_counted_from + memory_.longest_step)) {
     memory_.impacts_counted_from = moving_.time();
     memory_.impacts_counted.clear();
   }
-  if (++memory_.impacts_counted[island.bodies.front()] <= kContact.most_located_impacts) return false;
+  if (++memory_.impacts_counted[island.bodies.front()] <= kContact.most_located_impacts)
+    return false;
   memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
   report_large_islands();
   return true;
 }
 
 // Where the island's bodies are at the middle of the step if nothing stops them.
-std::vector<RigidBodyState> PersistentContacts::middle_of(const ContactIsland& island, double h) const {
+std::vector<RigidBodyState> PersistentContacts::middle_of(const ContactIsland& island,
+                                                          double h) const {
   std::vector<RigidBodyState> middle = moving_.states();
   for (int i = 0; i < moving_.size(); ++i)
-    if (moving_.world().bodies[i].immovable()) middle[i].com_world = prescribed_position(moving_.world().bodies[i], moving_.time() + 0.5 * h);
+    if (moving_.world().bodies[i].immovable())
+      middle[i].com_world =
+          prescribed_position(moving_.world().bodies[i], moving_.time() + 0.5 * h);
   for (const int index : island.bodies) {
     const Body body = moving_.body_at_impact(index);
     middle[index].com_world += 0.5 * h * body.velocity_world;
-    middle[index].world_from_body = turned(middle[index].world_from_body, 0.5 * h * body.omega_world);
+    middle[index].world_from_body =
+        turned(middle[index].world_from_body, 0.5 * h * body.omega_world);
   }
   return middle;
 }
 
-std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_large_island(const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h) {
+std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_large_island(
+    const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h) {
   std::vector<StepContact> contacts;
   for (const Pair& pair : island.pairs) {
     const double margin = geometry_.large_island_margin(pair), within = reach(pair);
     ContactManifold points = geometry_.points_at(pair, middle, within);
-    const bool passed = std::any_of(points.begin(), points.end(), [](const collision::ManifoldPoint& p) { return p.gap < 0; });
+    const bool passed = std::any_of(points.begin(), points.end(),
+                                    [](const collision::ManifoldPoint& p) { return p.gap < 0; });
     if (passed) points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
     for (const collision::ManifoldPoint& p : points) {
       double target = (margin - p.gap) / h;
       if (!passed) {
         const Vector3d point = geometry_.point_of(pair, p);
-        const Vector3d v = a.velocity_world + a.omega_world.cross(point - a.com_world) - b.velocity_world - b.omega_world.cross(point - b.com_world);
+        const Vector3d v = a.velocity_world + a.omega_world.cross(point - a.com_world) -
+                           b.velocity_world - b.omega_world.cross(point - b.com_world);
         target += 0.5 * p.normal_b_to_a_world.dot(v);
       }
-      if (target > 0) target = kContact.restored * std::max(0.0, margin - p.gap) / memory_.longest_step;   // not / h: in a step cut short that would be an impact
+      // not / h: in a step cut short that would be an impact
+      if (target > 0)
+        target = kContact.restored * std::max(0.0, margin - p.gap) / memory_.longest_step;
       contacts.push_back({pair, p, target, false});
     }
   }
@@ -84,7 +105,8 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_lar
 }
 
 // @return an earlier target to begin the step again with
-std::optional<double> PersistentContacts::take_large_island_step(const ContactIsland& island, double h) {
+std::optional<double> PersistentContacts::take_large_island_step(const ContactIsland& island,
+                                                                 double h) {
   const std::vector<RigidBodyState> middle = middle_of(island, h);
   const std::vector<StepContact> contacts = contacts_of_large_island(island, middle, h);
   const ContactProblem problem = problem_of(island, contacts, middle, h);
@@ -92,7 +114,7 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
   options.tolerance = kContact.solved_in_large_island;
   options.least_speed = kContact.still * restitution_threshold_;
   options.most_sweeps_alone = kContact.sweeps_in_large_island;
-  if (locates()) {           // the scene does not ask for steps: their problems are solved at least
+  if (locates()) {  // the scene does not ask for steps: their problems are solved at least
     options.enough = kContact.solved_in_large_island;
     options.most_sweeps = kContact.sweeps_in_large_island;
   } else {
@@ -101,7 +123,9 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
   ++counters_.heap_steps;
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
-  const ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
+  const ContactSolution solution = laws_.friction_impulses
+                                       ? laws_.friction_impulses(problem, options)
+                                       : solve_contacts(problem, options);
   counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
   counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
   if (!solution.converged) ++counters_.contact_unsolved;
@@ -109,7 +133,8 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
   std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, true);
   // Pairs with bodies of other groups may meet within the step: that is for the finding of impacts.
   std::vector<double> gaps(island.pairs.size(), 0.0);
-  const bool apart = correction_.correct_large_island(island, island.pairs, ends, moving_.target(), gaps);
+  const bool apart =
+      correction_.correct_large_island(island, island.pairs, ends, moving_.target(), gaps);
   if (!apart && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   for (const int body : island.bodies) {
     set_straight_path(body, ends[body]);

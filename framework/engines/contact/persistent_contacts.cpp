@@ -28,20 +28,26 @@ void PersistentContacts::recall(ContactMemory memory) {
 void PersistentContacts::begin(Pair pair, const collision::Gap& gap) {
   if (!memory_.persistent.insert(pair).second) return;
   ++counters_.contacts_begun;
-  sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
+  sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world,
+               gap.normal_b_to_a_world, 0.0, 0.0});
 }
 
 void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     const collision::Gap gap = geometry_.gap_of(pair, moving_.states());
-    const double within = std::max(geometry_.margin(pair), geometry_.is_inelastic(pair) ? kSixDigits * geometry_.size_of(pair) : 0.0);
+    const double within =
+        std::max(geometry_.margin(pair),
+                 geometry_.is_inelastic(pair) ? kSixDigits * geometry_.size_of(pair) : 0.0);
     if (gap.distance > within) continue;
     const ContactManifold points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
-    const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) {
-      const Vector3d relative = a.velocity_world + a.omega_world.cross(geometry_.point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(geometry_.point_of(pair, p) - b.com_world);
-      return std::abs(relative.dot(p.normal_b_to_a_world)) < restitution_threshold_;
-    });
+    const bool slow =
+        std::all_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) {
+          const Vector3d relative =
+              a.velocity_world + a.omega_world.cross(geometry_.point_of(pair, p) - a.com_world) -
+              b.velocity_world - b.omega_world.cross(geometry_.point_of(pair, p) - b.com_world);
+          return std::abs(relative.dot(p.normal_b_to_a_world)) < restitution_threshold_;
+        });
     if (slow) begin(pair, gap);
   }
   remove_overlaps();
@@ -51,8 +57,11 @@ void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
 // the overlap.
 void PersistentContacts::remove_overlaps() {
   std::vector<RigidBodyState> states = moving_.states();
-  const auto closed = [&](const Pair& pair) { return geometry_.distance_of(pair, states, 0.0) < 0; };
-  for (const ContactIsland& island : islands({memory_.persistent.begin(), memory_.persistent.end()})) {
+  const auto closed = [&](const Pair& pair) {
+    return geometry_.distance_of(pair, states, 0.0) < 0;
+  };
+  for (const ContactIsland& island :
+       islands({memory_.persistent.begin(), memory_.persistent.end()})) {
     if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
     correction_.correct_positions(island, island.pairs, states, moving_.time());
     for (const int body : island.bodies) moving_.set_state(body, states[body]);
@@ -61,14 +70,19 @@ void PersistentContacts::remove_overlaps() {
 
 bool PersistentContacts::plastic(Pair pair) const {
   if (locates() && memory_.in_large_island.empty()) return false;
-  return geometry_.is_inelastic(pair) && (!locates() || memory_.in_large_island.contains(pair.first) || memory_.in_large_island.contains(pair.second));
+  return geometry_.is_inelastic(pair) &&
+         (!locates() || memory_.in_large_island.contains(pair.first) ||
+          memory_.in_large_island.contains(pair.second));
 }
 
 // How much nearer the two can come in the step.
 double PersistentContacts::reach(Pair pair) {
   const double h = moving_.target() - moving_.time();
   const double size = geometry_.size_of(pair);
-  const double way = (reaches_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
+  const double way =
+      (reaches_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second)
+                        : reaches_[pair.first] + reaches_[pair.second]) *
+      h;
   return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 
@@ -82,7 +96,11 @@ std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& ca
     for (const double t : {moving_.time(), moving_.target()}) {
       if (!meets[i] || (!moving_.can_move(i) && !moving_.is_driven(i))) continue;
       const collision::MotionState state = moving_.motion_at(i, t);
-      speeds[i] = std::max(speeds[i], state.velocity_world.norm() + (moving_.shape(i).is_half_space() ? 0.0 : state.omega_world.norm() * moving_.shape(i).bounding_radius()));
+      speeds[i] = std::max(
+          speeds[i], state.velocity_world.norm() +
+                         (moving_.shape(i).is_half_space()
+                              ? 0.0
+                              : state.omega_world.norm() * moving_.shape(i).bounding_radius()));
     }
   std::vector<double> about = speeds;
   for (const auto& [a, b] : candidates) {
@@ -98,27 +116,33 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
   const int n = moving_.size();
   const std::vector<int> leader = group_leaders(moving_, touching);
   std::map<int, ContactIsland> by_leader;
-  for (const auto& pair : touching) by_leader[leader[moving_.can_move(pair.first) ? pair.first : pair.second]].pairs.push_back(pair);
+  for (const auto& pair : touching)
+    by_leader[leader[moving_.can_move(pair.first) ? pair.first : pair.second]].pairs.push_back(
+        pair);
   for (int i = 0; i < n; ++i) {
     if (!moving_.can_move(i)) continue;
     const auto island = by_leader.find(leader[i]);
     if (island == by_leader.end()) continue;
     island->second.bodies.push_back(i);
     const int linked = moving_.linked_group(i);
-    if (linked >= 0 && moving_.linked_groups()[linked].bodies().front() == i) island->second.linked.push_back(linked);
+    if (linked >= 0 && moving_.linked_groups()[linked].bodies().front() == i)
+      island->second.linked.push_back(linked);
   }
   std::vector<ContactIsland> result;
   for (auto& [first, island] : by_leader) result.push_back(std::move(island));
   return result;
 }
 
-std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of(const ContactIsland& island) {
+std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of(
+    const ContactIsland& island) {
   std::vector<StepContact> contacts;
   for (const Pair& pair : island.pairs)
     for (const collision::ManifoldPoint& point : points_.at(pair)) {
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
       const bool activates = distance > kContact.touching_band * margin + kNegligible * reach(pair);
-      contacts.push_back({pair, point, activates ? -distance / (moving_.target() - moving_.time()) : 0.0, activates, Vector3d::Zero(), point.gap});
+      contacts.push_back({pair, point,
+                          activates ? -distance / (moving_.target() - moving_.time()) : 0.0,
+                          activates, Vector3d::Zero(), point.gap});
     }
   return contacts;
 }
@@ -140,7 +164,9 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     if (!memory_.persistent.contains(pair) && !plastic(pair)) continue;
     if (in_step) {
       const double within = reach(pair);
-      if (geometry_.least_gap_of(pair, moving_.states()) <= within && geometry_.distance_of(pair, moving_.states(), within) <= within) touching.push_back(pair);
+      if (geometry_.least_gap_of(pair, moving_.states()) <= within &&
+          geometry_.distance_of(pair, moving_.states(), within) <= within)
+        touching.push_back(pair);
       continue;
     }
     ContactManifold points = geometry_.points_at(pair, moving_.states(), reach(pair));
@@ -155,10 +181,14 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   for (ContactIsland& island : islands_) island.large = is_large(island);
   memory_.in_large_island.clear();
   for (const ContactIsland& island : islands_)
-    if (island.large && locates()) memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
+    if (island.large && locates())
+      memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
   if (in_step)
     for (ContactIsland& island : islands_) {
-      for (const Pair& pair : island.pairs) points_.emplace(pair, island.large ? ContactManifold{} : geometry_.points_at(pair, moving_.states(), reach(pair)));
+      for (const Pair& pair : island.pairs)
+        points_.emplace(pair, island.large
+                                  ? ContactManifold{}
+                                  : geometry_.points_at(pair, moving_.states(), reach(pair)));
     }
   note_near_pairs(candidates);
   // Every island gets its paths; where one asks for a shorter step, the step begins again for all.
@@ -182,12 +212,17 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
 // others' steps would be in vain: one at rest is not solved again for each impact of a large island
 // elsewhere.
 std::optional<double> PersistentContacts::take_steps(double h) {
-  const auto step = [&](const ContactIsland& island) { return island.large ? take_large_island_step(island, h) : take_step(island, h); };
-  const auto first = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
+  const auto step = [&](const ContactIsland& island) {
+    return island.large ? take_large_island_step(island, h) : take_step(island, h);
+  };
+  const auto first =
+      std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) {
+        return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last);
+      });
   if (first != islands_.end())
     if (const auto earlier = step(*first)) return earlier;
   const auto of_first = static_cast<std::ptrdiff_t>(forces_.size());
-  std::ptrdiff_t before_first = 0;   // forces of groups that stand before it
+  std::ptrdiff_t before_first = 0;  // forces of groups that stand before it
   std::optional<double> earliest;
   std::optional<SlidingSearch> of_earliest;
   for (const ContactIsland& island : islands_) {
@@ -205,7 +240,9 @@ std::optional<double> PersistentContacts::take_steps(double h) {
     memory_.sliding_search = before;
   }
   if (earliest) memory_.sliding_search = of_earliest;
-  std::rotate(forces_.begin(), forces_.begin() + of_first, forces_.begin() + of_first + before_first);   // in the order of the groups
+  // in the order of the groups
+  std::rotate(forces_.begin(), forces_.begin() + of_first,
+              forces_.begin() + of_first + before_first);
   return earliest;
 }
 
@@ -220,14 +257,24 @@ void PersistentContacts::require_progress() {
   }
   ++memory_.cuts;
   const auto names = [&] {
-    const auto asked = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
-    return asked == islands_.end() ? std::string("bodies") : names_of(moving_.world(), asked->bodies);
+    const auto asked =
+        std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) {
+          return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last);
+        });
+    return asked == islands_.end() ? std::string("bodies")
+                                   : names_of(moving_.world(), asked->bodies);
   };
-  constexpr const char* kRemedy = "masses or sizes that differ less, or a shorter \"step_s\", may help";
+  constexpr const char* kRemedy =
+      "masses or sizes that differ less, or a shorter \"step_s\", may help";
   if (memory_.sweeps > kContact.most_sweeps_a_step)
-    throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", names(), memory_.longest_step, kRemedy));
+    throw StoppedRun(fmt::format(
+        "{}: what their contacts, rods and joints ask for together stays unsolved, also in the "
+        "shortest parts of a step of {:.3g} s. They may contradict each other; {}",
+        names(), memory_.longest_step, kRemedy));
   if (memory_.cuts > kMostIdleSteps * static_cast<long>(moving_.size()))
-    throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", names(), memory_.cuts - 1, memory_.longest_step, kRemedy));
+    throw StoppedRun(
+        fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}",
+                    names(), memory_.cuts - 1, memory_.longest_step, kRemedy));
 }
 
 void PersistentContacts::note_near_pairs(const std::vector<Pair>& candidates) {
@@ -242,8 +289,10 @@ void PersistentContacts::note_near_pairs(const std::vector<Pair>& candidates) {
 }
 
 bool PersistentContacts::is_curved(const ContactIsland& island) const {
-  return std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
-         std::any_of(island.pairs.begin(), island.pairs.end(), [&](const Pair& pair) { return geometry_.are_balls(pair); });
+  return std::any_of(island.bodies.begin(), island.bodies.end(),
+                     [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
+         std::any_of(island.pairs.begin(), island.pairs.end(),
+                     [&](const Pair& pair) { return geometry_.are_balls(pair); });
 }
 
 // Of the fastest point of the island's bodies. [m/s]
@@ -251,7 +300,9 @@ double PersistentContacts::speed(const ContactIsland& island) const {
   double fastest = 0.0;
   for (const int index : island.bodies) {
     const Body body = moving_.body_at_impact(index);
-    fastest = std::max(fastest, body.velocity_world.norm() + body.omega_world.norm() * moving_.shape(index).bounding_radius());
+    fastest =
+        std::max(fastest, body.velocity_world.norm() +
+                              body.omega_world.norm() * moving_.shape(index).bounding_radius());
   }
   return fastest;
 }
@@ -260,7 +311,8 @@ double PersistentContacts::speed(const ContactIsland& island) const {
 // @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::take_step(const ContactIsland& island, double h) {
   std::vector<StepContact> contacts = contacts_of(island);
-  const bool located = locates(), moves = located && speed(island) > kContact.moving * restitution_threshold_;
+  const bool located = locates(),
+             moves = located && speed(island) > kContact.moving * restitution_threshold_;
   // Points that touch and approach: their velocities jump, without rebound, and the step begins
   // again.
   if (moves && apply_impacts_of_active(island, contacts)) return moving_.target();
@@ -279,7 +331,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     problem = problem_of(island, contacts, moving_.states(), h);
     solution = solve(island, problem, h);
     activation = false;
-  } else if (activation && separates) {   // on straight paths what separates has not left
+  } else if (activation && separates) {  // on straight paths what separates has not left
     keep_together(contacts, problem);
     solution = solve(island, problem, h);
     activation = activates(contacts, solution);
@@ -288,16 +340,21 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   // the step's middle.
   std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation);
   const double turn = std::max(largest_turn(island, ends, h), turn_of_normals(island, ends));
-  if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + h * kContact.most_turn / turn;
+  if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step)
+    return moving_.time() + h * kContact.most_turn / turn;
   std::vector<RigidBodyState> middle;
   std::vector<StepContact> used = contacts;
-  const int rounds = turn <= kContact.even_turn ? 0 : is_curved(island) ? kContact.curved_rounds : 1;
+  const int rounds = turn <= kContact.even_turn ? 0
+                     : is_curved(island)        ? kContact.curved_rounds
+                                                : 1;
   for (int round = 0; round < rounds && !activation; ++round) {
     if (round > 0) ends = ends_of(island, problem, solution, h, activation, &ends);
     middle = moving_.states();
     used = contacts_midway(island, contacts, ends, middle);
     problem = problem_of(island, used, middle, h, &ends);
-    for (std::size_t i = 0; i < used.size(); ++i) problem.contacts[i].warm_start_world = solution.impulses_world[i];   // the same points, a little farther on
+    // the same points, a little farther on
+    for (std::size_t i = 0; i < used.size(); ++i)
+      problem.contacts[i].warm_start_world = solution.impulses_world[i];
     solution = solve(island, problem, h);
     activation = activates(used, solution);
     if (!activation || !separates) continue;
@@ -309,73 +366,94 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   }
   require_numbers(island, solution);
   // A pair that stops sliding ends the step there.
-  if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt) return stop;
+  if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt)
+    return stop;
   // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts
   // bring no energy in.
-  if (!set_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h, activation, middle.empty() ? nullptr : &ends)) {
+  if (!set_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h,
+                 activation, middle.empty() ? nullptr : &ends)) {
     if (!located && island.linked.empty()) return take_large_island_step(island, h);
     if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   }
-  if (located && h > kContact.shortest_step_for_energy * memory_.longest_step && gains_energy(island)) return moving_.time() + 0.5 * h;
+  if (located && h > kContact.shortest_step_for_energy * memory_.longest_step &&
+      gains_energy(island))
+    return moving_.time() + 0.5 * h;
   keep_warm_start(island, contacts, problem, solution, h);
   return std::nullopt;
 }
 
-void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t) {
-  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>& states,
+                                                     double t) {
+  const RunCounters before = counters_;  // what is looked at must not show in what a run counts
   const double left = (moving_.target() - t) / (moving_.target() - moving_.time());
   for (const ContactIsland& island : islands_) {
     // A path that leads straight to the step's end has the velocity of that end all along. Momenta
     // that change evenly show no energy that neither end has.
-    if (!island.linked.empty()) continue;   // momenta of these are on their rods and joints
+    if (!island.linked.empty()) continue;  // momenta of these are on their rods and joints
     for (const int body : island.bodies) {
       const RigidBodyState &start = moving_.state(body), &end = moving_.path_end(body);
       states[body].momentum_world = left * start.momentum_world + (1 - left) * end.momentum_world;
-      states[body].angular_momentum_world = left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
+      states[body].angular_momentum_world =
+          left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
     }
   }
   const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   bool any = true;
-  for (int round = 0; round < kContact.most_corrections && any; ++round) {   // one island's corrections may close another's gaps
+  // one island's corrections may close another's gaps
+  for (int round = 0; round < kContact.most_corrections && any; ++round) {
     any = false;
     for (const ContactIsland& island : islands_) {
       if (std::none_of(island.near.begin(), island.near.end(), closed)) continue;
       any = true;
       std::vector<double> gaps(island.near.size(), 0.0);
-      if (island.large || !correction_.correct_positions(island, island.near, states, t)) correction_.correct_large_island(island, island.near, states, t, gaps);
+      if (island.large || !correction_.correct_positions(island, island.near, states, t))
+        correction_.correct_large_island(island, island.near, states, t, gaps);
     }
   }
   counters_ = before;
 }
 
-void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
-  const RunCounters before = counters_;   // as above
+void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs,
+                                         std::vector<RigidBodyState>& states, double t) {
+  const RunCounters before = counters_;  // as above
   const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
-  for (int round = 0; round < kContact.most_corrections && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
+  for (int round = 0;
+       round < kContact.most_corrections && std::any_of(pairs.begin(), pairs.end(), closed);
+       ++round)
     for (const ContactIsland& island : islands(pairs)) {
       if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
       std::vector<double> gaps(island.pairs.size(), 0.0);
-      if (!correction_.correct_positions(island, island.pairs, states, t)) correction_.correct_large_island(island, island.pairs, states, t, gaps);
+      if (!correction_.correct_positions(island, island.pairs, states, t))
+        correction_.correct_large_island(island, island.pairs, states, t, gaps);
     }
   counters_ = before;
 }
 
 // A ball has been carried by another to where nothing presses them together: no force in the step,
 // and along the normal
-//   a_n = n . (g_a - g_b) + v_t^2 / R > 0,   R the distance of their centres, v_t their velocity along the surface.
+//   a_n = n . (g_a - g_b) + v_t^2 / R > 0,
+//       R the distance of their centres, v_t their velocity along the surface.
 bool PersistentContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
   if (!geometry_.are_balls(pair)) return false;
-  const auto pushes = [&](const ContactPoint& point) { return point.body_a == pair.first && point.body_b == pair.second; };
+  const auto pushes = [&](const ContactPoint& point) {
+    return point.body_a == pair.first && point.body_b == pair.second;
+  };
   if (std::any_of(forces_.begin(), forces_.end(), pushes)) return false;
-  Vector3d gravity = Vector3d::Zero(), velocity = Vector3d::Zero();   // of the first against the second
+  // of the first against the second
+  Vector3d gravity = Vector3d::Zero(), velocity = Vector3d::Zero();
   for (const auto& [body, sign] : {std::pair{pair.first, 1.0}, std::pair{pair.second, -1.0}}) {
     const WorldBody& b = moving_.world().bodies[body];
-    velocity += sign * (b.immovable() ? prescribed_velocity(b, moving_.time()) : Vector3d(b.inertia.inverse_mass * states[body].momentum_world));
-    if (!b.immovable() && moving_.world().gravity_world) gravity += sign * *moving_.world().gravity_world;
+    velocity +=
+        sign * (b.immovable() ? prescribed_velocity(b, moving_.time())
+                              : Vector3d(b.inertia.inverse_mass * states[body].momentum_world));
+    if (!b.immovable() && moving_.world().gravity_world)
+      gravity += sign * *moving_.world().gravity_world;
   }
-  const Vector3d between = states[pair.first].com_world - states[pair.second].com_world, n = between.normalized();
+  const Vector3d between = states[pair.first].com_world - states[pair.second].com_world,
+                 n = between.normalized();
   const double normal_speed = n.dot(velocity);
-  return normal_speed > 0 && n.dot(gravity) + (velocity - normal_speed * n).squaredNorm() / between.norm() > 0;
+  return normal_speed > 0 &&
+         n.dot(gravity) + (velocity - normal_speed * n).squaredNorm() / between.norm() > 0;
 }
 
 bool PersistentContacts::commit() {
@@ -387,7 +465,8 @@ bool PersistentContacts::commit() {
   for (const ContactIsland& island : islands_) {
     std::vector<double> gaps(island.near.size(), 0.0);
     if (island.large) {
-      apart = correction_.correct_large_island(island, island.near, states, moving_.time(), gaps) && apart;
+      apart = correction_.correct_large_island(island, island.near, states, moving_.time(), gaps) &&
+              apart;
     } else {
       correction_.correct_positions(island, island.near, states, moving_.time());
       apart = false;
@@ -397,9 +476,13 @@ bool PersistentContacts::commit() {
       const Pair& pair = island.near[k];
       if (!keeps(pair)) continue;
       const bool lasted = lasts(pair);
-      const bool stays_near = lasted && !flies_off(pair, states);   // what comes back need not begin anew
-      const double near = std::max(island.large ? 2 * geometry_.large_island_margin(pair) : open_distance(pair), stays_near ? restitution_threshold_ * memory_.longest_step : 0.0);
-      const bool is_near = (island.large ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
+      // what comes back need not begin anew
+      const bool stays_near = lasted && !flies_off(pair, states);
+      const double near =
+          std::max(island.large ? 2 * geometry_.large_island_margin(pair) : open_distance(pair),
+                   stays_near ? restitution_threshold_ * memory_.longest_step : 0.0);
+      const bool is_near =
+          (island.large ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
       if (is_near == lasted) continue;
       const collision::Gap gap = geometry_.gap_of(pair, states);
       if (is_near) {
@@ -407,7 +490,8 @@ bool PersistentContacts::commit() {
       } else {
         memory_.persistent.erase(pair);
         ++counters_.contacts_ended;
-        sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
+        sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world,
+                     gap.normal_b_to_a_world, 0.0, 0.0});
       }
     }
   }

@@ -38,10 +38,17 @@ namespace tumble::engines {
 
 class PersistentContacts {
  public:
-  using Pair = ContactGeometry::Pair;   // bodies, first < second
+  using Pair = ContactGeometry::Pair;  // bodies, first < second
 
-  PersistentContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules, double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
-      : moving_(moving), laws_(laws), rules_(rules), restitution_threshold_(restitution_threshold), counters_(counters), sink_(sink), geometry_(moving),
+  PersistentContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules,
+                     double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
+      : moving_(moving),
+        laws_(laws),
+        rules_(rules),
+        restitution_threshold_(restitution_threshold),
+        counters_(counters),
+        sink_(sink),
+        geometry_(moving),
         correction_(moving, geometry_, memory_, restitution_threshold, counters) {}
   PersistentContacts(const PersistentContacts&) = delete;
   PersistentContacts& operator=(const PersistentContacts&) = delete;
@@ -75,7 +82,8 @@ class PersistentContacts {
   void remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t);
   /// The same of any of these pairs that overlap in these states, whatever is in contact in the
   /// step under way; velocities stay.
-  void remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t);
+  void remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states,
+                       double t);
   const std::vector<ContactPoint>& forces() const { return forces_; }
   /// Farther apart than this the two are in contact no more. [m]
   double open_distance(Pair pair) const { return kContact.open_band * geometry_.margin(pair); }
@@ -92,16 +100,16 @@ class PersistentContacts {
   struct StepContact {
     Pair pair;
     collision::ManifoldPoint point;
-    double target;               // least normal velocity afterwards [m/s]
-    bool activates;                  // apart at the start of the step
-    Vector3d slip_target_world = Vector3d::Zero();   // [m/s], see PushingContact
-    double start_gap = 0.0;      // at the start of the step, wherever `point` is looked at [m]
+    double target;                                  // least normal velocity afterwards [m/s]
+    bool activates;                                 // apart at the start of the step
+    Vector3d slip_target_world = Vector3d::Zero();  // [m/s], see PushingContact
+    double start_gap = 0.0;  // at the start of the step, wherever `point` is looked at [m]
   };
   struct Activation {
-    std::size_t step_contact;           // which
-    double time, speed;          // since the step's start [s], with which it comes down [m/s]
-    double approach;             // at the step's start [m/s]
-    bool within;                 // the step
+    std::size_t step_contact;  // which
+    double time, speed;        // since the step's start [s], with which it comes down [m/s]
+    double approach;           // at the step's start [m/s]
+    bool within;               // the step
   };
   using StepContacts = std::vector<StepContact>;
 
@@ -122,37 +130,59 @@ class PersistentContacts {
   // ---- One island's step (persistent_contacts.cpp, contact_steps.cpp)
   std::optional<double> take_steps(double h);
   std::optional<double> take_step(const ContactIsland& island, double h);
-  ContactProblem problem_of(const ContactIsland& island, const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends = nullptr);
-  void warm_start(const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const;
+  ContactProblem problem_of(const ContactIsland& island, const StepContacts& contacts,
+                            const std::vector<RigidBodyState>& states, double h,
+                            const std::vector<RigidBodyState>* ends = nullptr);
+  void warm_start(const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h,
+                  double farthest, ContactProblem& problem) const;
   const std::vector<KnownImpulse>* known_impulses(Pair pair) const;
   ContactSolution solve(const ContactIsland& island, const ContactProblem& problem, double h);
-  void remember(const StepContacts& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const;
-  void keep_warm_start(const ContactIsland& island, const StepContacts& contacts, const ContactProblem& problem, const ContactSolution& solution, double h);
+  void remember(const StepContacts& contacts, const ContactProblem& problem,
+                const ContactSolution& solution, double h,
+                std::map<Pair, std::vector<KnownImpulse>>& store) const;
+  void keep_warm_start(const ContactIsland& island, const StepContacts& contacts,
+                       const ContactProblem& problem, const ContactSolution& solution, double h);
   void note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h);
   void require_numbers(const ContactIsland& island, const ContactSolution& solution) const;
-  std::optional<double> stop_of_sliding(const ContactProblem& problem, const StepContacts& contacts, const ContactSolution& solution, double h);
-  std::vector<RigidBodyState> ends_of(const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution, double h, bool activation,
+  std::optional<double> stop_of_sliding(const ContactProblem& problem, const StepContacts& contacts,
+                                        const ContactSolution& solution, double h);
+  std::vector<RigidBodyState> ends_of(const ContactIsland& island, const ContactProblem& problem,
+                                      const ContactSolution& solution, double h, bool activation,
                                       const std::vector<RigidBodyState>* at = nullptr) const;
-  double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends, double h) const;
-  double turn_of_normals(const ContactIsland& island, const std::vector<RigidBodyState>& ends) const;
-  StepContacts contacts_midway(const ContactIsland& island, const StepContacts& contacts, const std::vector<RigidBodyState>& ends, std::vector<RigidBodyState>& middle) const;
-  bool set_paths(const ContactIsland& island, const StepContacts& contacts, const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem, const ContactSolution& solution,
-                  double h, bool activation, const std::vector<RigidBodyState>* at);
+  double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends,
+                      double h) const;
+  double turn_of_normals(const ContactIsland& island,
+                         const std::vector<RigidBodyState>& ends) const;
+  StepContacts contacts_midway(const ContactIsland& island, const StepContacts& contacts,
+                               const std::vector<RigidBodyState>& ends,
+                               std::vector<RigidBodyState>& middle) const;
+  bool set_paths(const ContactIsland& island, const StepContacts& contacts,
+                 const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem,
+                 const ContactSolution& solution, double h, bool activation,
+                 const std::vector<RigidBodyState>* at);
   void set_straight_path(int body, const RigidBodyState& end);
   bool gains_energy(const ContactIsland& island);
 
   // ---- Points that come down within the step (contact_activation.cpp)
-  static Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
-  static double approach(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
-  static double slip_speed(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
+  static Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact,
+                                    const std::vector<Velocity>& velocities);
+  static double approach(const ContactProblem& problem, std::size_t contact,
+                         const std::vector<Velocity>& velocities);
+  static double slip_speed(const ContactProblem& problem, std::size_t contact,
+                           const std::vector<Velocity>& velocities);
   bool is_active(const StepContact& step_contact) const;
-  std::vector<Velocity> velocities_now(const ContactIsland& island, const StepContacts& contacts, const ContactProblem& problem) const;
-  bool allow_separation(const ContactIsland& island, StepContacts& contacts, ContactProblem& problem) const;
+  std::vector<Velocity> velocities_now(const ContactIsland& island, const StepContacts& contacts,
+                                       const ContactProblem& problem) const;
+  bool allow_separation(const ContactIsland& island, StepContacts& contacts,
+                        ContactProblem& problem) const;
   static void keep_together(StepContacts& contacts, ContactProblem& problem);
   static bool activates(const StepContacts& contacts, const ContactSolution& solution);
-  bool is_activated(const ContactIsland& island, const StepContacts& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) const;
-  std::vector<Activation> predict_activations(const ContactIsland& island, const StepContacts& contacts, double h);
-  std::optional<double> handle_activations(const ContactIsland& island, StepContacts& contacts, double h);
+  bool is_activated(const ContactIsland& island, const StepContacts& contacts,
+                    const ContactProblem& problem, const ContactSolution& solution, double h) const;
+  std::vector<Activation> predict_activations(const ContactIsland& island,
+                                              const StepContacts& contacts, double h);
+  std::optional<double> handle_activations(const ContactIsland& island, StepContacts& contacts,
+                                           double h);
   bool apply_impacts_of_active(const ContactIsland& island, const StepContacts& contacts);
   bool apply_impact(const ContactIsland& island, StepContacts down);
   static std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& contacts);
@@ -162,13 +192,14 @@ class PersistentContacts {
   bool becomes_large(const ContactIsland& island);
   void report_large_islands();
   std::vector<RigidBodyState> middle_of(const ContactIsland& island, double h) const;
-  StepContacts contacts_of_large_island(const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h);
+  StepContacts contacts_of_large_island(const ContactIsland& island,
+                                        const std::vector<RigidBodyState>& middle, double h);
   std::optional<double> take_large_island_step(const ContactIsland& island, double h);
 
   MovingWorld& moving_;
   const Laws& laws_;
   scene::ContactSpec rules_;
-  double restitution_threshold_;                            // [m/s]
+  double restitution_threshold_;  // [m/s]
   RunCounters& counters_;
   TrajectorySink& sink_;
   ContactMemory memory_;
@@ -177,11 +208,12 @@ class PersistentContacts {
   // Of the step that has begun:
   std::vector<ContactIsland> islands_;
   std::map<Pair, ContactManifold> points_;
-  std::vector<double> reaches_;                  // by body, where impacts are solved in steps: how fast it or what it meets is [m/s]
+  // by body, where impacts are solved in steps: how fast it or what it meets is [m/s]
+  std::vector<double> reaches_;
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
-  RunWatch unsolved_;                            // what it leaves unsolved, until it is committed
+  RunWatch unsolved_;  // what it leaves unsolved, until it is committed
 };
 
 }  // namespace tumble::engines

@@ -13,7 +13,7 @@ namespace {
 // A correction is no motion: where masses differ by more than a solver's digits bear, the lightest
 // count as heavier ones.
 void limit_ratios(ContactProblem& problem) {
-  double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
+  double least = std::numeric_limits<double>::infinity();  // inverse mass of what moves
   for (const PushedBody& body : problem.bodies)
     if (body.inverse_mass > 0) least = std::min(least, body.inverse_mass);
   for (PushedBody& body : problem.bodies) {
@@ -27,8 +27,11 @@ void limit_ratios(ContactProblem& problem) {
 }  // namespace
 
 // A contact of a correction: bodies of other islands stay where they are.
-void PositionCorrection::place_for_correction(const ContactIsland& island, Pair pair, const collision::ManifoldPoint& point, const std::vector<RigidBodyState>& states, double t, double margin,
-                                      std::map<int, int>& places, ContactProblem& problem, PushingContact& contact) {
+void PositionCorrection::place_for_correction(const ContactIsland& island, Pair pair,
+                                              const collision::ManifoldPoint& point,
+                                              const std::vector<RigidBodyState>& states, double t,
+                                              double margin, std::map<int, int>& places,
+                                              ContactProblem& problem, PushingContact& contact) {
   contact.body_a = place_body(moving_, pair.first, t, places, states, nullptr, problem);
   contact.body_b = place_body(moving_, pair.second, t, places, states, nullptr, problem);
   for (const int index : {contact.body_a, contact.body_b})
@@ -42,7 +45,8 @@ void PositionCorrection::place_for_correction(const ContactIsland& island, Pair 
 }
 
 // Momenta follow: the velocities stay. @return whether the body has moved
-bool PositionCorrection::apply_correction(int body, const Velocity& correction, std::vector<RigidBodyState>& states) const {
+bool PositionCorrection::apply_correction(int body, const Velocity& correction,
+                                          std::vector<RigidBodyState>& states) const {
   if (correction.linear_world.isZero(0.0) && correction.angular_world.isZero(0.0)) return false;
   RigidBodyState& state = states[body];
   const Inertia& inertia = moving_.world().bodies[body].inertia;
@@ -56,19 +60,31 @@ bool PositionCorrection::apply_correction(int body, const Velocity& correction, 
 // The island's contacts as they are in these places: what each has to move by. Points farther apart
 // than `reach` are no concern.
 // @return the farthest that any too near, or held too far, has to move; 0 where none is
-double PositionCorrection::add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active, double reach,
-                                   std::map<int, int>& places, ContactProblem& problem) {
+double PositionCorrection::add_corrections(const ContactIsland& island,
+                                           const std::vector<Pair>& pairs,
+                                           const std::vector<RigidBodyState>& states, double t,
+                                           const std::vector<ActiveContact>& active, double reach,
+                                           std::map<int, int>& places, ContactProblem& problem) {
   double wrong = 0.0;
   for (const Pair& pair : pairs) {
     const double margin = geometry_.margin(pair), size = geometry_.size_of(pair);
-    const bool has_active = std::any_of(active.begin(), active.end(), [&](const ActiveContact& h) { return h.pair == pair; });
-    const ContactManifold points = geometry_.points_at(pair, states, std::max({kContact.far_at_start * margin, reach, has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
+    const bool has_active = std::any_of(active.begin(), active.end(),
+                                        [&](const ActiveContact& h) { return h.pair == pair; });
+    const ContactManifold points = geometry_.points_at(
+        pair, states,
+        std::max(
+            {kContact.far_at_start * margin, reach,
+             has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
     std::vector<const collision::ManifoldPoint*> at_margin;
     for (const ActiveContact& h : active)
-      if (h.pair == pair) at_margin.push_back(geometry_.same_point(pair, h.point, *h.at, points, states, geometry_.same_within(pair)));
+      if (h.pair == pair)
+        at_margin.push_back(geometry_.same_point(pair, h.point, *h.at, points, states,
+                                                 geometry_.same_within(pair)));
     for (const collision::ManifoldPoint& point : points) {
-      const bool is_active = std::find(at_margin.begin(), at_margin.end(), &point) != at_margin.end();
-      if (point.gap < 0.5 * margin || (is_active && point.gap > 2 * margin)) wrong = std::max(wrong, std::abs(margin - point.gap));
+      const bool is_active =
+          std::find(at_margin.begin(), at_margin.end(), &point) != at_margin.end();
+      if (point.gap < 0.5 * margin || (is_active && point.gap > 2 * margin))
+        wrong = std::max(wrong, std::abs(margin - point.gap));
       PushingContact contact;
       place_for_correction(island, pair, point, states, t, margin, places, problem, contact);
       if (is_active) {
@@ -76,8 +92,10 @@ double PositionCorrection::add_corrections(const ContactIsland& island, const st
         row.body_a = contact.body_a;
         row.body_b = contact.body_b;
         const Vector3d& n = contact.normal_b_to_a_world;
-        row.row.jacobian_a << n, (contact.point_world - problem.bodies[contact.body_a].com_world).cross(n);
-        row.row.jacobian_b << -n, -(contact.point_world - problem.bodies[contact.body_b].com_world).cross(n);
+        row.row.jacobian_a << n,
+            (contact.point_world - problem.bodies[contact.body_a].com_world).cross(n);
+        row.row.jacobian_b << -n,
+            -(contact.point_world - problem.bodies[contact.body_b].com_world).cross(n);
         row.row.value = -contact.target;
         problem.rows.push_back(row);
       } else {
@@ -91,24 +109,35 @@ double PositionCorrection::add_corrections(const ContactIsland& island, const st
 // The correction, minimal in the kinetic metric, that leaves no gap of these pairs below its
 // margin, and no rod or joint open; active contacts come to lie at their margin.
 // @return whether it was found
-bool PositionCorrection::correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active) {
+bool PositionCorrection::correct_positions(const ContactIsland& island,
+                                           const std::vector<Pair>& pairs,
+                                           std::vector<RigidBodyState>& states, double t,
+                                           const std::vector<ActiveContact>& active) {
   for (int i = 0; i < moving_.size(); ++i)
-    if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+    if (moving_.world().bodies[i].immovable())
+      states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
   double reach = 0.0;
   for (int round = 0; round < kContact.most_corrections; ++round) {
     ContactProblem problem;
     std::map<int, int> places;
-    for (const int body : island.bodies) place_body(moving_, body, t, places, states, nullptr, problem);
+    for (const int body : island.bodies)
+      place_body(moving_, body, t, places, states, nullptr, problem);
     limit_ratios(problem);
-    const double wrong = add_corrections(island, pairs, states, t, round < kContact.most_corrections / 2 ? active : std::vector<ActiveContact>{}, reach, places, problem);
-    if (kContact.correction_reach * wrong > reach) {   // what a correction this long may bring together has to be in it
+    const double wrong = add_corrections(
+        island, pairs, states, t,
+        round < kContact.most_corrections / 2 ? active : std::vector<ActiveContact>{}, reach,
+        places, problem);
+    // what a correction this long may bring together has to be in it
+    if (kContact.correction_reach * wrong > reach) {
       reach = 2 * kContact.correction_reach * wrong;
       if (round == 0) continue;
     }
     add_island_rows(moving_, island, states, t, places, true, problem);
     double size = 0.0;
-    for (const int body : island.bodies) size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
-    const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > kSolverRounding * size;
+    for (const int body : island.bodies)
+      size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
+    const bool open = problem.row_targets.size() > 0 &&
+                      problem.row_targets.cwiseAbs().maxCoeff() > kSolverRounding * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
     // The solver measures its answers by the farthest point, which need not move at all. Active
@@ -116,30 +145,37 @@ bool PositionCorrection::correct_positions(const ContactIsland& island, const st
     double part = 1.0;
     if (problem.rows.empty()) {
       double largest = wrong;
-      for (const PushingContact& contact : problem.contacts) largest = std::max(largest, std::abs(contact.target));
+      for (const PushingContact& contact : problem.contacts)
+        largest = std::max(largest, std::abs(contact.target));
       part = wrong / largest;
     }
-    ContactOptions options;   // the next round takes the rest
+    ContactOptions options;  // the next round takes the rest
     options.tolerance = std::max(kSolverRounding, kContact.correction_missed * part);
     options.enough = std::max(kSolverRounding, kContactSolved * part);
     const ContactSolution correction = solve_contacts(problem, options);
     memory_.sweeps += static_cast<std::uint64_t>(correction.sweeps);
-    for (std::size_t k = 0; k < island.bodies.size(); ++k) apply_correction(island.bodies[k], correction.velocities[k], states);
+    for (std::size_t k = 0; k < island.bodies.size(); ++k)
+      apply_correction(island.bodies[k], correction.velocities[k], states);
   }
   return false;
 }
 
 // How far any point of a body goes by a correction, at most. [m]
 double PositionCorrection::way_of(int body, const Velocity& correction) const {
-  return correction.linear_world.norm() + correction.angular_world.norm() * moving_.shape(body).bounding_radius();
+  return correction.linear_world.norm() +
+         correction.angular_world.norm() * moving_.shape(body).bounding_radius();
 }
 
 // Shifts the island's bodies until no gap of these pairs is closed.
 // @param gaps  bounds from below, by pair; as good as needed afterwards
 // @return whether that was reached
-bool PositionCorrection::correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps) {
+bool PositionCorrection::correct_large_island(const ContactIsland& island,
+                                              const std::vector<Pair>& pairs,
+                                              std::vector<RigidBodyState>& states, double t,
+                                              std::vector<double>& gaps) {
   for (int i = 0; i < moving_.size(); ++i)
-    if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+    if (moving_.world().bodies[i].immovable())
+      states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
   std::vector<double> way(states.size(), 0.0);
   std::vector<KnownManifold> manifolds(pairs.size());
   for (int round = 0; round < kContact.most_corrections_in_large_island; ++round) {
@@ -151,33 +187,55 @@ bool PositionCorrection::correct_large_island(const ContactIsland& island, const
       gaps[k] -= moved;
       if (gaps[k] >= least) continue;
       gaps[k] = geometry_.least_gap_of(pairs[k], states);
-      if (gaps[k] < least) gaps[k] = geometry_.distance_of(pairs[k], states, std::max(kContact.measured * geometry_.large_island_margin(pairs[k]), restitution_threshold_ * memory_.longest_step));
-      if (gaps[k] < least) wrong = std::max(wrong, geometry_.large_island_margin(pairs[k]) - gaps[k]);
+      if (gaps[k] < least)
+        gaps[k] = geometry_.distance_of(
+            pairs[k], states,
+            std::max(kContact.measured * geometry_.large_island_margin(pairs[k]),
+                     restitution_threshold_ * memory_.longest_step));
+      if (gaps[k] < least)
+        wrong = std::max(wrong, geometry_.large_island_margin(pairs[k]) - gaps[k]);
     }
     if (wrong == 0.0) return true;
     ++counters_.nudges;
-    const ContactSolution correction = solve_contacts(corrections_of(island, pairs, states, t, gaps, wrong, way, manifolds), {.tolerance = kContact.correction_left_in_large_island, .largest_direct = 0, .most_sweeps_alone = kContact.sweeps_in_large_island});
+    const ContactSolution correction =
+        solve_contacts(corrections_of(island, pairs, states, t, gaps, wrong, way, manifolds),
+                       {.tolerance = kContact.correction_left_in_large_island,
+                        .largest_direct = 0,
+                        .most_sweeps_alone = kContact.sweeps_in_large_island});
     counters_.contact_sweeps += static_cast<std::uint64_t>(correction.sweeps);
     for (std::size_t k = 0; k < island.bodies.size(); ++k) {
       const int body = island.bodies[k];
-      way[body] = apply_correction(body, correction.velocities[k], states) ? way_of(body, correction.velocities[k]) : 0.0;
+      way[body] = apply_correction(body, correction.velocities[k], states)
+                      ? way_of(body, correction.velocities[k])
+                      : 0.0;
     }
   }
   return false;
 }
 
-ContactProblem PositionCorrection::corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong, const std::vector<double>& way, std::vector<KnownManifold>& manifolds) {
+ContactProblem PositionCorrection::corrections_of(const ContactIsland& island,
+                                                  const std::vector<Pair>& pairs,
+                                                  const std::vector<RigidBodyState>& states,
+                                                  double t, const std::vector<double>& gaps,
+                                                  double wrong, const std::vector<double>& way,
+                                                  std::vector<KnownManifold>& manifolds) {
   ContactProblem problem;
   std::map<int, int> places;
-  for (const int body : island.bodies) place_body(moving_, body, t, places, states, nullptr, problem);
+  for (const int body : island.bodies)
+    place_body(moving_, body, t, places, states, nullptr, problem);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const double reach = std::max(kContact.correction_reach_in_large_island * wrong, kContact.correction_moved_in_large_island * (way[pairs[k].first] + way[pairs[k].second]));
+    const double reach = std::max(
+        kContact.correction_reach_in_large_island * wrong,
+        kContact.correction_moved_in_large_island * (way[pairs[k].first] + way[pairs[k].second]));
     if (gaps[k] >= reach) continue;
-    if (!(manifolds[k].reach >= reach && manifolds[k].moved <= kContact.same_place * geometry_.large_island_margin(pairs[k]))) manifolds[k] = {geometry_.points_of_overlap(pairs[k], states, reach, gaps[k]), reach, 0.0};
+    if (!(manifolds[k].reach >= reach &&
+          manifolds[k].moved <= kContact.same_place * geometry_.large_island_margin(pairs[k])))
+      manifolds[k] = {geometry_.points_of_overlap(pairs[k], states, reach, gaps[k]), reach, 0.0};
     for (const collision::ManifoldPoint& point : manifolds[k].points) {
       if (point.gap > reach) continue;
       PushingContact contact;
-      place_for_correction(island, pairs[k], point, states, t, geometry_.large_island_margin(pairs[k]), places, problem, contact);
+      place_for_correction(island, pairs[k], point, states, t,
+                           geometry_.large_island_margin(pairs[k]), places, problem, contact);
       problem.contacts.push_back(contact);
     }
   }

@@ -19,7 +19,7 @@ namespace tumble::engines {
 struct ActiveContact {
   std::pair<int, int> pair;
   collision::ManifoldPoint point;
-  const std::vector<RigidBodyState>* at;   // where the bodies are when it is there
+  const std::vector<RigidBodyState>* at;  // where the bodies are when it is there
 };
 
 class PositionCorrection {
@@ -27,36 +27,54 @@ class PositionCorrection {
   using Pair = ContactGeometry::Pair;
 
   /// @param memory  counts the sweeps of the step
-  PositionCorrection(MovingWorld& moving, const ContactGeometry& geometry, ContactMemory& memory, double restitution_threshold, RunCounters& counters)
-      : moving_(moving), geometry_(geometry), memory_(memory), restitution_threshold_(restitution_threshold), counters_(counters) {}
+  PositionCorrection(MovingWorld& moving, const ContactGeometry& geometry, ContactMemory& memory,
+                     double restitution_threshold, RunCounters& counters)
+      : moving_(moving),
+        geometry_(geometry),
+        memory_(memory),
+        restitution_threshold_(restitution_threshold),
+        counters_(counters) {}
 
   /// Takes back the overlaps of these pairs, in places of the time `t`.
   /// @return whether none is left
-  bool correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active = {});
+  bool correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs,
+                         std::vector<RigidBodyState>& states, double t,
+                         const std::vector<ActiveContact>& active = {});
   /// The same for a large island, by a few sweeps a round.
   /// @param gaps  bounds from below, by pair; as good as needed afterwards [m]
-  bool correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
+  bool correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs,
+                            std::vector<RigidBodyState>& states, double t,
+                            std::vector<double>& gaps);
 
  private:
-  struct KnownManifold {           // a pair's points as they were when it was last asked for them
+  struct KnownManifold {  // a pair's points as they were when it was last asked for them
     ContactManifold points;
-    double reach = -1.0;           // all up to here [m]; negative: never asked
-    double moved = 0.0;            // by any point of the two since, at most [m]
+    double reach = -1.0;  // all up to here [m]; negative: never asked
+    double moved = 0.0;   // by any point of the two since, at most [m]
   };
 
-  void place_for_correction(const ContactIsland& island, Pair pair, const collision::ManifoldPoint& point, const std::vector<RigidBodyState>& states, double t, double margin, std::map<int, int>& places,
-                       ContactProblem& problem, PushingContact& contact);
-  bool apply_correction(int body, const Velocity& correction, std::vector<RigidBodyState>& states) const;
-  double add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active, double reach,
-                    std::map<int, int>& places, ContactProblem& problem);
+  void place_for_correction(const ContactIsland& island, Pair pair,
+                            const collision::ManifoldPoint& point,
+                            const std::vector<RigidBodyState>& states, double t, double margin,
+                            std::map<int, int>& places, ContactProblem& problem,
+                            PushingContact& contact);
+  bool apply_correction(int body, const Velocity& correction,
+                        std::vector<RigidBodyState>& states) const;
+  double add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs,
+                         const std::vector<RigidBodyState>& states, double t,
+                         const std::vector<ActiveContact>& active, double reach,
+                         std::map<int, int>& places, ContactProblem& problem);
   double way_of(int body, const Velocity& correction) const;
-  ContactProblem corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong,
-                           const std::vector<double>& way, std::vector<KnownManifold>& manifolds);
+  ContactProblem corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs,
+                                const std::vector<RigidBodyState>& states, double t,
+                                const std::vector<double>& gaps, double wrong,
+                                const std::vector<double>& way,
+                                std::vector<KnownManifold>& manifolds);
 
   MovingWorld& moving_;
   const ContactGeometry& geometry_;
   ContactMemory& memory_;
-  double restitution_threshold_;              // [m/s]
+  double restitution_threshold_;  // [m/s]
   RunCounters& counters_;
 };
 

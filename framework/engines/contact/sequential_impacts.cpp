@@ -16,12 +16,18 @@
 namespace tumble::engines {
 namespace {
 
-constexpr int kRoundsAmongContacts = 60;   // bodies in persistent contact pass an impact on in ever smaller parts
-constexpr std::size_t kMostEventsPerPair = 64;   // impulses at one instant: more are reported as one for each pair
+// bodies in persistent contact pass an impact on in ever smaller parts
+constexpr int kRoundsAmongContacts = 60;
+// impulses at one instant: more are reported as one for each pair
+constexpr std::size_t kMostEventsPerPair = 64;
 
-Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
+Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) {
+  return {point_world, pair.gap.normal_b_to_a_world};
+}
 
-TouchedRegion region_of(const TouchingPair& pair) { return {pair.gap.normal_b_to_a_world, pair.points_world}; }
+TouchedRegion region_of(const TouchingPair& pair) {
+  return {pair.gap.normal_b_to_a_world, pair.points_world};
+}
 
 // The impulses of each pair at one instant as one event: their sum, from the fastest approach on. A
 // large island passes an impact to and fro ten thousand times.
@@ -44,30 +50,41 @@ std::vector<Event> one_a_pair(const std::vector<Event>& events) {
   return sums;
 }
 
-double restitution_of(const World& world, const TouchingPair& pair) { return std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution); }
-double friction_of(const World& world, const TouchingPair& pair) { return !built::kFriction ? 0.0 : std::min(world.bodies[pair.a].friction, world.bodies[pair.b].friction); }
+double restitution_of(const World& world, const TouchingPair& pair) {
+  return std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution);
+}
+double friction_of(const World& world, const TouchingPair& pair) {
+  return !built::kFriction ? 0.0
+                           : std::min(world.bodies[pair.a].friction, world.bodies[pair.b].friction);
+}
 
 }  // namespace
 
 struct SequentialImpacts::Work {
-  ImpactBodies bodies;            // as they are between impulses
+  ImpactBodies bodies;  // as they are between impulses
   Resolution result;
-  std::map<const Vector3d*, ImpactBodies::Answer> answers;   // at points of pairs: places stay as they are
+  // at points of pairs: places stay as they are
+  std::map<const Vector3d*, ImpactBodies::Answer> answers;
 
   Work(MovingWorld& moving, const Laws& laws) : bodies(moving, laws) {}
   Body& body(int index) { return bodies.body(index); }
   const World& world() { return bodies.moving().world(); }
 
-  const ImpactBodies::Answer& answer(const TouchingPair& pair, const Vector3d& point, bool with_tangents) {
+  const ImpactBodies::Answer& answer(const TouchingPair& pair, const Vector3d& point,
+                                     bool with_tangents) {
     const auto [found, is_new] = answers.try_emplace(&point);
-    if (is_new || (with_tangents && found->second.directions.cols() == 1)) found->second = bodies.answer({pair.a, pair.b, point, pair.gap.normal_b_to_a_world}, with_tangents);
+    if (is_new || (with_tangents && found->second.directions.cols() == 1))
+      found->second =
+          bodies.answer({pair.a, pair.b, point, pair.gap.normal_b_to_a_world}, with_tangents);
     return found->second;
   }
 };
 
-bool SequentialImpacts::stays(const World& world, const TouchingPair& pair, double approach_speed) const {
+bool SequentialImpacts::stays(const World& world, const TouchingPair& pair,
+                              double approach_speed) const {
   const double restitution = restitution_of(world, pair);
-  return contact_threshold_ && laws_.ends_in_contact(approach_speed, restitution, *contact_threshold_);
+  return contact_threshold_ &&
+         laws_.ends_in_contact(approach_speed, restitution, *contact_threshold_);
 }
 
 double SequentialImpacts::friction_at_impact(const World& world, const TouchingPair& pair) const {
@@ -88,21 +105,27 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   }
   const Contact contact = contact_of(pair, *point);
   const TouchedPoint touched{pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world};
-  const double restitution = stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
+  const double restitution =
+      stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
   const double friction = friction_at_impact(work.world(), pair);
 
   // The law's impulse is that of the free bodies without friction: what holds them makes it
   // smaller, friction at the point both.
-  double impulse = laws_.collision_impulse(contact, a, b, restitution), by_law = work_of_impulse(impulse, approach, restitution);
+  double impulse = laws_.collision_impulse(contact, a, b, restitution),
+         by_law = work_of_impulse(impulse, approach, restitution);
   Vector3d impulse_world = impulse * contact.normal_b_to_a_world;
   static const ImpactBodies::Answer free_bodies;
   const ImpactBodies::Answer* answer = &free_bodies;
   if (is_held || friction > 0) {
     answer = &work.answer(pair, *point, friction > 0);
-    const double free = answer->free_along(contact.normal_b_to_a_world), held = answer->held_normal();
+    const double free = answer->free_along(contact.normal_b_to_a_world),
+                 held = answer->held_normal();
     if (!(held > kSolverResidue * free))
-      throw StoppedRun(fmt::format("they approach at {:.3g} m/s, and rods and joints hold both completely along the normal of the contact: no impulse can keep them apart. What drives them together (\"motion\") must leave them room",
-                                   -approach));
+      throw StoppedRun(
+          fmt::format("they approach at {:.3g} m/s, and rods and joints hold both completely along "
+                      "the normal of the contact: no impulse can keep them apart. What drives them "
+                      "together (\"motion\") must leave them room",
+                      -approach));
     impulse *= free / held;
     impulse_world = impulse * contact.normal_b_to_a_world;
     by_law = work_of_impulse(impulse, approach, restitution);
@@ -110,15 +133,19 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
       ++counters_.friction_points;
       const Vector3d velocity = relative_velocity(a, b, contact.point_world);
       const Matrix3d K = answer->held_world();
-      impulse_world = impulse_of({K, velocity, contact.normal_b_to_a_world, held * impulse, friction}).impulse_on_a_world;
+      impulse_world =
+          impulse_of({K, velocity, contact.normal_b_to_a_world, held * impulse, friction})
+              .impulse_on_a_world;
       impulse = impulse_world.dot(contact.normal_b_to_a_world);
       by_law = energy_of(impulse_world, velocity, K);
     }
   }
   const EnergyOfImpact energy = work.bodies.push(touched, *answer, impulse_world);
   ++counters_.impulses;
-  work.result.events.push_back({work.bodies.moving().time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, approach,
-                                normal_velocity(contact, a, b), energy.change, energy.excess(by_law)});
+  work.result.events.push_back({work.bodies.moving().time(), EventKind::kCollision, pair.a, pair.b,
+                                contact.point_world, contact.normal_b_to_a_world, impulse, approach,
+                                normal_velocity(contact, a, b), energy.change,
+                                energy.excess(by_law)});
   return true;
 }
 
@@ -128,7 +155,8 @@ double size_of_work(const ContactProblem& problem, const ContactSolution& soluti
   double size = 0.0;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i)
     for (const int body : {problem.contacts[i].body_a, problem.contacts[i].body_b})
-      size += solution.impulses_world[i].norm() * (problem.bodies[body].velocity_world.norm() + solution.velocities[body].linear_world.norm());
+      size += solution.impulses_world[i].norm() * (problem.bodies[body].velocity_world.norm() +
+                                                   solution.velocities[body].linear_world.norm());
   return size;
 }
 
@@ -142,7 +170,10 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
     return solve_contacts(asked);
   };
   ContactSolution whole = solve(problem);
-  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kSolverResidue * size_of_work(problem, solution); };
+  const auto gains = [&](const ContactSolution& solution) {
+    return work_of(problem, solution.impulses_world, before, solution.velocities) >
+           kSolverResidue * size_of_work(problem, solution);
+  };
   if (!gains(whole)) return whole;
   ContactProblem less = problem;
   for (PushingContact& contact : less.contacts) contact.friction = 0.0;
@@ -154,26 +185,43 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
   }
   // On the line between the two all laws but Coulomb's on the slip hold as they do at both ends,
   // and energy is a parabola.
-  const auto mixed = [](double share, const auto& from, const auto& to) { return (from + share * (to - from)).eval(); };
+  const auto mixed = [](double share, const auto& from, const auto& to) {
+    return (from + share * (to - from)).eval();
+  };
   ContactSolution difference = whole;
   std::vector<Velocity> change = whole.velocities;
-  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i) difference.impulses_world[i] -= base.impulses_world[i];
-  for (std::size_t i = 0; i < change.size(); ++i) change[i] = {change[i].linear_world - base.velocities[i].linear_world, change[i].angular_world - base.velocities[i].angular_world};
+  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i)
+    difference.impulses_world[i] -= base.impulses_world[i];
+  for (std::size_t i = 0; i < change.size(); ++i)
+    change[i] = {change[i].linear_world - base.velocities[i].linear_world,
+                 change[i].angular_world - base.velocities[i].angular_world};
   const std::vector<Velocity> none(change.size(), {Vector3d::Zero(), Vector3d::Zero()});
   const double bend = work_of(problem, difference.impulses_world, none, change);
-  const double slope = work_of(problem, difference.impulses_world, before, base.velocities) + work_of(problem, base.impulses_world, none, change);
-  const double share = share_without_gain(work_of(problem, base.impulses_world, before, base.velocities), slope, bend);
-  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i) whole.impulses_world[i] = mixed(share, base.impulses_world[i], whole.impulses_world[i]);
+  const double slope = work_of(problem, difference.impulses_world, before, base.velocities) +
+                       work_of(problem, base.impulses_world, none, change);
+  const double share = share_without_gain(
+      work_of(problem, base.impulses_world, before, base.velocities), slope, bend);
+  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i)
+    whole.impulses_world[i] = mixed(share, base.impulses_world[i], whole.impulses_world[i]);
   for (std::size_t i = 0; i < whole.velocities.size(); ++i)
-    whole.velocities[i] = {mixed(share, base.velocities[i].linear_world, whole.velocities[i].linear_world), mixed(share, base.velocities[i].angular_world, whole.velocities[i].angular_world)};
+    whole.velocities[i] = {
+        mixed(share, base.velocities[i].linear_world, whole.velocities[i].linear_world),
+        mixed(share, base.velocities[i].angular_world, whole.velocities[i].angular_world)};
   return whole;
 }
 
 // Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0
 // elsewhere, with friction, and with the rows of what is linked to them.
-void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds) {
-  const auto first_corner = [](const TouchingPair& pair) { return pair.points_world.size() > 1 ? 1u : 0u; };   // corners carry; the middle lies between them
-  const auto approach_at = [&](const TouchingPair& pair, std::size_t k) { return laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b)); };
+void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs,
+                                         double threshold, bool rebounds) {
+  // corners carry; the middle lies between them
+  const auto first_corner = [](const TouchingPair& pair) {
+    return pair.points_world.size() > 1 ? 1u : 0u;
+  };
+  const auto approach_at = [&](const TouchingPair& pair, std::size_t k) {
+    return laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a),
+                                          work.body(pair.b));
+  };
   const auto approaches = [&](const TouchingPair& pair) {
     for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k)
       if (approach_at(pair, k) < -threshold) return true;
@@ -193,8 +241,12 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     if (moving.resting(index)) moving.wake(index);
     const Body& body = work.body(index);
     const Matrix3d R = body.world_from_body.toRotationMatrix();
-    problem.bodies.push_back({body.inertia.inverse_mass, R * body.inertia.inverse_inertia_body * R.transpose(), body.com_world, body.velocity_world, body.omega_world});
-    if (const int group = work.bodies.held_group(index); group >= 0 && std::find(held_groups.begin(), held_groups.end(), group) == held_groups.end()) held_groups.push_back(group);
+    problem.bodies.push_back({body.inertia.inverse_mass,
+                              R * body.inertia.inverse_inertia_body * R.transpose(), body.com_world,
+                              body.velocity_world, body.omega_world});
+    if (const int group = work.bodies.held_group(index);
+        group >= 0 && std::find(held_groups.begin(), held_groups.end(), group) == held_groups.end())
+      held_groups.push_back(group);
     return found->second;
   };
   struct Met {
@@ -205,14 +257,20 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
   for (const TouchingPair& pair : pairs)
     for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k) {
       const double approach = approach_at(pair, k);
-      const double restitution = !rebounds || stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
-      problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k], pair.gap.normal_b_to_a_world, friction_of(work.world(), pair),
+      const double restitution = !rebounds || stays(work.world(), pair, -approach)
+                                     ? 0.0
+                                     : restitution_of(work.world(), pair);
+      problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k],
+                                  pair.gap.normal_b_to_a_world, friction_of(work.world(), pair),
                                   approach < 0 ? -restitution * approach : 0.0, Vector3d::Zero()});
       met.push_back({&pair, approach});
     }
   for (const int group : held_groups)
-    for (const int member : moving.linked_groups()[static_cast<std::size_t>(group)].bodies()) place(member);
-  for (const int group : held_groups) add_rows(moving.linked_groups()[static_cast<std::size_t>(group)], moving.states(), moving.time(), places, problem);
+    for (const int member : moving.linked_groups()[static_cast<std::size_t>(group)].bodies())
+      place(member);
+  for (const int group : held_groups)
+    add_rows(moving.linked_groups()[static_cast<std::size_t>(group)], moving.states(),
+             moving.time(), places, problem);
   keep_rates(problem);
 
   const std::vector<Velocity> before = velocities_of(problem);
@@ -227,7 +285,10 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     energy.add(body.inertia, body.world_from_body, before[at], solution.velocities[at], driven);
     work.bodies.set_velocity(index, solution.velocities[at]);
   }
-  const double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
+  // unsolved: never more is all that can be asked
+  const double excess = energy.excess(
+      solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities)
+                         : energy.change);
   bool is_first = true;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const TouchingPair& pair = *met[i].pair;
@@ -236,42 +297,54 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     ++counters_.impulses;
     const Contact contact = contact_of(pair, problem.contacts[i].point_world);
     // The energy of all, which the first stands for.
-    work.result.events.push_back({moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, met[i].approach,
-                                  normal_velocity(contact, work.body(pair.a), work.body(pair.b)), is_first ? energy.change : 0.0, is_first ? excess : 0.0});
+    work.result.events.push_back({moving.time(), EventKind::kCollision, pair.a, pair.b,
+                                  contact.point_world, contact.normal_b_to_a_world, impulse,
+                                  met[i].approach,
+                                  normal_velocity(contact, work.body(pair.a), work.body(pair.b)),
+                                  is_first ? energy.change : 0.0, is_first ? excess : 0.0});
     is_first = false;
   }
 }
 
 bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
-  const auto [rate, point] = fastest_approach(laws_, region_of(pair), work.body(pair.a), work.body(pair.b), rules_.restitution_threshold);
+  const auto [rate, point] = fastest_approach(laws_, region_of(pair), work.body(pair.a),
+                                              work.body(pair.b), rules_.restitution_threshold);
   if (rate >= kFastEnough * rules_.restitution_threshold) return false;
   const Vector3d& n = pair.gap.normal_b_to_a_world;
   const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
-  if (!(answer.held_normal() > kSolverResidue * answer.free_along(n))) return false;   // links hold both where they are
-  work.bodies.push({pair.a, pair.b, *point, n}, answer, (rules_.restitution_threshold - rate) / answer.held_normal() * n);
+  // links hold both where they are
+  if (!(answer.held_normal() > kSolverResidue * answer.free_along(n))) return false;
+  work.bodies.push({pair.a, pair.b, *point, n}, answer,
+                   (rules_.restitution_threshold - rate) / answer.held_normal() * n);
   ++counters_.micro_impacts;
   return true;
 }
 
-void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts) {
+void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching,
+                                   const std::vector<TouchingPair>& micro_impacts) {
   if (micro_impacts.empty()) return;
   Work work(moving, laws_);
   const auto had_micro_impact = [&](const TouchingPair& pair) {
-    return std::any_of(micro_impacts.begin(), micro_impacts.end(), [&](const TouchingPair& m) { return m.a == pair.a && m.b == pair.b; });
+    return std::any_of(micro_impacts.begin(), micro_impacts.end(),
+                       [&](const TouchingPair& m) { return m.a == pair.a && m.b == pair.b; });
   };
   bool again = true;
   for (int round = 0; again && round < kMostPushes; ++round) {
     again = false;
     for (const TouchingPair& pair : touching)
-      if (had_micro_impact(pair) || work.bodies.changed().contains(pair.a) || work.bodies.changed().contains(pair.b)) again = push_pair_apart(work, pair) || again;
+      if (had_micro_impact(pair) || work.bodies.changed().contains(pair.a) ||
+          work.bodies.changed().contains(pair.b))
+        again = push_pair_apart(work, pair) || again;
   }
   work.bodies.write_back();
 }
 
-Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger) {
+Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs,
+                                      std::size_t trigger) {
   Work work(moving, laws_);
   ApproachThreshold approach_threshold;
-  for (const TouchingPair& pair : pairs) approach_threshold.look(laws_, region_of(pair), work.body(pair.a), work.body(pair.b));
+  for (const TouchingPair& pair : pairs)
+    approach_threshold.look(laws_, region_of(pair), work.body(pair.a), work.body(pair.b));
   const double threshold = approach_threshold.value();
 
   bool again = law_ == scene::ImpactLaw::kSequential;
@@ -281,7 +354,9 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     again = false;
     for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
   }
-  if (again && contact_threshold_) {   // what is left of an impact that many bodies in contact pass to and fro is resolved at all at once
+  // what is left of an impact that many bodies in contact pass to and fro is resolved at all at
+  // once
+  if (again && contact_threshold_) {
     collide_together(work, pairs, threshold, false);
     again = false;
     work.result.events = one_a_pair(work.result.events);
@@ -292,7 +367,8 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
 
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const TouchingPair& pair = pairs[k];
-    const auto [last, first_time] = last_impacts_.try_emplace({pair.a, pair.b}, -std::numeric_limits<double>::infinity());
+    const auto [last, first_time] =
+        last_impacts_.try_emplace({pair.a, pair.b}, -std::numeric_limits<double>::infinity());
     double approach = 0.0;
     bool hit = false;
     for (const Event& event : work.result.events) {
@@ -302,7 +378,8 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     }
     if (!hit && k != trigger) continue;
     const bool in_vain = work.result.events.empty();
-    const bool soon_again = moving.time() - last->second < rules_.micro_interval && approach < rules_.restitution_threshold;
+    const bool soon_again = moving.time() - last->second < rules_.micro_interval &&
+                            approach < rules_.restitution_threshold;
     if (in_vain || soon_again) work.result.micro_impacts.push_back(pair);
     last->second = moving.time();
   }

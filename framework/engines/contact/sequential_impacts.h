@@ -28,26 +28,32 @@ namespace tumble::engines {
 
 /// Two bodies that touch at the committed time.
 struct TouchingPair {
-  int a, b;                           // a < b
+  int a, b;  // a < b
   collision::Gap gap;
-  std::vector<Vector3d> points_world; // the middle of where they touch, then its corners, if it is more than a point
+  // the middle of where they touch, then its corners, if it is more than a point
+  std::vector<Vector3d> points_world;
 };
 
 /// What one resolution did.
 struct Resolution {
-  std::vector<Event> events;    // one an impulse, in order; of an impact that bodies hand to and fro many times one a pair
-  bool settled = true;          // false: the rounds did not end
-  std::vector<TouchingPair> micro_impacts;   // pairs that meet again at once, or met without an impulse: see push_apart
+  // one an impulse, in order; of an impact that bodies hand to and fro many times one a pair
+  std::vector<Event> events;
+  bool settled = true;  // false: the rounds did not end
+  // pairs that meet again at once, or met without an impulse: see push_apart
+  std::vector<TouchingPair> micro_impacts;
 };
 
 struct ImpactRules {
-  double restitution_threshold;            // [m/s]
-  double micro_interval;        // a pair that meets again within this, slower than the restitution threshold, has a micro-impact [s]
+  double restitution_threshold;  // [m/s]
+  // a pair that meets again within this, slower than the restitution threshold, has a micro-impact
+  // [s]
+  double micro_interval;
 };
 
 class SequentialImpacts {
  public:
-  SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
+  SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters)
+      : laws_(laws), rules_(rules), counters_(counters) {}
 
   /// Impacts that would rebound more slowly than the restitution threshold (laws' ends_in_contact)
   /// do not rebound: they begin a persistent contact. Pairs with friction slide less after an
@@ -63,13 +69,16 @@ class SequentialImpacts {
   }
   /// When pairs met last: what a run that goes on from another time has to know. [s]
   const std::map<std::pair<int, int>, double>& last_impacts() const { return last_impacts_; }
-  void remember(std::map<std::pair<int, int>, double> last_impacts) { last_impacts_ = std::move(last_impacts); }
+  void remember(std::map<std::pair<int, int>, double> last_impacts) {
+    last_impacts_ = std::move(last_impacts);
+  }
   /// Whether an impact of the pair at this speed begins a persistent contact.
   bool stays(const World& world, const TouchingPair& pair, double approach_speed) const;
 
   /// @param pairs    sorted by (a, b)
   /// @param trigger  which of them stopped the step
-  Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger);
+  Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs,
+                     std::size_t trigger);
 
   /// Separates the pairs that had a micro-impact at the restitution threshold u, where they
   /// separate more slowly, and with them the touching pairs of bodies that this moves: else a stack
@@ -77,7 +86,8 @@ class SequentialImpacts {
   /// gravity or rotation presses together would meet infinitely often in no time. A body that rests
   /// on another therefore rises by up to u^2 / 2g; this separation impulse adds an energy of the
   /// order of m u^2, which the next impact removes where restitution is below 1.
-  void push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts);
+  void push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching,
+                  const std::vector<TouchingPair>& micro_impacts);
 
  private:
   struct Work;
@@ -85,13 +95,14 @@ class SequentialImpacts {
   bool collide(Work& work, const TouchingPair& pair, double threshold);
   double friction_at_impact(const World& world, const TouchingPair& pair) const;
   ContactSolution solve_without_gain(const ContactProblem& problem);
-  void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds);
+  void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold,
+                        bool rebounds);
 
   const Laws& laws_;
   ImpactRules rules_;
   RunCounters& counters_;
   std::map<std::pair<int, int>, double> last_impacts_;
-  std::optional<double> contact_threshold_;   // [m/s]
+  std::optional<double> contact_threshold_;  // [m/s]
   scene::ImpactLaw law_ = scene::ImpactLaw::kSequential;
 };
 

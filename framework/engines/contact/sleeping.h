@@ -34,7 +34,8 @@ class Sleepers {
   using Pair = PersistentContacts::Pair;
 
   /// @param modes  null where no contact has friction
-  Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes, double restitution_threshold, RunCounters& counters, TrajectorySink& sink);
+  Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes,
+           double restitution_threshold, RunCounters& counters, TrajectorySink& sink);
 
   /// After a step: puts the groups to sleep that have been still long enough.
   /// @param touching  pairs in contact in this step
@@ -55,18 +56,19 @@ class Sleepers {
 
  private:
   struct Place {
-    double since;                  // it was last seen to have left its place [s]
-    Vector3d com_world;            // then
+    double since;        // it was last seen to have left its place [s]
+    Vector3d com_world;  // then
     Quaterniond world_from_body;
   };
   struct Stillness {
     Place roughly, strictly;
   };
   struct Group {
-    std::vector<int> bodies;       // ascending
-    std::vector<int> linked;       // places in linked_groups()
+    std::vector<int> bodies;  // ascending
+    std::vector<int> linked;  // places in linked_groups()
     std::vector<ContactPoint> forces;
-    bool held = false, driven = false;   // by something that does not move; by something that moves by its own law
+    // by something that does not move; by something that moves by its own law
+    bool held = false, driven = false;
     bool slides = false;
   };
 
@@ -81,13 +83,14 @@ class Sleepers {
   MovingWorld& moving_;
   const PersistentContacts& contacts_;
   const ContactModes* modes_;
-  double restitution_threshold_;              // [m/s]
+  double restitution_threshold_;  // [m/s]
   RunCounters& counters_;
   TrajectorySink& sink_;
-  std::vector<Stillness> still_;   // by body
-  std::vector<std::map<int, effects::Memory>> held_;   // by linked group: what its control laws held when that last changed
-  std::map<int, Group> asleep_;    // by first body
-  std::vector<int> group_of_;      // by body: key in asleep_, -1
+  std::vector<Stillness> still_;  // by body
+  // by linked group: what its control laws held when that last changed
+  std::vector<std::map<int, effects::Memory>> held_;
+  std::map<int, Group> asleep_;  // by first body
+  std::vector<int> group_of_;    // by body: key in asleep_, -1
 };
 
 }  // namespace tumble::engines

@@ -11,14 +11,23 @@
 
 namespace tumble::engines {
 
-WorldStep::WorldStep(World world, const Laws& laws, StepRules rules, RunCounters& counters, TrajectorySink& sink, const std::vector<const collision::CollisionShape*>& shapes)
-    : laws_(laws), rules_(rules), counters_(counters), sink_(sink), moving_(std::move(world), laws, counters, shapes), impact_detection_(moving_, laws, counters),
+WorldStep::WorldStep(World world, const Laws& laws, StepRules rules, RunCounters& counters,
+                     TrajectorySink& sink,
+                     const std::vector<const collision::CollisionShape*>& shapes)
+    : laws_(laws),
+      rules_(rules),
+      counters_(counters),
+      sink_(sink),
+      moving_(std::move(world), laws, counters, shapes),
+      impact_detection_(moving_, laws, counters),
       impacts_(laws, {rules.restitution_threshold, kMicroInterval * rules.step}, counters) {
   if (built::kContact && moving_.world().contact) {
     impacts_.use_contact_rules(rules.restitution_threshold, moving_.world().contact->impact_law);
-    contacts_.emplace(moving_, laws, *moving_.world().contact, rules.restitution_threshold, counters, sink);
+    contacts_.emplace(moving_, laws, *moving_.world().contact, rules.restitution_threshold,
+                      counters, sink);
   }
-  searches_ = built::kCollision && impact_detection_.any() && (has_contacts() || rules.searches_without_contacts);
+  searches_ = built::kCollision && impact_detection_.any() &&
+              (has_contacts() || rules.searches_without_contacts);
 }
 
 // ---- A step -------------------------------------------------------------------------------------
@@ -39,7 +48,8 @@ WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
     return taken;
   }
   // The first impact among all others ends the step.
-  const std::optional<Earliest> earliest = searches_ ? impact_detection_.earliest(taken.searched) : std::nullopt;
+  const std::optional<Earliest> earliest =
+      searches_ ? impact_detection_.earliest(taken.searched) : std::nullopt;
   if (earliest) taken.impact = taken.searched[earliest->pair];
   if (earliest && stages.wake(*taken.impact)) return give_up();
   // The world goes there as a whole, and what is left of overlaps is removed.
@@ -55,7 +65,10 @@ WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
 // Pairs that may meet in the step under way, which is made shorter where bodies turn too far in it.
 std::vector<WorldStep::Pair> WorldStep::pairs_in_step() {
   std::vector<Pair> pairs = impact_detection_.candidates();
-  if (moving_.shorten_step(pairs, [&](const Pair& pair) { return has_contacts() && contacts_->deals_in_step(pair); })) pairs = impact_detection_.candidates();
+  if (moving_.shorten_step(pairs, [&](const Pair& pair) {
+        return has_contacts() && contacts_->deals_in_step(pair);
+      }))
+    pairs = impact_detection_.candidates();
   return pairs;
 }
 
@@ -68,7 +81,7 @@ bool WorldStep::keep_contacts(Taken& taken, StepStages& stages) {
     taken.searched = impact_detection_.candidates();
   }
   if (contacts_->empty()) return true;
-  taken.near = taken.searched = impact_detection_.candidates();   // the paths are others now
+  taken.near = taken.searched = impact_detection_.candidates();  // the paths are others now
   std::erase_if(taken.searched, [&](const Pair& pair) { return contacts_->keeps(pair); });
   return true;
 }
@@ -89,13 +102,17 @@ WorldStep::Taken WorldStep::give_up() {
 
 void WorldStep::require_numbers() const {
   for (int body = 0; body < moving_.size(); ++body)
-    if (!moving_.world().bodies[static_cast<std::size_t>(body)].immovable() && !pack(moving_.state(body)).allFinite())
-      throw StoppedRun(fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})", name(body), laws_.integrator_source, laws_.impulse_source));
+    if (!moving_.world().bodies[static_cast<std::size_t>(body)].immovable() &&
+        !pack(moving_.state(body)).allFinite())
+      throw StoppedRun(
+          fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})",
+                      name(body), laws_.integrator_source, laws_.impulse_source));
 }
 
 // ---- The response to an impact ------------------------------------------------------------------
 
-void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step, StepStages& stages) {
+void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step,
+                        StepStages& stages) {
   const StageTimer timer(counters_.impact_seconds);
   // All that touches at this instant takes part, awake.
   for (const int body : {trigger.first, trigger.second})
@@ -103,9 +120,11 @@ void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in
   const TouchingPairs touching = touching_pairs(pairs, trigger, is_in_step);
   for (const TouchingPair& pair : touching.all) stages.wake({pair.a, pair.b});
   // Impulses act until nothing approaches; within them, what rods and joints hold.
-  const Resolution resolution = naming(names(trigger), [&] { return impacts_.resolve(moving_, touching.all, touching.trigger); });
+  const Resolution resolution = naming(
+      names(trigger), [&] { return impacts_.resolve(moving_, touching.all, touching.trigger); });
   for (const Event& event : resolution.events) stages.impact(event);
-  if (!resolution.settled) throw StoppedRun(names(trigger) + ": " + left_approaching_message(laws_));
+  if (!resolution.settled)
+    throw StoppedRun(names(trigger) + ": " + left_approaching_message(laws_));
   // What was slow stays together: as a contact, or where the scene asks for none, at rest or a hop
   // apart.
   if (has_contacts()) return begin_slow_contacts(touching, resolution.events);
@@ -115,25 +134,33 @@ void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in
 
 // The trigger, the pairs that touch, and those in persistent contact: what rests on something
 // touches it.
-WorldStep::TouchingPairs WorldStep::touching_pairs(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step) const {
-  const auto is_in_contact = [&](Pair pair) { return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair)); };
+WorldStep::TouchingPairs WorldStep::touching_pairs(const std::vector<Pair>& pairs, Pair trigger,
+                                                   bool is_in_step) const {
+  const auto is_in_contact = [&](Pair pair) {
+    return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair));
+  };
   TouchingPairs touching;
   for (const Pair& pair : pairs) {
     const collision::Gap gap = impact_detection_.gap(pair);
-    if (pair != trigger && !is_in_contact(pair) && !(gap.distance <= impact_detection_.touching_distance(pair))) continue;
+    if (pair != trigger && !is_in_contact(pair) &&
+        !(gap.distance <= impact_detection_.touching_distance(pair)))
+      continue;
     if (pair == trigger) touching.trigger = touching.all.size();
-    touching.all.push_back({pair.first, pair.second, gap, impact_detection_.touching_points(pair, gap)});
+    touching.all.push_back(
+        {pair.first, pair.second, gap, impact_detection_.touching_points(pair, gap)});
   }
   return touching;
 }
 
 // A pair that touches and whose impacts, if any, were slow enough not to bounce begins a persistent
 // contact.
-void WorldStep::begin_slow_contacts(const TouchingPairs& touching, const std::vector<Event>& events) {
+void WorldStep::begin_slow_contacts(const TouchingPairs& touching,
+                                    const std::vector<Event>& events) {
   for (const TouchingPair& pair : touching.all) {
     bool slow = true;
     for (const Event& event : events)
-      if (event.body_a == pair.a && event.body_b == pair.b) slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
+      if (event.body_a == pair.a && event.body_b == pair.b)
+        slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
     if (slow) contacts_->begin({pair.a, pair.b}, pair.gap);
   }
 }
@@ -143,23 +170,33 @@ void WorldStep::bring_to_rest(const TouchingPairs& touching, const std::vector<E
   const World& world = moving_.world();
   if (!world.gravity_world || events.empty()) return;
   double fastest = 0.0;
-  for (const Event& event : events) fastest = std::max(fastest, std::abs(event.normal_velocity_before));
+  for (const Event& event : events)
+    fastest = std::max(fastest, std::abs(event.normal_velocity_before));
   for (const TouchingPair& pair : touching.all) {
     const bool a_is_support = world.bodies[pair.a].immovable();
     if (a_is_support == world.bodies[pair.b].immovable()) continue;
     const int support = a_is_support ? pair.a : pair.b, body = a_is_support ? pair.b : pair.a;
-    const Vector3d up = a_is_support ? Vector3d(-pair.gap.normal_b_to_a_world) : pair.gap.normal_b_to_a_world;
+    const Vector3d up =
+        a_is_support ? Vector3d(-pair.gap.normal_b_to_a_world) : pair.gap.normal_b_to_a_world;
     if (world.bodies[support].motion.angular_frequency_rad_s != 0.0) continue;
-    if (!moving_.shape(body).is_ball() || !moving_.is_left_alone(body) || moving_.linked_group(body) >= 0) continue;
-    const bool rests = comes_to_rest({*world.gravity_world, up, moving_.shape(body).bounding_radius(), impact_detection_.touching_distance({pair.a, pair.b}), world.bodies[body].inertia.inertia_body,
-                                      !moving_.state(body).angular_momentum_world.isZero(0.0), moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time()),
-                                      std::min(world.bodies[body].restitution, world.bodies[support].restitution), rules_.restitution_threshold, fastest});
+    if (!moving_.shape(body).is_ball() || !moving_.is_left_alone(body) ||
+        moving_.linked_group(body) >= 0)
+      continue;
+    const bool rests = comes_to_rest(
+        {*world.gravity_world, up, moving_.shape(body).bounding_radius(),
+         impact_detection_.touching_distance({pair.a, pair.b}),
+         world.bodies[body].inertia.inertia_body,
+         !moving_.state(body).angular_momentum_world.isZero(0.0),
+         moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time()),
+         std::min(world.bodies[body].restitution, world.bodies[support].restitution),
+         rules_.restitution_threshold, fastest});
     if (!rests) continue;
     RigidBodyState state = moving_.state(body);
     state.com_world -= pair.gap.distance * up;
     moving_.set_state(body, state);
     moving_.put_to_rest(body, support);
-    sink_.event({moving_.time(), EventKind::kRest, pair.a, pair.b, pair.gap.point_b_world, pair.gap.normal_b_to_a_world, 0.0, 0.0});
+    sink_.event({moving_.time(), EventKind::kRest, pair.a, pair.b, pair.gap.point_b_world,
+                 pair.gap.normal_b_to_a_world, 0.0, 0.0});
   }
 }
 

@@ -19,9 +19,10 @@ namespace tumble::engines {
 
 /// What a scene says about steps and impacts, and an engine about where it looks for them.
 struct StepRules {
-  double step;                          // [s]
-  double restitution_threshold;                    // restitution threshold [m/s]
-  bool searches_without_contacts = true;   // false: where a scene asks for no contacts, impacts are found elsewhere
+  double step;                   // [s]
+  double restitution_threshold;  // restitution threshold [m/s]
+  // false: where a scene asks for no contacts, impacts are found elsewhere
+  bool searches_without_contacts = true;
 };
 
 /// What an engine adds to a step.
@@ -46,11 +47,12 @@ class StepStages {
 
 class WorldStep {
  public:
-  using Pair = ImpactDetection::Pair;   // bodies, first < second
+  using Pair = ImpactDetection::Pair;  // bodies, first < second
 
   /// @param sink    gets the events of contacts, and of balls that come to rest
   /// @param shapes  by body, prepared before; empty: made from the world
-  WorldStep(World world, const Laws& laws, StepRules rules, RunCounters& counters, TrajectorySink& sink, const std::vector<const collision::CollisionShape*>& shapes = {});
+  WorldStep(World world, const Laws& laws, StepRules rules, RunCounters& counters,
+            TrajectorySink& sink, const std::vector<const collision::CollisionShape*>& shapes = {});
   WorldStep(const WorldStep&) = delete;
   WorldStep& operator=(const WorldStep&) = delete;
 
@@ -58,13 +60,14 @@ class WorldStep {
   struct Taken {
     enum class How {
       kCommitted,
-      kGivenUp,          // a sleeper is awake now: it is to be begun again
-      kEndedAtStart,     // StepStages::begin_again has said so
+      kGivenUp,       // a sleeper is awake now: it is to be begun again
+      kEndedAtStart,  // StepStages::begin_again has said so
     };
     How how = How::kCommitted;
-    std::vector<Pair> searched;    // pairs that were searched for their first impact
-    std::vector<Pair> near;        // all that may meet on the paths that contacts have given; empty where nothing is in contact
-    std::optional<Pair> impact;    // which ends the step; respond() is what follows
+    std::vector<Pair> searched;  // pairs that were searched for their first impact
+    // all that may meet on the paths that contacts have given; empty where nothing is in contact
+    std::vector<Pair> near;
+    std::optional<Pair> impact;  // which ends the step; respond() is what follows
     /// Pairs that may take part in that impact.
     const std::vector<Pair>& around() const { return near.empty() ? searched : near; }
   };
@@ -82,8 +85,12 @@ class WorldStep {
   void respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step, StepStages& stages);
 
   void require_numbers() const;
-  std::string name(int body) const { return "'" + moving_.world().bodies[static_cast<std::size_t>(body)].name + "'"; }
-  std::string names(Pair pair) const { return "bodies " + name(pair.first) + " and " + name(pair.second); }
+  std::string name(int body) const {
+    return "'" + moving_.world().bodies[static_cast<std::size_t>(body)].name + "'";
+  }
+  std::string names(Pair pair) const {
+    return "bodies " + name(pair.first) + " and " + name(pair.second);
+  }
 
   MovingWorld& moving() { return moving_; }
   const MovingWorld& moving() const { return moving_; }
@@ -97,8 +104,8 @@ class WorldStep {
 
  private:
   struct TouchingPairs {
-    std::vector<TouchingPair> all;   // sorted by (a, b)
-    std::size_t trigger = 0;         // which of them stopped the step
+    std::vector<TouchingPair> all;  // sorted by (a, b)
+    std::size_t trigger = 0;        // which of them stopped the step
   };
 
   std::vector<Pair> pairs_in_step();
@@ -117,8 +124,8 @@ class WorldStep {
   MovingWorld moving_;
   ImpactDetection impact_detection_;
   SequentialImpacts impacts_;
-  std::optional<PersistentContacts> contacts_;   // where the scene asks for them
-  bool searches_;                             // whether impacts are looked for here
+  std::optional<PersistentContacts> contacts_;  // where the scene asks for them
+  bool searches_;                               // whether impacts are looked for here
 };
 
 }  // namespace tumble::engines

@@ -13,10 +13,12 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kLeast = 1e-6;       // s: of any run
-constexpr double kFrames = 12.0;      // of a run: a frame brings every process to its time, so few of them leave the scheduler undisturbed
-constexpr double kCoarsestWork = 8.0;     // of the scene's own step
-constexpr int kSteps = 7;             // halvings
+constexpr double kLeast = 1e-6;  // s: of any run
+// of a run: a frame brings every process to its time, so few of them leave the scheduler
+// undisturbed
+constexpr double kFrames = 12.0;
+constexpr double kCoarsestWork = 8.0;  // of the scene's own step
+constexpr int kSteps = 7;              // halvings
 
 RunOptions options_of(const SchedulerRunOptions& trial, const scene::Scene& scene) {
   RunOptions options;
@@ -31,10 +33,13 @@ RunOptions options_of(const SchedulerRunOptions& trial, const scene::Scene& scen
 /// Stops a run that would never end: at a decision of the scheduler.
 void stop_when_too_long(double most_s, Laws& laws) {
   if (!laws.scheduling || !std::isfinite(most_s)) return;
-  laws.scheduling.on_collision_check = [inner = laws.scheduling.on_collision_check, until = cpu_seconds() + most_s, most_s](const ScheduledEvent& event, const CheckFinding& finding, double step) {
-    if (cpu_seconds() > until) throw OutOfTime(fmt::format("it takes more than {:.0f} s", most_s));
-    return inner(event, finding, step);
-  };
+  laws.scheduling.on_collision_check =
+      [inner = laws.scheduling.on_collision_check, until = cpu_seconds() + most_s, most_s](
+          const ScheduledEvent& event, const CheckFinding& finding, double step) {
+        if (cpu_seconds() > until)
+          throw OutOfTime(fmt::format("it takes more than {:.0f} s", most_s));
+        return inner(event, finding, step);
+      };
 }
 
 /// A run and its CPU time.
@@ -83,14 +88,20 @@ Clocked ordered_run(const scene::Scene& scene, const Laws& laws, const Scheduler
 
 }  // namespace
 
-std::size_t events_due(const scene::Scene& scene, const Laws& laws, const SchedulerRunOptions& trial) { return ordered_run(scene, laws, trial).recorder.trajectory().events.size(); }
+std::size_t events_due(const scene::Scene& scene, const Laws& laws,
+                       const SchedulerRunOptions& trial) {
+  return ordered_run(scene, laws, trial).recorder.trajectory().events.size();
+}
 
-SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const SchedulerRunOptions& trial, std::size_t due) {
+SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws,
+                           const SchedulerRunOptions& trial, std::size_t due) {
   SchedulerRun run;
   run.n = trial.n;
   run.step_s = std::isnan(trial.step_s) ? scene.step_s : trial.step_s;
   run.due = due;
-  run.processes = static_cast<std::size_t>(std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return !body.immovable; }));
+  run.processes = static_cast<std::size_t>(
+      std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                    [](const scene::BodySpec& body) { return !body.immovable; }));
   const double begun = cpu_seconds();
   double reference_s = std::numeric_limits<double>::infinity();
   Laws watched = laws;
@@ -109,7 +120,8 @@ SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const Sc
     if (!run.stopped_by.empty()) break;
     if (laws.scheduling) reference_s = std::min(reference_s, ordered_run(scene, laws, trial).cpu_s);
   }
-  if (std::isfinite(reference_s)) run.cpu_s = std::max(kLeast, run.cpu_s - reference_s);   // the run contains one of the reference, for the comparison
+  // the run contains one of the reference, for the comparison
+  if (std::isfinite(reference_s)) run.cpu_s = std::max(kLeast, run.cpu_s - reference_s);
   return run;
 }
 

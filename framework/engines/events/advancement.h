@@ -22,6 +22,7 @@ namespace tumble::engines {
 
 /// @pre `laws` has every law that the scene needs (run_scene checks)
 /// @throws UserError where the scene has an effect that flights do not model
-void run_advancement(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
+void run_advancement(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                     TrajectorySink& sink);
 
 }  // namespace tumble::engines

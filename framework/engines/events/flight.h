@@ -11,11 +11,17 @@ namespace tumble::engines {
 
 /// Kinds of events, in the order in which events of one instant and one microstep are committed.
 enum class StampKind : std::uint8_t {
-  kRecheck = 0,    // a process continues after a rollback, before any other event of the instant, because it may find the earliest one; never committed
-  kCallback = 1,     // a callback changes bodies; body_a is the first of them, body_b -1, the microstep its index in the list
+  // a process continues after a rollback, before any other event of the instant, because it may
+  // find the earliest one; never committed
+  kRecheck = 0,
+  // a callback changes bodies; body_a is the first of them, body_b -1, the microstep its index in
+  // the list
+  kCallback = 1,
   kCollision = 2,
-  kProcess = 3,      // internal event of a process: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
-  kAdvance = 255     // forward execution of a process; never committed
+  // internal event of a process: an impact within it, a contact that begins or opens; body_a is its
+  // first body, body_b -1
+  kProcess = 3,
+  kAdvance = 255  // forward execution of a process; never committed
 };
 
 /// The total order of committed events: time, microstep, kind, bodies. Two events of a run never
@@ -28,14 +34,18 @@ enum class StampKind : std::uint8_t {
 ///
 /// `Stamp` (dynamics/scheduling.h) is the part of it that the schedulers of assignment a4 see.
 struct EventStamp {
-  double time;                  // [s]
+  double time;  // [s]
   std::uint32_t microstep;
   StampKind kind;
   std::int32_t body_a, body_b;  // body_a < body_b for two bodies
 
-  std::tuple<double, std::uint32_t, StampKind, std::int32_t, std::int32_t> as_tuple() const { return {time, microstep, kind, body_a, body_b}; }
+  std::tuple<double, std::uint32_t, StampKind, std::int32_t, std::int32_t> as_tuple() const {
+    return {time, microstep, kind, body_a, body_b};
+  }
 };
-inline bool operator==(const EventStamp& x, const EventStamp& y) { return x.as_tuple() == y.as_tuple(); }
+inline bool operator==(const EventStamp& x, const EventStamp& y) {
+  return x.as_tuple() == y.as_tuple();
+}
 inline bool operator<(const EventStamp& x, const EventStamp& y) {
   // Times are different in nearly all comparisons.
   if (x.time != y.time) return x.time < y.time;
@@ -49,18 +59,24 @@ inline bool operator<(const EventStamp& x, const EventStamp& y) {
 /// contact) share an island segment (island_segments.h), which gives their motion; their flights
 /// name it, and begin and end together.
 struct Flight {
-  double begin = 0.0;                                   // [s]
-  Vector3d com_world = Vector3d::Zero();                // at `begin` [m]
-  Vector3d velocity_world = Vector3d::Zero();           // at `begin` [m/s]
-  Quaterniond world_from_body = Quaterniond::Identity();   // at `begin`
-  Vector3d omega_body = Vector3d::Zero();               // at `begin` [rad/s]
-  std::int32_t partner = -1;                            // the body that it hit at `begin`; -1: the run's start
-  std::uint32_t partner_version = 0;                     // version of the partner's flight that began with the same event
-  std::uint32_t microstep = 0;                         // of that event
-  std::uint32_t version = 0;                             // version number: no two flights of a body in a run have the same
-  std::int32_t segment = -1;                            // index of the island segment of the body's process; -1: the body flies freely
-  std::int32_t change = -1;                             // used by the scheduler only: its record of the event that began the flight
-  bool is_resting = false;                              // on an immovable support: the position is constant
+  double begin = 0.0;                                     // [s]
+  Vector3d com_world = Vector3d::Zero();                  // at `begin` [m]
+  Vector3d velocity_world = Vector3d::Zero();             // at `begin` [m/s]
+  Quaterniond world_from_body = Quaterniond::Identity();  // at `begin`
+  Vector3d omega_body = Vector3d::Zero();                 // at `begin` [rad/s]
+  // the body that it hit at `begin`; -1: the run's start
+  std::int32_t partner = -1;
+  // version of the partner's flight that began with the same event
+  std::uint32_t partner_version = 0;
+  std::uint32_t microstep = 0;  // of that event
+  // version number: no two flights of a body in a run have the same
+  std::uint32_t version = 0;
+  // index of the island segment of the body's process; -1: the body flies freely
+  std::int32_t segment = -1;
+  // used by the scheduler only: its record of the event that began the flight
+  std::int32_t change = -1;
+  // on an immovable support: the position is constant
+  bool is_resting = false;
 };
 
 /// A flight that begins with an event.

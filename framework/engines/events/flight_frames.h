@@ -13,6 +13,7 @@ namespace tumble::engines {
 using FlightOf = std::function<const Flight&(int body)>;
 
 /// @param states  by body, at that time
-Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, std::vector<RigidBodyState>& states);
+Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of,
+               std::vector<RigidBodyState>& states);
 
 }  // namespace tumble::engines

@@ -36,7 +36,8 @@ EventStamp key_of_impact(int a, const Flight& f, int b, const Flight& g, double 
 }
 
 std::int64_t FlightImpactDetection::window_of(double t) const {
-  std::int64_t k = static_cast<std::int64_t>(std::floor(t / window_));   // the division rounds; windows begin at k * window_
+  // the division rounds; windows begin at k * window_
+  std::int64_t k = static_cast<std::int64_t>(std::floor(t / window_));
   while (window_begin(k + 1) <= t) ++k;
   while (window_begin(k) > t) --k;
   return k;
@@ -49,13 +50,17 @@ bool FlightImpactDetection::has_closed_form(int a, const Flight& f, int b, const
     return world_.is_ball(other) && world_.is_still(plane);
   }
   if (!world_.is_ball(a) || !world_.is_ball(b)) return false;
-  if (!(world_.can_move(a) || world_.is_still(a)) || !(world_.can_move(b) || world_.is_still(b))) return false;
+  if (!(world_.can_move(a) || world_.is_still(a)) || !(world_.can_move(b) || world_.is_still(b)))
+    return false;
   return falls(a, f) == falls(b, g) || world_.gravity_world().isZero(0.0);
 }
 
-double FlightImpactDetection::first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
+double FlightImpactDetection::first_impact(int a, const Flight& f, int b, const Flight& g,
+                                           double from, double to, CheckCost& cost) const {
   // A resting ball never collides with its support.
-  if ((f.is_resting && (g.is_resting || !world_.can_move(b))) || (g.is_resting && !world_.can_move(a))) return kInfinity;
+  if ((f.is_resting && (g.is_resting || !world_.can_move(b))) ||
+      (g.is_resting && !world_.can_move(a)))
+    return kInfinity;
   if (world_.is_internal(a, f, b, g)) return kInfinity;
   if (!has_closed_form(a, f, b, g)) return in_windows(a, f, b, g, from, to, cost);
   ++cost.pair_checks;
@@ -78,46 +83,63 @@ double FlightImpactDetection::of_balls(int a, const Flight& f, int b, const Flig
   if (!(discriminant >= 0)) return kInfinity;
   const double time = begin + excess / (-approach + std::sqrt(discriminant));
   if (!(time < kInfinity)) return kInfinity;
-  return last_instant_apart(begin, time, [&](double t) { return (world_.position(a, f, t) - world_.position(b, g, t)).norm() - reach; });
+  return last_instant_apart(begin, time, [&](double t) {
+    return (world_.position(a, f, t) - world_.position(b, g, t)).norm() - reach;
+  });
 }
 
 // h + c tau + q tau^2 = 0 with the height h over the plane, its rate c, and half the gravity along
 // the normal q.
-double FlightImpactDetection::of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const {
+double FlightImpactDetection::of_ball_and_plane(int ball, const Flight& f,
+                                                const Flight& plane) const {
   if (f.is_resting) return kInfinity;
   const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
-  const auto height = [&](double t) { return normal.dot(world_.position(ball, f, t) - plane.com_world) - world_.radius(ball); };
-  const double h = height(f.begin), c = normal.dot(f.velocity_world), q = 0.5 * normal.dot(world_.gravity_world());
+  const auto height = [&](double t) {
+    return normal.dot(world_.position(ball, f, t) - plane.com_world) - world_.radius(ball);
+  };
+  const double h = height(f.begin), c = normal.dot(f.velocity_world),
+               q = 0.5 * normal.dot(world_.gravity_world());
   if (h <= 0 && c < 0) return f.begin;
   if (h <= 0 && c == 0 && q < 0) return f.begin;
   double after;
   if (q == 0) after = c < 0 ? h / -c : kInfinity;
-  else if (h <= 0) after = q < 0 && c > 0 ? c / -q : kInfinity;   // it separates from the plane right now
-  else after = collision::first_root_of_quadratic(h, c, q);
+  // it separates from the plane right now
+  else if (h <= 0)
+    after = q < 0 && c > 0 ? c / -q : kInfinity;
+  else
+    after = collision::first_root_of_quadratic(h, c, q);
   if (!(f.begin + after < kInfinity)) return kInfinity;
   return last_instant_apart(f.begin, f.begin + after, height);
 }
 
 // The relative path deviates from its chord by at most |a| s^2 / 8.
-bool FlightImpactDetection::may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
+bool FlightImpactDetection::may_meet(int a, const Flight& f, int b, const Flight& g, double low,
+                                     double high) const {
   const auto driven = [&](int body) { return !world_.can_move(body) && !world_.is_still(body); };
   if (driven(a) || driven(b)) return true;
   if (f.segment >= 0 || g.segment >= 0) return may_meet_on_segment(a, f, b, g, low, high);
-  const double s = high - low, bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8;
+  const double s = high - low,
+               bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8;
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
     const bool a_is_plane = world_.is_half_space(a);
     const int body = a_is_plane ? b : a;
     const Flight &flight = a_is_plane ? g : f, &plane = a_is_plane ? f : g;
     const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
-    const auto height = [&](double t) { return normal.dot(world_.position(body, flight, t) - plane.com_world); };
+    const auto height = [&](double t) {
+      return normal.dot(world_.position(body, flight, t) - plane.com_world);
+    };
     return std::min(height(low), height(high)) - bulge <= world_.radius(body) * (1 + kNegligible);
   }
-  const Vector3d from = world_.position(a, f, low) - world_.position(b, g, low), way = world_.position(a, f, high) - world_.position(b, g, high) - from;
-  const double length = way.squaredNorm(), part = length > 0 ? std::clamp(-from.dot(way) / length, 0.0, 1.0) : 0.0;
-  return (from + part * way).norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kNegligible) + bulge;
+  const Vector3d from = world_.position(a, f, low) - world_.position(b, g, low),
+                 way = world_.position(a, f, high) - world_.position(b, g, high) - from;
+  const double length = way.squaredNorm(),
+               part = length > 0 ? std::clamp(-from.dot(way) / length, 0.0, 1.0) : 0.0;
+  return (from + part * way).norm() <=
+         (world_.radius(a) + world_.radius(b)) * (1 + kNegligible) + bulge;
 }
 
-bool FlightImpactDetection::may_meet_on_segment(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
+bool FlightImpactDetection::may_meet_on_segment(int a, const Flight& f, int b, const Flight& g,
+                                                double low, double high) const {
   struct Corners {
     Vector3d low = Vector3d::Constant(kInfinity), high = Vector3d::Constant(-kInfinity);
   };
@@ -131,29 +153,39 @@ bool FlightImpactDetection::may_meet_on_segment(int a, const Flight& f, int b, c
     const int body = a_is_plane ? b : a;
     const Corners box = a_is_plane ? way(b, g) : way(a, f);
     const Flight& plane = a_is_plane ? f : g;
-    const Vector3d normal = plane.world_from_body * Vector3d::UnitZ(), middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
-    return normal.dot(middle - plane.com_world) - normal.cwiseAbs().dot(half) <= world_.radius(body) * (1 + kNegligible);
+    const Vector3d normal = plane.world_from_body * Vector3d::UnitZ(),
+                   middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
+    return normal.dot(middle - plane.com_world) - normal.cwiseAbs().dot(half) <=
+           world_.radius(body) * (1 + kNegligible);
   }
   const Corners of_a = way(a, f), of_b = way(b, g);
-  const Vector3d apart = (of_a.low - of_b.high).cwiseMax(of_b.low - of_a.high).cwiseMax(Vector3d::Zero());
+  const Vector3d apart =
+      (of_a.low - of_b.high).cwiseMax(of_b.low - of_a.high).cwiseMax(Vector3d::Zero());
   return apart.norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kNegligible);
 }
 
-void FlightImpactDetection::require_searchable(int body, const Flight& flight, double duration) const {
+void FlightImpactDetection::require_searchable(int body, const Flight& flight,
+                                               double duration) const {
   if (flight.segment >= 0 || world_.is_ball(body)) return;
   const double turn = flight.omega_body.norm() * duration;
   if (!(turn > kMostTurning)) return;
-  throw StoppedRun(fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, too far to find its collisions: make the step (\"step_s\") shorter or the body slower", world_.world().bodies[static_cast<std::size_t>(body)].name, turn, duration));
+  throw StoppedRun(
+      fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, too far to find its collisions: "
+                  "make the step (\"step_s\") shorter or the body slower",
+                  world_.world().bodies[static_cast<std::size_t>(body)].name, turn, duration));
 }
 
 // The limits of windows are fixed; within a window, each smooth part of the motion is searched at
 // once. So the result depends on the two flights alone.
-double FlightImpactDetection::in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
-  if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order of the bodies, so that the result has one rounding
+double FlightImpactDetection::in_windows(int a, const Flight& f, int b, const Flight& g,
+                                         double from, double to, CheckCost& cost) const {
+  // one order of the bodies, so that the result has one rounding
+  if (a > b) return in_windows(b, g, a, f, from, to, cost);
   const double begin = std::max(f.begin, g.begin);
   const bool of_pieces = f.segment >= 0 || g.segment >= 0;
   // A pair that stays apart in all requested windows is not searched in each of them.
-  if (const std::int64_t first = window_of(std::max(from, begin)); !of_pieces && window_begin(first + 1) < to && to < kInfinity) {
+  if (const std::int64_t first = window_of(std::max(from, begin));
+      !of_pieces && window_begin(first + 1) < to && to < kInfinity) {
     const std::int64_t last = window_of(to);
     if (!may_meet(a, f, b, g, std::max(begin, window_begin(first)), window_begin(last + 1))) {
       ++cost.pair_checks;
@@ -164,9 +196,10 @@ double FlightImpactDetection::in_windows(int a, const Flight& f, int b, const Fl
   std::optional<collision::Motion> motion_a, motion_b;
   for (std::int64_t k = window_of(std::max(from, begin)); window_begin(k) < to; ++k) {
     const double high = window_begin(k + 1);
-    for (double low = std::max(begin, window_begin(k)), end = low; low < high && low < to; low = end) {
+    for (double low = std::max(begin, window_begin(k)), end = low; low < high && low < to;
+         low = end) {
       end = of_pieces ? world_.smooth_until(g, low, world_.smooth_until(f, low, high)) : high;
-      if (!(end > low)) return kInfinity;   // one of the flights has ended
+      if (!(end > low)) return kInfinity;  // one of the flights has ended
       if (!(end > from)) continue;
       ++cost.pair_checks;
       if (may_meet(a, f, b, g, low, end)) {
@@ -176,7 +209,8 @@ double FlightImpactDetection::in_windows(int a, const Flight& f, int b, const Fl
         }
         require_searchable(a, f, end - low);
         require_searchable(b, g, end - low);
-        const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b), *motion_b, low, end, options, &cost.narrow);
+        const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b),
+                                                    *motion_b, low, end, options, &cost.narrow);
         if (impact) return impact->time;
       }
     }

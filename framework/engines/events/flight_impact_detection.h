@@ -38,7 +38,8 @@ class FlightImpactDetection {
   ///   it
   /// @pre can_move(a) or can_move(b); the two do not overlap where the later flight begins (by more
   ///   than rounding)
-  double first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const;
+  double first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to,
+                      CheckCost& cost) const;
 
   /// Whether the bounding balls of the two come within reach of each other in [low, high]. Fast; a
   /// "no" is always right.
@@ -47,11 +48,15 @@ class FlightImpactDetection {
  private:
   double window_begin(std::int64_t k) const { return static_cast<double>(k) * window_; }
   std::int64_t window_of(double t) const;
-  bool falls(int body, const Flight& flight) const { return world_.can_move(body) && !flight.is_resting; }
-  bool may_meet_on_segment(int a, const Flight& f, int b, const Flight& g, double low, double high) const;
+  bool falls(int body, const Flight& flight) const {
+    return world_.can_move(body) && !flight.is_resting;
+  }
+  bool may_meet_on_segment(int a, const Flight& f, int b, const Flight& g, double low,
+                           double high) const;
   double of_balls(int a, const Flight& f, int b, const Flight& g) const;
   double of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const;
-  double in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const;
+  double in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to,
+                    CheckCost& cost) const;
   void require_searchable(int body, const Flight& flight, double duration) const;
 
   const FlightWorld& world_;

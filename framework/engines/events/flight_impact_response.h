@@ -17,23 +17,29 @@ namespace tumble::engines {
 /// A discontinuity: the event, and the flights of its pair or its processes that begin with it.
 struct Discontinuity {
   EventStamp key;
-  Flight a, b;                 // of key.body_a and key.body_b, from key.time on; the caller sets their versions
-  std::vector<BegunFlight> begun;   // with processes: all flights that begin; `a` and `b` are then unused
-  double impulse = 0.0;        // sum of the impulses along the normal [N s]
-  Event first;                 // the first impulse, or the transition to rest without one
-  std::vector<Event> more;     // further impulses of flat contacts; transitions to rest
-  bool is_silent = false;      // members of a process separate without contact: no event is recorded
+  // of key.body_a and key.body_b, from key.time on; the caller sets their versions
+  Flight a, b;
+  // with processes: all flights that begin; `a` and `b` are then unused
+  std::vector<BegunFlight> begun;
+  double impulse = 0.0;     // sum of the impulses along the normal [N s]
+  Event first;              // the first impulse, or the transition to rest without one
+  std::vector<Event> more;  // further impulses of flat contacts; transitions to rest
+  // members of a process separate without contact: no event is recorded
+  bool is_silent = false;
 };
 
 struct FlightImpactRules {
-  double restitution_threshold;         // [m/s]
-  double micro_interval;       // a pair slower than the restitution threshold that meets again within this time gets that separation speed [s]
+  double restitution_threshold;  // [m/s]
+  // a pair slower than the restitution threshold that meets again within this time gets that
+  // separation speed [s]
+  double micro_interval;
 };
 
 class FlightImpactResponse {
  public:
   /// @pre `laws` has the three laws of an impact
-  FlightImpactResponse(const FlightWorld& world, const Laws& laws, FlightImpactRules rules) : world_(world), laws_(laws), rules_(rules) {}
+  FlightImpactResponse(const FlightWorld& world, const Laws& laws, FlightImpactRules rules)
+      : world_(world), laws_(laws), rules_(rules) {}
 
   /// @param f, g  flights of key.body_a and key.body_b, which meet at key.time
   /// @throws StoppedRun where the laws leave the two approaching, or return values that are not

@@ -10,34 +10,54 @@
 #include "framework/engines/base/step_limits.h"
 
 namespace tumble::engines {
-namespace {
+namespace {}  // namespace
 
-
-}  // namespace
-
-FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
-    : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
-      world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
-      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks), energy_watch_(scene.rest_speed_m_s, step_, false) {
-  for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), StampKind::kCallback, callbacks_[k].bodies.front(), -1});
+FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                     TrajectorySink& sink)
+    : laws_(guarded(laws)),
+      step_(options.step_s.value_or(scene.step_s)),
+      duration_(options.duration_s.value_or(scene.duration_s)),
+      rate_(options.frame_rate_hz),
+      world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}),
+      impacts_(world_, laws_.find_impact_time, step_),
+      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}),
+      sink_(sink),
+      on_membership_(options.on_membership),
+      callbacks_(options.callbacks),
+      energy_watch_(scene.rest_speed_m_s, step_, false) {
+  for (std::size_t k = 0; k < callbacks_.size(); ++k)
+    callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k),
+                              StampKind::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
-  refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
-  if (const auto step = report_unstable_links(world_.world(), LinkForces(world_.world()), laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
+  refuse_unstable_steps(world_.world(), laws_, {step_, duration_},
+                        scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
+  if (const auto step = report_unstable_links(world_.world(), LinkForces(world_.world()), laws_,
+                                              {step_, duration_}, counters.notices))
+    counters.watch.name_step(*step);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
   switches_ = force_switches(world_.world(), duration_);
   for (const Event& event : world_.start_events()) sink_.event(event);
 }
 
-Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const {
-  if (f.segment >= 0 || g.segment >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return resolve_process_impact(key, f, g, counters);
-  const auto subject = [&] { return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b)); };
+Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, const Flight& g,
+                                        RunCounters& counters) const {
+  if (f.segment >= 0 || g.segment >= 0 ||
+      (world_.processes() && world_.processes()->holds_contacts()))
+    return resolve_process_impact(key, f, g, counters);
+  const auto subject = [&] {
+    return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b));
+  };
   if (key.microstep > most_microsteps(world_.size()))
-    throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; a persistent contact is needed there, or a larger \"rest_speed_m_s\"", key.time, subject()));
+    throw StoppedRun(
+        fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; "
+                    "a persistent contact is needed there, or a larger \"rest_speed_m_s\"",
+                    key.time, subject()));
   try {
     ++counters.impacts;
     Discontinuity discontinuity = meetings_.resolve_impact(key, f, g);
     counters.impulses += discontinuity.impulse > 0 ? 1 + discontinuity.more.size() : 0;
-    counters.integrations += (world_.can_move(key.body_a) ? 1 : 0) + (world_.can_move(key.body_b) ? 1 : 0);
+    counters.integrations +=
+        (world_.can_move(key.body_a) ? 1 : 0) + (world_.can_move(key.body_b) ? 1 : 0);
     return discontinuity;
   } catch (const OutOfTime&) {
     throw;
@@ -49,7 +69,8 @@ Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, 
 namespace {
 
 // Builds the discontinuity with all flights that an event begins.
-Discontinuity finished(const EventStamp& key, std::vector<BegunFlight> begun, const std::vector<Event>& events) {
+Discontinuity finished(const EventStamp& key, std::vector<BegunFlight> begun,
+                       const std::vector<Event>& events) {
   Discontinuity discontinuity;
   discontinuity.key = key;
   discontinuity.begun = std::move(begun);
@@ -60,7 +81,9 @@ Discontinuity finished(const EventStamp& key, std::vector<BegunFlight> begun, co
   }
   for (BegunFlight& flight : discontinuity.begun) {
     flight.flight.microstep = key.microstep;
-    flight.flight.partner = flight.body == key.body_a ? key.body_b : flight.body == key.body_b ? key.body_a : -1;
+    flight.flight.partner = flight.body == key.body_a   ? key.body_b
+                            : flight.body == key.body_b ? key.body_a
+                                                        : -1;
   }
   for (const Event& event : events) discontinuity.impulse += event.impulse;
   return discontinuity;
@@ -68,29 +91,52 @@ Discontinuity finished(const EventStamp& key, std::vector<BegunFlight> begun, co
 
 }  // namespace
 
-Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const {
+Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Flight& f,
+                                                const Flight& g, RunCounters& counters) const {
   const int a = key.body_a, b = key.body_b;
   if (key.microstep > most_microsteps(world_.size()))
-    throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each other without end; a larger \"rest_speed_m_s\" is needed", key.time, name(a), name(b)));
+    throw StoppedRun(
+        fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each "
+                    "other without end; a larger \"rest_speed_m_s\" is needed",
+                    key.time, name(a), name(b)));
   LogicalProcesses& processes = *world_.processes();
   ++counters.impacts;
-  const auto state_of = [&](int body, const Flight& flight) { return processes.state_of(body, flight, flight.segment < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time); };
+  const auto state_of = [&](int body, const Flight& flight) {
+    return processes.state_of(
+        body, flight, flight.segment < 0 ? world_.state(body, flight, key.time) : RigidBodyState{},
+        key.time);
+  };
   const bool one = f.segment >= 0 && f.segment == g.segment;
-  const ProcessState state = !world_.can_move(a) ? state_of(b, g) : !world_.can_move(b) || one ? state_of(a, f) : LogicalProcesses::together(state_of(a, f), state_of(b, g));
-  const int still = processes.holds_contacts() ? -1 : !world_.can_move(a) ? a : !world_.can_move(b) ? b : -1;
-  const ProcessWorld::Change change = naming(fmt::format("at t = {:.6f} s, bodies {} and {}", key.time, name(a), name(b)), [&] { return processes.segments().world_of(state.members, still).collide({a, b}, state); });
+  const ProcessState state = !world_.can_move(a) ? state_of(b, g)
+                             : !world_.can_move(b) || one
+                                 ? state_of(a, f)
+                                 : LogicalProcesses::together(state_of(a, f), state_of(b, g));
+  const int still = processes.holds_contacts() ? -1
+                    : !world_.can_move(a)      ? a
+                    : !world_.can_move(b)      ? b
+                                               : -1;
+  const ProcessWorld::Change change =
+      naming(fmt::format("at t = {:.6f} s, bodies {} and {}", key.time, name(a), name(b)), [&] {
+        return processes.segments().world_of(state.members, still).collide({a, b}, state);
+      });
   return finished(key, processes.sort(change.after), change.events);
 }
 
 std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, double to) const {
-  if (flight.segment < 0 || !world_.processes()->holds_contacts() || world_.first_member(body, flight) != body) return std::nullopt;
+  if (flight.segment < 0 || !world_.processes()->holds_contacts() ||
+      world_.first_member(body, flight) != body)
+    return std::nullopt;
   const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, to);
   if (!end) return std::nullopt;
-  return EventStamp{end->time, end->time == flight.begin ? flight.microstep + 1 : 0, StampKind::kProcess, body, -1};
+  return EventStamp{end->time, end->time == flight.begin ? flight.microstep + 1 : 0,
+                    StampKind::kProcess, body, -1};
 }
 
 Discontinuity FlightRun::end_of_segment(const EventStamp& key, const Flight& flight) const {
-  if (key.microstep > most_microsteps(world_.size())) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
+  if (key.microstep > most_microsteps(world_.size()))
+    throw StoppedRun(
+        fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it",
+                    key.time, name(key.body_a)));
   const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, key.time);
   require(end != nullptr, "a segment ends where own_end said");
   return finished(key, world_.processes()->sort(end->after), end->events);
@@ -103,15 +149,26 @@ Discontinuity FlightRun::call(const EventStamp& key, const FlightOf& flight_of) 
   std::vector<BegunFlight> begun;
   std::vector<Event> events;
   for (const int body : callback.bodies) {
-    if (std::any_of(begun.begin(), begun.end(), [&](const BegunFlight& known) { return known.body == body; })) continue;   // already begun by an earlier body of its process
+    // already begun by an earlier body of its process
+    if (std::any_of(begun.begin(), begun.end(),
+                    [&](const BegunFlight& known) { return known.body == body; }))
+      continue;
     const Flight& flight = flight_of(body);
-    ProcessState state = processes.state_of(body, flight, flight.segment < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
+    ProcessState state = processes.state_of(
+        body, flight, flight.segment < 0 ? world_.state(body, flight, key.time) : RigidBodyState{},
+        key.time);
     for (std::size_t k = 0; k < state.members.size(); ++k)
-      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) callback.act(state.members[k], state.states[k]);
-    for (BegunFlight& next : processes.sort(processes.on_constraints(std::move(state)))) begun.push_back(std::move(next));
+      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k]))
+        callback.act(state.members[k], state.states[k]);
+    for (BegunFlight& next : processes.sort(processes.on_constraints(std::move(state))))
+      begun.push_back(std::move(next));
   }
-  for (const int body : callback.bodies) events.push_back({key.time, EventKind::kControl, body, -1, world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0, 0.0});
-  std::sort(begun.begin(), begun.end(), [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
+  for (const int body : callback.bodies)
+    events.push_back({key.time, EventKind::kControl, body, -1,
+                      world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0,
+                      0.0});
+  std::sort(begun.begin(), begun.end(),
+            [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
   return finished(key, std::move(begun), events);
 } catch (const OutOfTime&) {
   throw;
@@ -122,18 +179,23 @@ Discontinuity FlightRun::call(const EventStamp& key, const FlightOf& flight_of) 
 // The times at which forces switch are known in advance, so their events are committed in time
 // order by every engine.
 void FlightRun::commit_switches(double until) {
-  for (; switched_ < switches_.size() && switches_[switched_].time < until; ++switched_) sink_.event(switches_[switched_]);
+  for (; switched_ < switches_.size() && switches_[switched_].time < until; ++switched_)
+    sink_.event(switches_[switched_]);
 }
 
 void FlightRun::commit(const Discontinuity& discontinuity) {
-  if (!discontinuity.is_silent) return commit(discontinuity.key, discontinuity.first, discontinuity.more);
+  if (!discontinuity.is_silent)
+    return commit(discontinuity.key, discontinuity.first, discontinuity.more);
   pass(discontinuity.key);
 }
 
 void FlightRun::pass(const EventStamp& key) {
   if (!(last_ < key))
-    throw PreconditionError(fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and {} at {:.17g} s ({})", name(key.body_a), name(key.body_b), key.time, key.microstep,
-                                        name(last_.body_a), name(last_.body_b), last_.time, last_.microstep));
+    throw PreconditionError(
+        fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and "
+                    "{} at {:.17g} s ({})",
+                    name(key.body_a), name(key.body_b), key.time, key.microstep, name(last_.body_a),
+                    name(last_.body_b), last_.time, last_.microstep));
   last_ = key;
 }
 
@@ -156,7 +218,8 @@ void FlightRun::require_progress(const EventStamp& key, const Event& event) {
   impacts_in_step_ = step == step_of_impacts_ ? impacts_in_step_ + 1 : 0;
   step_of_impacts_ = step;
   if (impacts_in_step_ > most_impacts(world_.size()))
-    throw StoppedRun(endless_impacts_message(key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
+    throw StoppedRun(endless_impacts_message(
+        key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {
@@ -167,9 +230,11 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   sink_.frame(frame);
   if (on_membership_) report_membership(frame.time, flight_of);
   ++next_;
-  if (!callbacks_.empty()) return;   // callbacks may add energy
+  if (!callbacks_.empty()) return;  // callbacks may add energy
   if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
-    throw StoppedRun(runaway_message(frame.time, world_.world(), *runaway, {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
+    throw StoppedRun(
+        runaway_message(frame.time, world_.world(), *runaway,
+                        {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
 void FlightRun::report_membership(double t, const FlightOf& flight_of) const {

@@ -15,7 +15,8 @@ namespace tumble::engines {
 class FlightRun {
  public:
   /// @throws UserError where the scene has an effect that flights do not model
-  FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
+  FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+            TrajectorySink& sink);
   FlightRun(const FlightRun&) = delete;
   FlightRun& operator=(const FlightRun&) = delete;
 
@@ -33,8 +34,11 @@ class FlightRun {
   /// @post with processes among the bodies (`begun` is not empty), the flights of all their members
   ///   end here
   /// @param counters  of the calling thread
-  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const;
-  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) { return resolve_impact(key, f, g, counters); }
+  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g,
+                               RunCounters& counters) const;
+  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) {
+    return resolve_impact(key, f, g, counters);
+  }
   /// The time at which a body's flight ends by itself, if that is at `to` or before; nothing
   /// otherwise, and nothing for members of a process other than the first.
   std::optional<EventStamp> own_end(int body, const Flight& flight, double to) const;
@@ -43,7 +47,9 @@ class FlightRun {
 
   /// Callbacks of the run by their stamps, in order.
   const std::vector<EventStamp>& callbacks() const { return callback_keys_; }
-  const std::vector<int>& receivers(const EventStamp& callback) const { return callbacks_[callback.microstep].bodies; }
+  const std::vector<int>& receivers(const EventStamp& callback) const {
+    return callbacks_[callback.microstep].bodies;
+  }
   /// Executes a callback. @param flight_of  the flights of its bodies at its time
   /// @throws StoppedRun with body, time and callback where it fails or leaves numbers that are not
   ///   finite
@@ -55,7 +61,10 @@ class FlightRun {
   /// Commits a change of islands without an event. @pre keys come in order
   void pass(const EventStamp& key);
   /// The next frame that is not committed yet; infinite when there is none. [s]
-  double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
+  double next_frame() const {
+    return frame_time(next_) <= duration_ ? frame_time(next_)
+                                          : std::numeric_limits<double>::infinity();
+  }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
   /// @throws StoppedRun where energy has run away by then; the frame is recorded
   void commit_frame(const FlightOf& flight_of);
@@ -68,15 +77,18 @@ class FlightRun {
   RunCounters counters;
 
  private:
-  Discontinuity resolve_process_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const;
+  Discontinuity resolve_process_impact(const EventStamp& key, const Flight& f, const Flight& g,
+                                       RunCounters& counters) const;
   void require_progress(const EventStamp& key, const Event& event);
   void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
-  std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }
+  std::string name(int body) const {
+    return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'";
+  }
 
-  const Laws laws_;   // guarded
+  const Laws laws_;  // guarded
   double step_, duration_, rate_;
-  double step_of_impacts_ = -1.0;   // of the grid: the one that the last impact fell into
+  double step_of_impacts_ = -1.0;  // of the grid: the one that the last impact fell into
   long impacts_in_step_ = 0;
   FlightWorld world_;
   FlightImpactDetection impacts_;
@@ -84,10 +96,10 @@ class FlightRun {
   TrajectorySink& sink_;
   EventStamp last_{-1.0, 0, StampKind::kCollision, -1, -1};
   long next_ = 0;
-  std::vector<Event> switches_;    // of point forces, in order of time; known from the start
+  std::vector<Event> switches_;  // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;
-  std::vector<RigidBodyState> states_;   // of the frame that was committed last
+  std::vector<RigidBodyState> states_;  // of the frame that was committed last
   void report_membership(double t, const FlightOf& flight_of) const;
 
   std::function<void(const Membership&)> on_membership_;

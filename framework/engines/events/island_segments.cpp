@@ -11,7 +11,8 @@
 
 namespace tumble::engines {
 
-IslandSegments::IslandSegments(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
+IslandSegments::IslandSegments(const World& whole, ShapeOf shape_of, const Laws& laws,
+                               ProcessRules rules)
     : whole_(whole), entries_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules) {
   if (!whole_.contact) return;
   for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
@@ -22,7 +23,8 @@ IslandSegments::IslandSegments(const World& whole, ShapeOf shape_of, const Laws&
 
 // A world is safe from deletion only while one thread uses its set of members: no world is deleted
 // while threads share them.
-IslandSegments::CachedWorld& IslandSegments::cached_world(const std::vector<int>& members, int still) {
+IslandSegments::CachedWorld& IslandSegments::cached_world(const std::vector<int>& members,
+                                                          int still) {
   CachedWorld* cached_world = nullptr;
   {
     const std::lock_guard lock(mutex_);
@@ -34,13 +36,15 @@ IslandSegments::CachedWorld& IslandSegments::cached_world(const std::vector<int>
         past_.add(old.second.counters);
         return true;
       });
-      clear_at_ = std::max(kMostCachedWorlds, 2 * worlds_.size());   // where most worlds are in use, a scan at each new one would cost O(n^2)
+      // where most worlds are in use, a scan at each new one would cost O(n^2)
+      clear_at_ = std::max(kMostCachedWorlds, 2 * worlds_.size());
     }
     cached_world = &worlds_[{members, still}];
   }
   std::vector<int> immovable = obstacles_;
   if (still >= 0) immovable.push_back(still);
-  cached_world->world = std::make_unique<ProcessWorld>(whole_, entries_, shape_of_, laws_, rules_, cached_world->counters, members, immovable);
+  cached_world->world = std::make_unique<ProcessWorld>(whole_, entries_, shape_of_, laws_, rules_,
+                                                       cached_world->counters, members, immovable);
   return *cached_world;
 }
 
@@ -51,7 +55,9 @@ void IslandSegments::add_counts_to(RunCounters& counters) const {
   for (const auto& [members, cached_world] : worlds_) counters.add(cached_world.counters);
 }
 
-ProcessWorld& IslandSegments::world_of(const std::vector<int>& members, int still) { return *cached_world(members, still).world; }
+ProcessWorld& IslandSegments::world_of(const std::vector<int>& members, int still) {
+  return *cached_world(members, still).world;
+}
 
 // ---- Segments --------------------------------------------------------------------------------
 
@@ -83,20 +89,29 @@ void IslandSegments::forget_before(double t) { forgotten_ = t; }
 
 std::size_t IslandSegments::place(int segment, int body) const {
   const std::vector<int>& members = at(segment).start->members;
-  return static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin());
+  return static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) -
+                                  members.begin());
 }
 
 std::string IslandSegments::names(const std::vector<int>& members) const {
-  return fmt::format("body '{}'{}", whole_.bodies[static_cast<std::size_t>(members.front())].name, members.size() > 1 ? " and its island" : "");
+  return fmt::format("body '{}'{}", whole_.bodies[static_cast<std::size_t>(members.front())].name,
+                     members.size() > 1 ? " and its island" : "");
 }
 
 void IslandSegments::take_step(Segment& segment) {
   // Steps end on a grid that all processes share, as frames do: bodies in contact match each
   // other's surfaces at the ends of steps.
-  const double now = segment.front->time, due = (std::floor((now + kNegligible * rules_.step) / rules_.step) + 1) * rules_.step;
-  ProcessWorld::Outcome outcome = naming(fmt::format("at t = {:.6f} s, {}", now, names(segment.start->members)), [&] { return segment.cached_world->world->step(*segment.front, due); });
+  const double now = segment.front->time,
+               due =
+                   (std::floor((now + kNegligible * rules_.step) / rules_.step) + 1) * rules_.step;
+  ProcessWorld::Outcome outcome =
+      naming(fmt::format("at t = {:.6f} s, {}", now, names(segment.start->members)),
+             [&] { return segment.cached_world->world->step(*segment.front, due); });
   segment.idle = outcome.step.end > now ? 0 : segment.idle + 1;
-  if (segment.idle > kMostIdleSteps) throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, its bodies collide again and again", now, names(segment.start->members)));
+  if (segment.idle > kMostIdleSteps)
+    throw StoppedRun(
+        fmt::format("at t = {:.6f} s, {}: time stands still, its bodies collide again and again",
+                    now, names(segment.start->members)));
   while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
     segment.steps.pop_front();
     --kept_;
@@ -104,8 +119,11 @@ void IslandSegments::take_step(Segment& segment) {
   segment.steps.push_back(std::move(outcome.step));
   ++kept_;
   const bool is_one = segment.start->near.empty() || !falls_apart_(outcome.after);
-  if (outcome.events.empty() && is_one) segment.front.emplace(std::move(outcome.after));
-  else segment.end.emplace(SegmentEnd{segment.steps.back().end, std::move(outcome.after), std::move(outcome.events)});
+  if (outcome.events.empty() && is_one)
+    segment.front.emplace(std::move(outcome.after));
+  else
+    segment.end.emplace(
+        SegmentEnd{segment.steps.back().end, std::move(outcome.after), std::move(outcome.events)});
 }
 
 // Computes steps until one ends after t: the state at the end of a step is the start of the next.
@@ -128,11 +146,18 @@ const ProcessStep& IslandSegments::step_at(int number, double t) {
   return steps[k];
 }
 
-double IslandSegments::step_end(int number, double t) { return std::max(t, step_at(number, t).end); }
+double IslandSegments::step_end(int number, double t) {
+  return std::max(t, step_at(number, t).end);
+}
 
-RigidBodyState IslandSegments::body_state(int segment, int body, double t) { return step_at(segment, t).state_at(place(segment, body), t); }
+RigidBodyState IslandSegments::body_state(int segment, int body, double t) {
+  return step_at(segment, t).state_at(place(segment, body), t);
+}
 
-collision::MotionState IslandSegments::motion_at(int segment, int body, double t) { return step_at(segment, t).motion_at(place(segment, body), t, whole_.bodies[static_cast<std::size_t>(body)].inertia); }
+collision::MotionState IslandSegments::motion_at(int segment, int body, double t) {
+  return step_at(segment, t)
+      .motion_at(place(segment, body), t, whole_.bodies[static_cast<std::size_t>(body)].inertia);
+}
 
 ProcessState IslandSegments::state_at(int number, double t) {
   const ProcessStep& step = step_at(number, t);
@@ -146,14 +171,16 @@ ProcessState IslandSegments::state_at(int number, double t) {
 std::vector<RigidBodyState> IslandSegments::shown_at(int number, double t) {
   const ProcessStep& step = step_at(number, t);
   const ProcessState state = state_at(number, t);
-  return t > step.from.time && t < step.end ? at(number).cached_world->world->shown(state).states : state.states;
+  return t > step.from.time && t < step.end ? at(number).cached_world->world->shown(state).states
+                                            : state.states;
 }
 
 collision::Motion IslandSegments::motion_in_step(int number, int body, double low) {
   const ProcessStep& step = step_at(number, low);
   const std::size_t member = place(number, body);
   const Inertia* inertia = &whole_.bodies[static_cast<std::size_t>(body)].inertia;
-  return {[&step, member, inertia](double t) { return step.motion_at(member, t, *inertia); }, step.paths.empty() ? collision::MotionBounds{} : step.paths[member].bounds()};
+  return {[&step, member, inertia](double t) { return step.motion_at(member, t, *inertia); },
+          step.paths.empty() ? collision::MotionBounds{} : step.paths[member].bounds()};
 }
 
 }  // namespace tumble::engines

@@ -26,16 +26,19 @@ namespace tumble::engines {
 
 /// The end of a segment that ends by itself, and the state after it.
 struct SegmentEnd {
-  double time;                       // [s]
+  double time;  // [s]
   ProcessState after;
-  std::vector<Event> events;         // empty where members have only moved too far apart to be one process
+  // empty where members have only moved too far apart to be one process
+  std::vector<Event> events;
 };
 
 class IslandSegments {
  public:
   IslandSegments(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules);
   /// @param falls_apart  whether the members of a state no longer form one process
-  void ask(std::function<bool(const ProcessState&)> falls_apart) { falls_apart_ = std::move(falls_apart); }
+  void ask(std::function<bool(const ProcessState&)> falls_apart) {
+    falls_apart_ = std::move(falls_apart);
+  }
   IslandSegments(const IslandSegments&) = delete;
   IslandSegments& operator=(const IslandSegments&) = delete;
 
@@ -86,7 +89,8 @@ class IslandSegments {
     reach(segment, to);
     const std::size_t member = place(segment, body);
     for (const ProcessStep& step : at(segment).steps)
-      if (step.end >= from && step.from.time <= to) work(step, member, std::max(from, step.from.time), std::min(to, step.end));
+      if (step.end >= from && step.from.time <= to)
+        work(step, member, std::max(from, step.from.time), std::min(to, step.end));
   }
 
   /// A process world of these members, for single queries. @param still  an immovable body that one
@@ -104,14 +108,15 @@ class IslandSegments {
 
  private:
   struct CachedWorld {
-    RunCounters counters;      // one for each world, because another thread may count for another world
+    // one for each world, because another thread may count for another world
+    RunCounters counters;
     std::unique_ptr<ProcessWorld> world;
     int users = 0;
   };
   struct Segment {
     std::optional<ProcessState> start;
     std::deque<ProcessStep> steps;
-    std::optional<ProcessState> front;      // the state after the last step
+    std::optional<ProcessState> front;  // the state after the last step
     std::optional<SegmentEnd> end;
     CachedWorld* cached_world = nullptr;
     int holders = 0, idle = 0;
@@ -124,7 +129,8 @@ class IslandSegments {
   void take_step(Segment& segment);
   std::string names(const std::vector<int>& members) const;
 
-  static constexpr std::size_t kMostCachedWorlds = 512;   // process worlds that are cached for later use
+  // process worlds that are cached for later use
+  static constexpr std::size_t kMostCachedWorlds = 512;
 
   const World& whole_;
   const EntriesByBody entries_;
@@ -132,16 +138,17 @@ class IslandSegments {
   std::function<bool(const ProcessState&)> falls_apart_;
   const Laws& laws_;
   ProcessRules rules_;
-  std::vector<int> obstacles_;              // immovable bodies that persistent contacts may touch
+  std::vector<int> obstacles_;  // immovable bodies that persistent contacts may touch
   std::map<std::pair<std::vector<int>, int>, CachedWorld> worlds_;
   StableTable<std::unique_ptr<Segment>> segments_;
-  std::size_t clear_at_ = kMostCachedWorlds;        // size of worlds_ at which unused worlds are deleted
-  RunCounters past_;                        // of deleted worlds
-  std::mutex mutex_;                        // guards worlds_, segment indices, and holders
+  // size of worlds_ at which unused worlds are deleted
+  std::size_t clear_at_ = kMostCachedWorlds;
+  RunCounters past_;  // of deleted worlds
+  std::mutex mutex_;  // guards worlds_, segment indices, and holders
   bool is_shared_ = false;
   double forgotten_ = 0.0;
   std::atomic<std::size_t> kept_ = 0;
-  std::uint64_t begun_ = 0, let_go_ = 0;    // segments
+  std::uint64_t begun_ = 0, let_go_ = 0;  // segments
 };
 
 }  // namespace tumble::engines

@@ -21,9 +21,10 @@ class LinkMeasures {
   Wrench wrench_on(int body, const RigidBodyState& state) const;
 
   const FlightWorld& world_;
-  RunCounters uncounted_;                  // measuring does not count as work of the run
+  RunCounters uncounted_;  // measuring does not count as work of the run
   std::vector<LinkedBodies> groups_;
-  std::map<int, std::unique_ptr<effects::SteadyForces>> forces_;   // by index in effects::all(): steady forces on the island that is measured
+  // by index in effects::all(): steady forces on the island that is measured
+  std::map<int, std::unique_ptr<effects::SteadyForces>> forces_;
 };
 
 /// Times at which forces switch, up to `until`: events in order.

@@ -60,7 +60,7 @@ class LogicalProcesses {
   const World& whole_;
   IslandSegments segments_;
   bool holds_any_;
-  std::vector<int> linked_;     // by body: the lowest body of its component of links; -1: no link
+  std::vector<int> linked_;  // by body: the lowest body of its component of links; -1: no link
 };
 
 }  // namespace tumble::engines

@@ -14,7 +14,9 @@ constexpr EventStamp kNeverKey{kInfinity, 0, StampKind::kCollision, -1, -1};
 
 class OrderedRun {
  public:
-  OrderedRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) : run_(scene, laws, options, sink) {
+  OrderedRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+             TrajectorySink& sink)
+      : run_(scene, laws, options, sink) {
     for (int i = 0; i < run_.world().size(); ++i) flights_.push_back(run_.world().first_flight(i));
     first_of_.assign(flights_.size(), kNeverKey);
   }
@@ -22,7 +24,8 @@ class OrderedRun {
   void run() {
     std::string stopped_by;
     try {
-      for (double begin = 0.0; begin <= run_.duration(); begin = end_) look_through_window(begin);   // the last instant is part of the run
+      // the last instant is part of the run
+      for (double begin = 0.0; begin <= run_.duration(); begin = end_) look_through_window(begin);
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
@@ -32,7 +35,8 @@ class OrderedRun {
 
  private:
   void look_through_window(double begin) {
-    if (run_.world().processes()) run_.world().processes()->segments().forget_before(std::min(begin, run_.next_frame()));
+    if (run_.world().processes())
+      run_.world().processes()->segments().forget_before(std::min(begin, run_.next_frame()));
     end_ = run_.impacts().window_end(begin);
     begin_ = begin;
     for (const int a : run_.world().movers()) first_of_[a] = first_among_all(a);
@@ -40,7 +44,8 @@ class OrderedRun {
       EventStamp next = kNeverKey;
       for (const int a : run_.world().movers())
         if (first_of_[a] < next) next = first_of_[a];
-      if (built::kCallback && called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
+      if (built::kCallback && called_ < run_.callbacks().size())
+        next = std::min(next, run_.callbacks()[called_]);
       if (!(next.time < end_) || next.time > run_.duration()) return;
       draw_before(next.time);
       process(next);
@@ -62,9 +67,12 @@ class OrderedRun {
       changed.push_back(begun.body);
     }
     begin_ = key.time;
-    const auto is_changed = [&](int body) { return std::find(changed.begin(), changed.end(), body) != changed.end(); };
+    const auto is_changed = [&](int body) {
+      return std::find(changed.begin(), changed.end(), body) != changed.end();
+    };
     for (const int c : run_.world().movers()) {
-      if (is_changed(c) || is_changed(first_of_[c].body_a) || is_changed(first_of_[c].body_b)) first_of_[c] = first_among_all(c);
+      if (is_changed(c) || is_changed(first_of_[c].body_a) || is_changed(first_of_[c].body_b))
+        first_of_[c] = first_among_all(c);
       else
         for (const int body : changed) first_of_[c] = std::min(first_of_[c], impact_of(c, body));
     }
@@ -72,14 +80,16 @@ class OrderedRun {
 
   Discontinuity outcome_of(const EventStamp& key) {
     if (key.kind == StampKind::kProcess) return run_.end_of_segment(key, flights_[key.body_a]);
-    if (key.kind == StampKind::kCollision) return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
+    if (key.kind == StampKind::kCollision)
+      return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
     ++called_;
     return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
   }
 
   EventStamp impact_of(int a, int b) {
     if (a == b || !run_.world().may_collide(a, b)) return kNeverKey;
-    const double time = run_.impacts().first_impact(a, flights_[a], b, flights_[b], begin_, end_, run_.cost);
+    const double time =
+        run_.impacts().first_impact(a, flights_[a], b, flights_[b], begin_, end_, run_.cost);
     return time < kInfinity ? key_of_impact(a, flights_[a], b, flights_[b], time) : kNeverKey;
   }
 
@@ -90,18 +100,22 @@ class OrderedRun {
   }
 
   void draw_before(double t) {
-    while (run_.next_frame() < t) run_.commit_frame([this](int body) -> const Flight& { return flights_[body]; });
+    while (run_.next_frame() < t)
+      run_.commit_frame([this](int body) -> const Flight& { return flights_[body]; });
   }
 
   FlightRun run_;
   std::vector<Flight> flights_;       // by body
-  std::vector<EventStamp> first_of_;    // by body: the first impact that involves it in this window
+  std::vector<EventStamp> first_of_;  // by body: the first impact that involves it in this window
   std::size_t called_ = 0;            // callbacks
   double begin_ = 0.0, end_ = 0.0;    // the current window [s]
 };
 
 }  // namespace
 
-void run_ordered(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { OrderedRun(scene, laws, options, sink).run(); }
+void run_ordered(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                 TrajectorySink& sink) {
+  OrderedRun(scene, laws, options, sink).run();
+}
 
 }  // namespace tumble::engines

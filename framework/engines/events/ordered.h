@@ -13,6 +13,7 @@ namespace tumble::engines {
 /// @pre `laws` has every law that the scene needs (run_scene checks)
 /// @throws UserError where the scene has an effect that flights do not model
 /// Cost: O(n^2) per window and O(n) per event
-void run_ordered(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
+void run_ordered(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                 TrajectorySink& sink);
 
 }  // namespace tumble::engines

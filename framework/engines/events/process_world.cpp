@@ -9,9 +9,10 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kTogether = 2.0;         // steps
+constexpr double kTogether = 2.0;  // steps
 
-std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, const ShapeOf& shape_of) {
+std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part,
+                                                        const ShapeOf& shape_of) {
   std::vector<const collision::CollisionShape*> shapes;
   for (const int body : part.bodies) shapes.push_back(shape_of(body));
   return shapes;
@@ -19,29 +20,51 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, c
 
 }  // namespace
 
-const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
-
-ProcessState ProcessState::without_memory() const { return {time, members, states, remembered, met, lasting, near, std::nullopt}; }
-
-RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
-
-collision::MotionState ProcessStep::motion_at(std::size_t member, double t, const Inertia& inertia) const {
-  if (t != from.time && !paths.empty()) return paths[member].motion_at(t);
-  const RigidBodyState& state = from.states[member];
-  return {{state.com_world, state.world_from_body}, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
+const RigidBodyState& ProcessState::state_of(int body) const {
+  return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) -
+                                         members.begin())];
 }
 
-ProcessWorld::ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still)
-    : rules_(rules), counters_(counters), members_(members), part_(part_of(whole, entries, members, still)),
-      world_step_(part_.world, laws, {rules.step, rules.restitution_threshold, false}, counters, collector_, shapes_of(part_, shape_of)), moving_(world_step_.moving()) {}
+ProcessState ProcessState::without_memory() const {
+  return {time, members, states, remembered, met, lasting, near, std::nullopt};
+}
 
-int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bound(part_.bodies.begin(), part_.bodies.end(), body) - part_.bodies.begin()); }
+RigidBodyState ProcessStep::state_at(std::size_t member, double t) const {
+  return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t);
+}
+
+collision::MotionState ProcessStep::motion_at(std::size_t member, double t,
+                                              const Inertia& inertia) const {
+  if (t != from.time && !paths.empty()) return paths[member].motion_at(t);
+  const RigidBodyState& state = from.states[member];
+  return {{state.com_world, state.world_from_body},
+          inertia.inverse_mass * state.momentum_world,
+          omega_of(state, inertia)};
+}
+
+ProcessWorld::ProcessWorld(const World& whole, const EntriesByBody& entries,
+                           const ShapeOf& shape_of, const Laws& laws, ProcessRules rules,
+                           RunCounters& counters, const std::vector<int>& members,
+                           const std::vector<int>& still)
+    : rules_(rules),
+      counters_(counters),
+      members_(members),
+      part_(part_of(whole, entries, members, still)),
+      world_step_(part_.world, laws, {rules.step, rules.restitution_threshold, false}, counters,
+                  collector_, shapes_of(part_, shape_of)),
+      moving_(world_step_.moving()) {}
+
+int ProcessWorld::local(int body) const {
+  return static_cast<int>(std::lower_bound(part_.bodies.begin(), part_.bodies.end(), body) -
+                          part_.bodies.begin());
+}
 
 // ---- Load and save a state -------------------------------------------------------------------
 
 void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> memory) {
   std::vector<RigidBodyState> states = moving_.states();
-  for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
   moving_.stand_at(from.time, states);
   if (!moving_.linked_groups().empty()) {
     const std::map<int, effects::Memory> remembered = renamed(from.remembered, false);
@@ -55,27 +78,33 @@ void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> m
   if (memory) return world_step_.contacts().recall(std::move(*memory));
   world_step_.contacts().recall({});
   const std::uint64_t begun = counters_.contacts_begun;
-  for (const BodyPair& pair : from.lasting) world_step_.contacts().begin(local(pair), {});   // it has begun before: no event
+  // it has begun before: no event
+  for (const BodyPair& pair : from.lasting) world_step_.contacts().begin(local(pair), {});
   counters_.contacts_begun = begun;
   collector_.events.clear();
 }
 
 // Effect memory by the part's indices, from the whole world's, or the reverse.
-std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const {
+std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects::Memory>& memory,
+                                                     bool to_whole) const {
   std::map<int, effects::Memory> renamed;
   for (const auto& [effect, entries] : memory) {
     const std::vector<int>& whole = part_.entries[static_cast<std::size_t>(effect)];
     for (const auto& [entry, numbers] : entries) {
       const auto local = std::lower_bound(whole.begin(), whole.end(), entry);
-      if (to_whole) renamed[effect].emplace(whole[static_cast<std::size_t>(entry)], numbers);
-      else if (local != whole.end() && *local == entry) renamed[effect].emplace(static_cast<int>(local - whole.begin()), numbers);
+      if (to_whole)
+        renamed[effect].emplace(whole[static_cast<std::size_t>(entry)], numbers);
+      else if (local != whole.end() && *local == entry)
+        renamed[effect].emplace(static_cast<int>(local - whole.begin()), numbers);
     }
   }
   return renamed;
 }
 
 // @return the time of the next switch of a steady force [s]
-double ProcessWorld::load_forces(const ProcessState& from) { return moving_.load_forces(renamed(from.remembered, false)); }
+double ProcessWorld::load_forces(const ProcessState& from) {
+  return moving_.load_forces(renamed(from.remembered, false));
+}
 
 // Moves the contact memory into the state: the next load brings its own.
 ProcessState ProcessWorld::save() {
@@ -98,22 +127,30 @@ ProcessState ProcessWorld::save() {
 void ProcessWorld::note_near(ProcessState& state) const {
   const auto speed = [&](int body) {
     const Body now = moving_.body_at_impact(body);
-    return now.velocity_world.norm() + now.omega_world.norm() * moving_.shape(body).bounding_radius();
+    return now.velocity_world.norm() +
+           now.omega_world.norm() * moving_.shape(body).bounding_radius();
   };
   for (std::size_t i = 0; i < part_.members.size(); ++i)
     for (std::size_t j = i + 1; j < part_.members.size(); ++j) {
       const int a = part_.members[i], b = part_.members[j];
-      if (std::min(moving_.world().bodies[a].restitution, moving_.world().bodies[b].restitution) > 0 || !moving_.may_collide(a, b)) continue;
+      if (std::min(moving_.world().bodies[a].restitution, moving_.world().bodies[b].restitution) >
+              0 ||
+          !moving_.may_collide(a, b))
+        continue;
       const double within = kTogether * rules_.step * (speed(a) + speed(b));
-      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius() + within) continue;
-      if (world_step_.impact_detection().gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() >
+          moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius() + within)
+        continue;
+      if (world_step_.impact_detection().gap({a, b}).distance <= within)
+        state.near.emplace(members_[i], members_[j]);
     }
 }
 
 void ProcessWorld::save_controls(ProcessState& state) const {
   std::map<int, effects::Memory> held = moving_.force_memory();
   for (const LinkedBodies& group : moving_.linked_groups())
-    for (const auto& [effect, memory] : group.held()) held[effect].insert(memory.begin(), memory.end());
+    for (const auto& [effect, memory] : group.held())
+      held[effect].insert(memory.begin(), memory.end());
   state.remembered = renamed(held, true);
 }
 
@@ -135,7 +172,7 @@ ProcessState ProcessWorld::on_constraints(const ProcessState& state) {
     group.project_velocities(all, state.time);
     moving_.stand_at(state.time, all);
   }
-  ProcessState after = state;   // all else is unchanged
+  ProcessState after = state;  // all else is unchanged
   after.states.clear();
   for (const int member : part_.members) after.states.push_back(moving_.state(member));
   return after;
@@ -145,9 +182,11 @@ ProcessState ProcessWorld::shown(const ProcessState& state) {
   load(state);
   std::vector<RigidBodyState> all = moving_.states();
   moving_.close_links(all, state.time);
-  if (has_contacts()) world_step_.contacts().remove_overlaps(near_pairs(std::nullopt), all, state.time);
+  if (has_contacts())
+    world_step_.contacts().remove_overlaps(near_pairs(std::nullopt), all, state.time);
   ProcessState after = state;
-  for (std::size_t k = 0; k < members_.size(); ++k) after.states[k] = all[static_cast<std::size_t>(part_.members[k])];
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    after.states[k] = all[static_cast<std::size_t>(part_.members[k])];
   return after;
 }
 
@@ -167,12 +206,14 @@ std::vector<Event> ProcessWorld::take_events() {
 void ProcessWorld::begin_step(double target) {
   moving_.begin_step(target);
   for (const int member : part_.members) {
-    if (!moving_.smooth_path(member)) moving_.set_path(member, moving_.state(member), moving_.path_end(member));
+    if (!moving_.smooth_path(member))
+      moving_.set_path(member, moving_.state(member), moving_.path_end(member));
     moving_.refuse_fast_turning(member);
   }
 }
 
-// Beside what a world of all bodies does in a step: the paths are kept, and an impact at the very start is a step's end.
+// Beside what a world of all bodies does in a step: the paths are kept, and an impact at the very
+// start is a step's end.
 struct ProcessWorld::Stages final : StepStages {
   explicit Stages(ProcessWorld& of, ProcessStep* taken = nullptr) : world(of), step(taken) {}
   void begin(double target) override { world.begin_step(target); }
@@ -185,12 +226,13 @@ struct ProcessWorld::Stages final : StepStages {
     step->end = reached;
     step->forces = world.forces();
     if (reached > step->from.time)
-      for (const int member : world.part_.members) step->paths.push_back(*world.moving_.smooth_path(member));
+      for (const int member : world.part_.members)
+        step->paths.push_back(*world.moving_.smooth_path(member));
   }
   void impact(const Event& event) override { world.collector_.event(event); }
 
   ProcessWorld& world;
-  ProcessStep* step;   // the one under way
+  ProcessStep* step;  // the one under way
 };
 
 ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
@@ -227,7 +269,9 @@ std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) 
       }
       if (!moving_.world().contact || !moving_.may_collide(a, b)) continue;
       const double reach = moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius();
-      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > reach * (1 + kSixDigits)) continue;
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() >
+          reach * (1 + kSixDigits))
+        continue;
       pairs.emplace_back(a, b);
     }
   return pairs;
@@ -258,9 +302,11 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
     world_step_.respond(pairs, trigger, false, stages);
   }
   world_step_.require_numbers();
-  if (collector_.events.empty()) {   // they touched without approach
+  if (collector_.events.empty()) {  // they touched without approach
     const collision::Gap gap = world_step_.impact_detection().gap(trigger);
-    collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second, 0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0, 0.0, 0.0});
+    collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second,
+                      0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0,
+                      0.0, 0.0});
   }
   ProcessState after = save();
   return {std::move(after), take_events()};

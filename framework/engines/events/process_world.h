@@ -16,18 +16,22 @@
 
 namespace tumble::engines {
 
-using BodyPair = std::pair<int, int>;   // first < second
+using BodyPair = std::pair<int, int>;  // first < second
 
 /// The state from which a process continues. Indices are those of the whole world.
 struct ProcessState {
-  double time = 0.0;                            // [s]
-  std::vector<int> members;                     // movable bodies, ascending
-  std::vector<RigidBodyState> states;           // by member
-  std::map<int, effects::Memory> remembered;               // internal state of effects, by index in effects::all()
-  std::map<BodyPair, double> met;               // the time of each pair's last impact [s]
-  std::set<BodyPair> lasting;                   // pairs in persistent contact
-  std::set<BodyPair> near;                      // pairs without restitution that meet again within a step or two: they stay in one island (in_step)
-  std::optional<ContactMemory> contacts;        // memory of contacts; bodies are those of the process world that computed this state
+  double time = 0.0;                   // [s]
+  std::vector<int> members;            // movable bodies, ascending
+  std::vector<RigidBodyState> states;  // by member
+  // internal state of effects, by index in effects::all()
+  std::map<int, effects::Memory> remembered;
+  std::map<BodyPair, double> met;  // the time of each pair's last impact [s]
+  std::set<BodyPair> lasting;      // pairs in persistent contact
+  // pairs without restitution that meet again within a step or two: they stay in one island
+  // (in_step)
+  std::set<BodyPair> near;
+  // memory of contacts; bodies are those of the process world that computed this state
+  std::optional<ContactMemory> contacts;
 
   const RigidBodyState& state_of(int body) const;
   /// A copy without contact memory, as for a first contact step; much cheaper to copy.
@@ -36,7 +40,7 @@ struct ProcessState {
 
 /// The scene's numbers for impacts and steps.
 struct ProcessRules {
-  double step, restitution_threshold;                      // [s], [m/s]
+  double step, restitution_threshold;  // [s], [m/s]
 };
 
 /// Shapes of the whole world, by body.
@@ -44,10 +48,12 @@ using ShapeOf = std::function<const collision::CollisionShape*(int body)>;
 
 /// One step of a process, from one of its states to the next.
 struct ProcessStep {
-  ProcessState from;                            // with the targets of motors and the forces that act during the step
-  double end;                                   // [s]; from.time for a discontinuity at the very start
-  std::vector<SmoothPath> paths;                // by member; empty for a step without length
-  std::vector<ContactPoint> forces;             // in persistent contacts
+  // with the targets of motors and the forces that act during the step
+  ProcessState from;
+  // [s]; from.time for a discontinuity at the very start
+  double end;
+  std::vector<SmoothPath> paths;     // by member; empty for a step without length
+  std::vector<ContactPoint> forces;  // in persistent contacts
 
   collision::MotionState motion_at(std::size_t member, double t, const Inertia& inertia) const;
   RigidBodyState state_at(std::size_t member, double t) const;
@@ -56,7 +62,9 @@ struct ProcessStep {
 class ProcessWorld {
  public:
   /// @param still  immovable bodies that members may touch here, besides those that links end at
-  ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still);
+  ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of,
+               const Laws& laws, ProcessRules rules, RunCounters& counters,
+               const std::vector<int>& members, const std::vector<int>& still);
   ProcessWorld(const ProcessWorld&) = delete;
   ProcessWorld& operator=(const ProcessWorld&) = delete;
 
@@ -84,7 +92,8 @@ class ProcessWorld {
   struct Outcome {
     ProcessStep step;
     ProcessState after;
-    std::vector<Event> events;                  // not empty: the process has a discontinuity of its own there
+    // not empty: the process has a discontinuity of its own there
+    std::vector<Event> events;
   };
   /// One step, or less: to `due`, to a motor's next sample, to a switching force, or to the first
   /// discontinuity among the members.
@@ -109,18 +118,21 @@ class ProcessWorld {
   void save_controls(ProcessState& state) const;
   void note_near(ProcessState& state) const;
   double load_forces(const ProcessState& from);
-  std::map<int, effects::Memory> renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const;
+  std::map<int, effects::Memory> renamed(const std::map<int, effects::Memory>& memory,
+                                         bool to_whole) const;
   void begin_step(double target);
   bool has_contacts() const { return world_step_.has_contacts(); }
   std::vector<ContactPoint> forces() const;
   std::vector<BodyPair> near_pairs(std::optional<BodyPair> trigger) const;
   std::vector<Event> take_events();
-  int whole(int body) const { return body < 0 ? body : part_.bodies[static_cast<std::size_t>(body)]; }
+  int whole(int body) const {
+    return body < 0 ? body : part_.bodies[static_cast<std::size_t>(body)];
+  }
   int local(int body) const;
   BodyPair whole(BodyPair pair) const { return {whole(pair.first), whole(pair.second)}; }
   BodyPair local(BodyPair pair) const { return {local(pair.first), local(pair.second)}; }
 
-  struct Stages;   // what a process adds to a step
+  struct Stages;  // what a process adds to a step
 
   ProcessRules rules_;
   RunCounters& counters_;
@@ -128,7 +140,7 @@ class ProcessWorld {
   WorldPart part_;
   Collector collector_;
   WorldStep world_step_;
-  MovingWorld& moving_;   // of world_step_
+  MovingWorld& moving_;  // of world_step_
 };
 
 }  // namespace tumble::engines

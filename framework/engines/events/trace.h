@@ -16,9 +16,9 @@ std::uint64_t trace_hash(const Trajectory& run);
 
 /// The first difference of two traces.
 struct TraceDifference {
-  std::size_t index;          // of the first event that differs
-  double time;                // [s], of the earlier of the two
-  std::string story;          // the reference's event and the run's, with names
+  std::size_t index;  // of the first event that differs
+  double time;        // [s], of the earlier of the two
+  std::string story;  // the reference's event and the run's, with names
 };
 
 /// @return nothing where the traces are equal, bit for bit

@@ -16,16 +16,19 @@ class EntriesByBody {
 
  private:
   friend struct PartMaker;
-  using Places = std::vector<std::vector<int>>;   // by body: indices, ascending
-  std::vector<Places> effects_;                   // by index in effects::all(); empty for effects that do not act in this world
+  using Places = std::vector<std::vector<int>>;  // by body: indices, ascending
+  // by index in effects::all(); empty for effects that do not act in this world
+  std::vector<Places> effects_;
   Places apart_;
 };
 
 struct WorldPart {
   World world;
-  std::vector<int> bodies;          // by body of the part: its index in the whole world, ascending
-  std::vector<int> members;         // by member, in the order of the argument: its index in the part
-  std::vector<std::vector<int>> entries;   // by index in effects::all() and by entry of the part: its index in the whole world
+  std::vector<int> bodies;  // by body of the part: its index in the whole world, ascending
+  // by member, in the order of the argument: its index in the part
+  std::vector<int> members;
+  // by index in effects::all() and by entry of the part: its index in the whole world
+  std::vector<std::vector<int>> entries;
 };
 
 /// @param entries  of this world
@@ -34,6 +37,7 @@ struct WorldPart {
 /// @post pairs that do not collide are included where one body is a member: two immovable bodies
 ///   never collide
 /// @post shapes of the part are points: the caller has the shapes of the whole world
-WorldPart part_of(const World& whole, const EntriesByBody& entries, const std::vector<int>& members, const std::vector<int>& still);
+WorldPart part_of(const World& whole, const EntriesByBody& entries, const std::vector<int>& members,
+                  const std::vector<int>& still);
 
 }  // namespace tumble::engines

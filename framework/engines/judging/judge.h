@@ -27,12 +27,12 @@
 ///   drift               largest distance from the position at `at_s`, of `body`, `bodies`, or any
 ///                       body [m]
 ///   tilt                largest rotation from the orientation at `at_s`, of the same [rad]
-///   at_rest             largest kinetic energy per kilogram, of the same, from `at_s` on; 0: at the
-///                       end [J/kg]
+///   at_rest             largest kinetic energy per kilogram, of the same, from `at_s` on; 0: at
+///                       the end [J/kg]
 ///   distance_travelled  |displacement of the body from its start - expected| at `at_s`, along
 ///                       `axis` (world) where given [m]
-///   angle_at            |angle - expected| at `at_s`: rotation of the body about `axis` (world) with
-///                       whole turns, at most half a turn between two frames [rad]
+///   angle_at            |angle - expected| at `at_s`: rotation of the body about `axis` (world)
+///                       with whole turns, at most half a turn between two frames [rad]
 ///   stands              largest angle between the own `axis` of `body` or `bodies` and its first
 ///                       direction, at `at_s` [rad]
 ///   falls               the same; the smallest [rad]; right when >= tolerance
@@ -42,7 +42,8 @@
 /// The faults that the run's watch found (engines/base/run_watch.h) follow, as failed checks
 /// whatever the scene asks:
 ///   link_open           largest opening of a rod or joint over its size [-], or angle [rad]
-///   projection_open     errors that a projection of rods and joints left, over the island's size [-]
+///   projection_open     errors that a projection of rods and joints left, over the island's size
+///                       [-]
 ///   contact_unsolved    approach and slip that the impulses of contacts left, over the island's
 ///                       speed [-]
 ///   turn_unresolved     rotation of a body in a step of a method that samples [rad]
@@ -72,15 +73,16 @@
 namespace tumble::engines {
 
 struct CheckResult {
-  std::string kind;        // as in the scene
-  std::string subject;     // the body, or "all"
-  double value;            // the value: an error, a drift, a smallest gap; infinite where the event never happened
-  double threshold;        // the tolerance
+  std::string kind;     // as in the scene
+  std::string subject;  // the body, or "all"
+  // the value: an error, a drift, a smallest gap; infinite where the event never happened
+  double value;
+  double threshold;  // the tolerance
   std::string unit;
   bool passed;
-  std::string why;         // the reason of the threshold
-  bool at_least = false;   // passes when value >= threshold instead of <=
-  std::string detail;      // place and time of the worst value
+  std::string why;        // the reason of the threshold
+  bool at_least = false;  // passes when value >= threshold instead of <=
+  std::string detail;     // place and time of the worst value
 };
 
 /// A check's unit is a label for people: a number in another unit would be compared as if it were

@@ -16,12 +16,11 @@ namespace tumble::engines {
 using scene::CheckSpec;
 using scene::Scene;
 
-
 /// The worst value of a check.
 struct Finding {
   double value = 0.0;
   std::string detail;
-  double rounding = 0.0;   // the rounding error of a value that is compared with a bound
+  double rounding = 0.0;  // the rounding error of a value that is compared with a bound
 
   /// Keeps the larger value; NaN is worse than anything.
   void worst(double candidate, const std::string& where) {
@@ -45,7 +44,8 @@ const Frame* frame_at(double time, const Trajectory& run);
 // Links and contacts (measures_links.cpp)
 /// The worst error of the links that the check names, over all frames: of the kind that the effect
 /// declares (Effect::link_checks).
-Finding link_error(const effects::Effect& effect, const CheckSpec&, const Scene&, const Trajectory&);
+Finding link_error(const effects::Effect& effect, const CheckSpec&, const Scene&,
+                   const Trajectory&);
 Finding link_force(const CheckSpec&, const Scene&, const Trajectory&);
 Finding reaction(const CheckSpec&, const Scene&, const Trajectory&);
 

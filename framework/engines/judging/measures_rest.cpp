@@ -18,8 +18,10 @@ const char* const kNobody = "no body can move";
 /// The bodies of a check, by index: its list, its one body, or all movable bodies.
 std::vector<std::size_t> bodies_of(const CheckSpec& check, const Trajectory& run) {
   std::vector<std::size_t> indices;
-  for (const std::string& name : check.bodies) indices.push_back(static_cast<std::size_t>(index_of(name, run)));
-  if (check.bodies.empty() && !check.body.empty()) indices.push_back(static_cast<std::size_t>(index_of(check.body, run)));
+  for (const std::string& name : check.bodies)
+    indices.push_back(static_cast<std::size_t>(index_of(name, run)));
+  if (check.bodies.empty() && !check.body.empty())
+    indices.push_back(static_cast<std::size_t>(index_of(check.body, run)));
   if (!indices.empty()) return indices;
   for (std::size_t i = 0; i < run.bodies.size(); ++i)
     if (!run.bodies[i].immovable) indices.push_back(i);
@@ -33,7 +35,8 @@ double turn_between(const Quaterniond& from, const Quaterniond& to) {
 
 /// The angle between the body's own axis and its first direction. [rad]
 double lean(const CheckSpec& check, const Trajectory& run, const Frame& frame, std::size_t body) {
-  const Vector3d first = run.frames.front().poses[body].world_from_body * *check.axis, now = frame.poses[body].world_from_body * *check.axis;
+  const Vector3d first = run.frames.front().poses[body].world_from_body * *check.axis,
+                 now = frame.poses[body].world_from_body * *check.axis;
   return std::atan2(first.cross(now).norm(), first.dot(now));
 }
 
@@ -47,23 +50,31 @@ Finding worst_since(const CheckSpec& check, const Trajectory& run, const OfPose&
   for (const Frame& frame : run.frames) {
     if (frame.time < check.at_s) continue;
     if (first == nullptr) first = &frame;
-    for (const std::size_t i : bodies) finding.worst(of_pose(first->poses[i], frame.poses[i]), run.bodies[i].name + " " + at_time(frame.time));
+    for (const std::size_t i : bodies)
+      finding.worst(of_pose(first->poses[i], frame.poses[i]),
+                    run.bodies[i].name + " " + at_time(frame.time));
   }
   if (first == nullptr) finding.worst(kInfinity, "the run ended before at_s");
   if (bodies.empty()) finding.worst(kInfinity, kNobody);
   return finding;
 }
 
-Finding no_frame(double time) { return {kInfinity, fmt::format("no frame was recorded {}", at_time(time))}; }
+Finding no_frame(double time) {
+  return {kInfinity, fmt::format("no frame was recorded {}", at_time(time))};
+}
 
 }  // namespace
 
 Finding drift(const CheckSpec& check, const Scene&, const Trajectory& run) {
-  return worst_since(check, run, [](const BodyPose& first, const BodyPose& now) { return (now.com_world - first.com_world).norm(); });
+  return worst_since(check, run, [](const BodyPose& first, const BodyPose& now) {
+    return (now.com_world - first.com_world).norm();
+  });
 }
 
 Finding tilt(const CheckSpec& check, const Scene&, const Trajectory& run) {
-  return worst_since(check, run, [](const BodyPose& first, const BodyPose& now) { return turn_between(first.world_from_body, now.world_from_body); });
+  return worst_since(check, run, [](const BodyPose& first, const BodyPose& now) {
+    return turn_between(first.world_from_body, now.world_from_body);
+  });
 }
 
 Finding at_rest(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
@@ -79,8 +90,12 @@ Finding at_rest(const CheckSpec& check, const Scene& scene, const Trajectory& ru
       const BodyPose& pose = frame.poses[i];
       const Inertia& inertia = world.bodies[i].inertia;
       const Vector3d omega_body = pose.world_from_body.conjugate() * pose.omega_world;
-      const double turning = run.bodies[i].immovable ? 0.0 : omega_body.dot(inertia.inertia_body * omega_body) * inertia.inverse_mass;
-      finding.worst(0.5 * (pose.velocity_world.squaredNorm() + turning), run.bodies[i].name + " " + at_time(frame.time));
+      const double turning =
+          run.bodies[i].immovable
+              ? 0.0
+              : omega_body.dot(inertia.inertia_body * omega_body) * inertia.inverse_mass;
+      finding.worst(0.5 * (pose.velocity_world.squaredNorm() + turning),
+                    run.bodies[i].name + " " + at_time(frame.time));
     }
   }
   return finding;
@@ -93,7 +108,9 @@ Finding distance_travelled(const CheckSpec& check, const Scene&, const Trajector
   const Vector3d way = frame->poses[body].com_world - run.frames.front().poses[body].com_world;
   const double found = check.axis ? check.axis->dot(way) : way.norm();
   Finding finding;
-  finding.worst(std::abs(found - check.expected[0]), fmt::format("{:.9g} m, expected {:.9g} m, {}", found, check.expected[0], at_time(frame->time)));
+  finding.worst(std::abs(found - check.expected[0]),
+                fmt::format("{:.9g} m, expected {:.9g} m, {}", found, check.expected[0],
+                            at_time(frame->time)));
   return finding;
 }
 
@@ -112,7 +129,9 @@ Finding centre_of_mass(const CheckSpec& check, const Scene& scene, const Traject
   if (mass == 0.0) return {kInfinity, kNobody};
   const Vector3d found = moment / mass;
   Finding finding;
-  finding.worst((found - Eigen::Map<const Vector3d>(check.expected.data())).norm(), fmt::format("({:.9g}, {:.9g}, {:.9g}) {}", found.x(), found.y(), found.z(), at_time(frame->time)));
+  finding.worst((found - Eigen::Map<const Vector3d>(check.expected.data())).norm(),
+                fmt::format("({:.9g}, {:.9g}, {:.9g}) {}", found.x(), found.y(), found.z(),
+                            at_time(frame->time)));
   return finding;
 }
 
@@ -120,14 +139,17 @@ Finding angle_at(const CheckSpec& check, const Scene&, const Trajectory& run) {
   const Frame* end = frame_at(check.at_s, run);
   if (end == nullptr) return no_frame(check.at_s);
   const auto body = static_cast<std::size_t>(index_of(check.body, run));
-  double angle = 0.0;   // with whole turns: summed from frame to frame, each less than half a turn
+  double angle = 0.0;  // with whole turns: summed from frame to frame, each less than half a turn
   for (const Frame* frame = &run.frames.front(); frame != end; ++frame) {
-    Quaterniond turn = frame[1].poses[body].world_from_body * frame->poses[body].world_from_body.conjugate();
+    Quaterniond turn =
+        frame[1].poses[body].world_from_body * frame->poses[body].world_from_body.conjugate();
     if (turn.w() < 0) turn.coeffs() *= -1.0;
     angle += 2.0 * std::atan2(check.axis->dot(turn.vec()), turn.w());
   }
   Finding finding;
-  finding.worst(std::abs(angle - check.expected[0]), fmt::format("{:.9g} rad, expected {:.9g} rad, {}", angle, check.expected[0], at_time(end->time)));
+  finding.worst(std::abs(angle - check.expected[0]),
+                fmt::format("{:.9g} rad, expected {:.9g} rad, {}", angle, check.expected[0],
+                            at_time(end->time)));
   return finding;
 }
 
@@ -136,7 +158,9 @@ Finding stands(const CheckSpec& check, const Scene&, const Trajectory& run) {
   if (frame == nullptr) return no_frame(check.at_s);
   if (bodies_of(check, run).empty()) return {kInfinity, kNobody};
   Finding finding{-kInfinity, ""};
-  for (const std::size_t i : bodies_of(check, run)) finding.worst(lean(check, run, *frame, i), "most of all " + run.bodies[i].name + ", " + at_time(frame->time));
+  for (const std::size_t i : bodies_of(check, run))
+    finding.worst(lean(check, run, *frame, i),
+                  "most of all " + run.bodies[i].name + ", " + at_time(frame->time));
   return finding;
 }
 
@@ -144,8 +168,10 @@ Finding falls(const CheckSpec& check, const Scene&, const Trajectory& run) {
   const Frame* frame = frame_at(check.at_s, run);
   if (frame == nullptr) return {-kInfinity, no_frame(check.at_s).detail};
   if (bodies_of(check, run).empty()) return {-kInfinity, kNobody};
-  Finding finding{-kInfinity, ""};   // of the negative: the least lean is the worst
-  for (const std::size_t i : bodies_of(check, run)) finding.worst(-lean(check, run, *frame, i), "least of all " + run.bodies[i].name + ", " + at_time(frame->time));
+  Finding finding{-kInfinity, ""};  // of the negative: the least lean is the worst
+  for (const std::size_t i : bodies_of(check, run))
+    finding.worst(-lean(check, run, *frame, i),
+                  "least of all " + run.bodies[i].name + ", " + at_time(frame->time));
   finding.value = -finding.value;
   return finding;
 }
@@ -164,7 +190,9 @@ Finding order_of_falls(const CheckSpec& check, const Scene&, const Trajectory& r
     times += fmt::format("{}{:.3g}", times.empty() ? "" : ", ", fell);
     if (fell < before || fell == kInfinity) {
       finding.value += 1.0;
-      if (first_wrong.empty()) first_wrong = run.bodies[i].name + (fell == kInfinity ? " does not fall; " : " falls before its turn; ");
+      if (first_wrong.empty())
+        first_wrong = run.bodies[i].name +
+                      (fell == kInfinity ? " does not fall; " : " falls before its turn; ");
     }
     if (fell != kInfinity) before = std::max(before, fell);
   }

@@ -23,9 +23,10 @@ const std::vector<std::string>& set_up_functions();
 
 /// Fractions of the time of a run; their sum is at most 1.
 struct TimeShares {
-  std::vector<std::pair<std::string, double>> parts;   // time_parts() by name; last the engine's own: scheduling
-  double physics = 0.0;                                // sum of the first kPhysicsParts
-  std::size_t samples = 0;                             // 0: the run was too short
+  // time_parts() by name; last the engine's own: scheduling
+  std::vector<std::pair<std::string, double>> parts;
+  double physics = 0.0;     // sum of the first kPhysicsParts
+  std::size_t samples = 0;  // 0: the run was too short
 };
 TimeShares time_shares(const StackSamples& samples);
 

@@ -11,7 +11,8 @@ namespace tumble::engines {
 namespace {
 
 // No pair whose gap is at least `smallest` changes it, and the balls around the two decide most.
-double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
+double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states, int i,
+                   int j, double smallest) {
   if (!moving.may_collide(i, j)) return smallest;
   const collision::CollisionShape& a = moving.shape(i);
   const collision::CollisionShape& b = moving.shape(j);
@@ -19,8 +20,11 @@ double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>&
     const double reach = smallest + a.bounding_radius() + b.bounding_radius();
     if ((states[i].com_world - states[j].com_world).squaredNorm() > reach * reach) return smallest;
   }
-  const auto pose = [&](int k) { return collision::Pose{states[k].com_world, states[k].world_from_body}; };
-  return std::min(smallest, collision::gap_distance(a, pose(i), b, pose(j), moving.pair_cache(i, j), smallest));
+  const auto pose = [&](int k) {
+    return collision::Pose{states[k].com_world, states[k].world_from_body};
+  };
+  return std::min(
+      smallest, collision::gap_distance(a, pose(i), b, pose(j), moving.pair_cache(i, j), smallest));
 }
 
 }  // namespace
@@ -36,10 +40,12 @@ void SmallestGap::sort_bodies(const MovingWorld& moving) {
 double SmallestGap::measure(const MovingWorld& moving, const std::vector<RigidBodyState>& states) {
   if (meets_all_.empty() && meets_others_.empty()) sort_bodies(moving);
   std::vector<char> still(moving.size());
-  for (int i = 0; i < moving.size(); ++i) still[i] = moving.asleep(i) || (moving.world().bodies[i].immovable() && !moving.is_driven(i));
+  for (int i = 0; i < moving.size(); ++i)
+    still[i] = moving.asleep(i) || (moving.world().bodies[i].immovable() && !moving.is_driven(i));
   const auto over_pairs = [&](double smallest, bool of_still) {
     const auto look = [&](int i, int j) {
-      if ((still[i] && still[j]) == of_still) smallest = smaller_gap(moving, states, std::min(i, j), std::max(i, j), smallest);
+      if ((still[i] && still[j]) == of_still)
+        smallest = smaller_gap(moving, states, std::min(i, j), std::max(i, j), smallest);
     };
     for (std::size_t k = 0; k < meets_all_.size(); ++k) {
       for (std::size_t l = k + 1; l < meets_all_.size(); ++l) look(meets_all_[k], meets_all_[l]);
@@ -56,15 +62,20 @@ double SmallestGap::measure(const MovingWorld& moving, const std::vector<RigidBo
 
 void FrameRecorder::push(MovingWorld& moving, double t) {
   std::vector<RigidBodyState> states;
-  for (int i = 0; i < moving.size(); ++i) states.push_back(t == moving.time() && moving.can_move(i) ? moving.state(i) : moving.path(i, t));
+  for (int i = 0; i < moving.size(); ++i)
+    states.push_back(t == moving.time() && moving.can_move(i) ? moving.state(i)
+                                                              : moving.path(i, t));
   if (t > moving.time() && !moving.linked_groups().empty()) moving.close_links(states, t);
-  if (built::kContact && contacts_ && t > moving.time()) contacts_->remove_overlaps_within_step(states, t);
+  if (built::kContact && contacts_ && t > moving.time())
+    contacts_->remove_overlaps_within_step(states, t);
   Frame frame;
   frame.time = t;
   for (int i = 0; i < moving.size(); ++i) {
     const WorldBody& body = moving.world().bodies[i];
-    BodyPose pose{states[i].com_world, states[i].world_from_body, moving.velocity_of(i, t), Vector3d::Zero()};
-    if (moving.can_move(i)) pose.velocity_world = body.inertia.inverse_mass * states[i].momentum_world;
+    BodyPose pose{states[i].com_world, states[i].world_from_body, moving.velocity_of(i, t),
+                  Vector3d::Zero()};
+    if (moving.can_move(i))
+      pose.velocity_world = body.inertia.inverse_mass * states[i].momentum_world;
     if (!body.immovable()) pose.omega_world = omega_of(states[i], body.inertia);
     frame.poses.push_back(pose);
   }
@@ -81,7 +92,8 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
 }
 
 void FrameRecorder::record_before(MovingWorld& moving, double t) {
-  for (; frame_time(next_) < t && frame_time(next_) <= duration_; ++next_) push(moving, frame_time(next_));
+  for (; frame_time(next_) < t && frame_time(next_) <= duration_; ++next_)
+    push(moving, frame_time(next_));
 }
 
 void FrameRecorder::record_committed(MovingWorld& moving) {

@@ -17,14 +17,16 @@ class SmallestGap {
  private:
   void sort_bodies(const MovingWorld& moving);
 
-  std::vector<int> meets_all_, meets_others_;   // bodies for collision; those that pass each other, like the links of a chain, apart
-  std::vector<char> still_;    // by body, when still_gap_ was measured
-  double still_gap_ = 0.0;     // between two of these [m]
+  // bodies for collision; those that pass each other, like the links of a chain, apart
+  std::vector<int> meets_all_, meets_others_;
+  std::vector<char> still_;  // by body, when still_gap_ was measured
+  double still_gap_ = 0.0;   // between two of these [m]
 };
 
 class FrameRecorder {
  public:
-  FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
+  FrameRecorder(double rate_hz, double duration, TrajectorySink& sink)
+      : rate_(rate_hz), duration_(duration), sink_(sink) {}
 
   /// Frames hold the forces of these contacts, and what they hold apart is apart in frames within a
   /// step, too.
@@ -47,6 +49,5 @@ class FrameRecorder {
   SmallestGap smallest_gap_;
   long next_ = 0;
 };
-
 
 }  // namespace tumble::engines

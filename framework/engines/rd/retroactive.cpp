@@ -22,17 +22,29 @@ namespace {
 
 class RetroactiveRun : private StepStages {
  public:
-  RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
-      : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
-        duration_(options.duration_s.value_or(scene.duration_s)), world_step_(build_world(scene), laws_, {step_, scene.rest_speed_m_s}, counters_, sink), moving_(world_step_.moving()),
-        callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_, true) {
+  RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                 TrajectorySink& sink)
+      : scene_(scene),
+        laws_(guarded(laws)),
+        sink_(sink),
+        step_(options.step_s.value_or(scene.step_s)),
+        duration_(options.duration_s.value_or(scene.duration_s)),
+        world_step_(build_world(scene), laws_, {step_, scene.rest_speed_m_s}, counters_, sink),
+        moving_(world_step_.moving()),
+        callbacks_(options.callbacks),
+        recorder_(options.frame_rate_hz, duration_, sink),
+        energy_watch_(scene.rest_speed_m_s, step_, true) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!world_step_.has_contacts()) return;
     PersistentContacts& contacts = world_step_.contacts();
     recorder_.record_contacts_of(contacts);
-    if (built::kFriction && std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(moving_, contacts, scene.rest_speed_m_s, sink);
+    if (built::kFriction &&
+        std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(),
+                    [](const WorldBody& body) { return body.friction > 0.0; }))
+      modes_.emplace(moving_, contacts, scene.rest_speed_m_s, sink);
     if (!built::kSleep || !moving_.world().contact->sleep) return;
-    sleepers_.emplace(moving_, contacts, modes_ ? &*modes_ : nullptr, scene.rest_speed_m_s, counters_, sink);
+    sleepers_.emplace(moving_, contacts, modes_ ? &*modes_ : nullptr, scene.rest_speed_m_s,
+                      counters_, sink);
     recorder_.record_contacts_of(*sleepers_);
   }
 
@@ -64,7 +76,9 @@ class RetroactiveRun : private StepStages {
     moving_.begin_step_again(target);
     return true;
   }
-  bool wake_approached(const std::vector<std::pair<int, int>>& candidates) override { return has_sleepers() && sleepers_->wake_approached(candidates); }
+  bool wake_approached(const std::vector<std::pair<int, int>>& candidates) override {
+    return has_sleepers() && sleepers_->wake_approached(candidates);
+  }
   bool wake(std::pair<int, int> pair) override { return has_sleepers() && sleepers_->wake(pair); }
   void before_commit(double reached) override;
   void impact(const Event& event) override {
@@ -73,33 +87,36 @@ class RetroactiveRun : private StepStages {
   }
 
   const scene::Scene& scene_;
-  const Laws laws_;   // guarded
+  const Laws laws_;  // guarded
   TrajectorySink& sink_;
   double step_, duration_;
-  double target_ = 0.0;   // of advance_to [s]
+  double target_ = 0.0;  // of advance_to [s]
   RunCounters counters_;
   WorldStep world_step_;
-  MovingWorld& moving_;                       // of world_step_
+  MovingWorld& moving_;  // of world_step_
   const std::vector<Callback> callbacks_;
   std::size_t called_ = 0;
   FrameRecorder recorder_;
-  std::optional<ContactModes> modes_;         // where contacts may have friction
-  std::optional<Sleepers> sleepers_;          // where the scene asks for sleep
-  std::vector<std::pair<int, int>> touching_; // pairs in contact in the step that was committed last
+  std::optional<ContactModes> modes_;  // where contacts may have friction
+  std::optional<Sleepers> sleepers_;   // where the scene asks for sleep
+  // pairs in contact in the step that was committed last
+  std::vector<std::pair<int, int>> touching_;
   long grid_index_ = 0;
   std::set<double> switch_times_;
-  double next_look_ = std::numeric_limits<double>::infinity();   // of a control law
+  double next_look_ = std::numeric_limits<double>::infinity();  // of a control law
   std::string stopped_by_;
   EnergyWatch energy_watch_;
 };
 
 double RetroactiveRun::next_target() const {
   double target = static_cast<double>(grid_index_ + 1) * step_;
-  if (target > duration_ - kNegligible * step_) target = duration_;   // no step of a rounding's length at the end
+  // no step of a rounding's length at the end
+  if (target > duration_ - kNegligible * step_) target = duration_;
   target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);
-  if (built::kCallback && called_ < callbacks_.size()) target = std::min(target, callbacks_[called_].time);
+  if (built::kCallback && called_ < callbacks_.size())
+    target = std::min(target, callbacks_[called_].time);
   return target;
 }
 
@@ -124,7 +141,8 @@ void RetroactiveRun::run_callbacks() {
       RigidBodyState state = moving_.state(body);
       callbacks_[called_].act(body, state);
       moving_.set_state(body, state);
-      events.push_back({moving_.time(), EventKind::kControl, body, -1, state.com_world, Vector3d::UnitZ(), 0.0, 0.0});
+      events.push_back({moving_.time(), EventKind::kControl, body, -1, state.com_world,
+                        Vector3d::UnitZ(), 0.0, 0.0});
     }
     moving_.keep_constraints(events);
     for (const Event& event : events) sink_.event(event);
@@ -133,7 +151,8 @@ void RetroactiveRun::run_callbacks() {
 
 void RetroactiveRun::note_touching(const std::vector<std::pair<int, int>>& near) {
   touching_.clear();
-  std::copy_if(near.begin(), near.end(), std::back_inserter(touching_), [&](const auto& pair) { return world_step_.contacts().keeps(pair); });
+  std::copy_if(near.begin(), near.end(), std::back_inserter(touching_),
+               [&](const auto& pair) { return world_step_.contacts().keeps(pair); });
 }
 
 void RetroactiveRun::before_commit(double reached) {
@@ -166,10 +185,12 @@ void RetroactiveRun::advance_to(double target) {
 
 // On rods between heavy ones, or between joints.
 void RetroactiveRun::report_light_bodies() {
-  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  const RunCounters before = counters_;  // what is looked at must not show in what a run counts
   const LinkForces at_start = moving_.measure_links(moving_.states(), 0.0, {});
   counters_ = before;
-  if (const auto step = report_unstable_links(moving_.world(), at_start, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
+  if (const auto step = report_unstable_links(moving_.world(), at_start, laws_, {step_, duration_},
+                                              counters_.notices))
+    counters_.watch.name_step(*step);
 }
 
 void RetroactiveRun::run() {
@@ -177,7 +198,8 @@ void RetroactiveRun::run() {
   world_step_.impact_detection().refuse_overlap(where, scene_);
   refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
   for (const effects::Effect* effect : effects::all())
-    for (const effects::Switch& one : effect->switches(moving_.world())) switch_times_.insert(one.event.time);
+    for (const effects::Switch& one : effect->switches(moving_.world()))
+      switch_times_.insert(one.event.time);
   try {
     if (moving_.world().stabilisation) report_light_bodies();
     run_to_the_end();
@@ -189,14 +211,17 @@ void RetroactiveRun::run() {
 }
 
 void RetroactiveRun::stop_for(const Runaway& runaway) {
-  const std::vector<ContactPoint> none, &contacts = world_step_.has_contacts() ? world_step_.contacts().forces() : none;
+  const std::vector<ContactPoint> none,
+      &contacts = world_step_.has_contacts() ? world_step_.contacts().forces() : none;
   const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
-  stopped_by_ = runaway_message(moving_.time(), moving_.world(), runaway, {moving_.states(), links, contacts}, laws_);
+  stopped_by_ = runaway_message(moving_.time(), moving_.world(), runaway,
+                                {moving_.states(), links, contacts}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {
   switch_forces();
-  std::vector<std::pair<int, int>> all;   // bodies that touch at the start may overlap by a rounding
+  // bodies that touch at the start may overlap by a rounding
+  std::vector<std::pair<int, int>> all;
   for (int i = 0; i < moving_.size(); ++i)
     for (int j = i + 1; j < moving_.size(); ++j)
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
@@ -204,10 +229,11 @@ void RetroactiveRun::run_to_the_end() {
   if (world_step_.has_contacts()) world_step_.contacts().begin_where_touching(all);
   run_callbacks();
   const auto watch_energy = [&] {
-    if (!callbacks_.empty()) return;   // they bring energy in
-    if (const auto runaway = energy_watch_.look(moving_.time(), moving_.world(), moving_.states())) stop_for(*runaway);
+    if (!callbacks_.empty()) return;  // they bring energy in
+    if (const auto runaway = energy_watch_.look(moving_.time(), moving_.world(), moving_.states()))
+      stop_for(*runaway);
   };
-  watch_energy();   // what the first step does counts, too
+  watch_energy();  // what the first step does counts, too
   record([&] { recorder_.record_committed(moving_); });
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
@@ -226,11 +252,12 @@ void RetroactiveRun::run_to_the_end() {
 
 }  // namespace
 
-void run_retroactive(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
+void run_retroactive(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                     TrajectorySink& sink) {
   std::optional<RetroactiveRun> run;
   try {
     run.emplace(scene, laws, options, sink);
-  } catch (const StoppedRun& stop) {   // links are drawn onto their constraints where they start
+  } catch (const StoppedRun& stop) {  // links are drawn onto their constraints where they start
     return sink.end(RunCounters{}.named(), fmt::format("at t = 0.000000 s, {}", stop.what()));
   }
   run->run();

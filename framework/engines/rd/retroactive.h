@@ -10,6 +10,7 @@
 namespace tumble::engines {
 
 /// @pre `laws` has every law that the scene needs (run_scene checks)
-void run_retroactive(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
+void run_retroactive(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                     TrajectorySink& sink);
 
 }  // namespace tumble::engines

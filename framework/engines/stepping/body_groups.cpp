@@ -4,7 +4,8 @@
 
 namespace tumble::engines {
 
-std::vector<int> group_leaders(const MovingWorld& moving, const std::vector<std::pair<int, int>>& touching) {
+std::vector<int> group_leaders(const MovingWorld& moving,
+                               const std::vector<std::pair<int, int>>& touching) {
   DisjointSets sets(moving.size());
   for (const LinkedBodies& linked : moving.linked_groups())
     for (const int body : linked.bodies()) sets.unite(linked.bodies().front(), body);

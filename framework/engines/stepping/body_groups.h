@@ -12,6 +12,7 @@ namespace tumble::engines {
 /// By body: the least index among the bodies it belongs together with; its own where it stands
 /// alone. An immovable body joins none.
 /// @param touching  pairs of bodies
-std::vector<int> group_leaders(const MovingWorld& moving, const std::vector<std::pair<int, int>>& touching);
+std::vector<int> group_leaders(const MovingWorld& moving,
+                               const std::vector<std::pair<int, int>>& touching);
 
 }  // namespace tumble::engines

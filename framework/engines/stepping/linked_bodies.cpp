@@ -14,7 +14,8 @@
 namespace tumble::engines {
 namespace {
 
-constexpr int kMostProjections = 8;   // Newton's method doubles the digits; a step leaves few missing
+// Newton's method doubles the digits; a step leaves few missing
+constexpr int kMostProjections = 8;
 
 Matrix3d inverse_inertia_world(const Body& body) {
   if (body.inertia.inverse_mass == 0.0) return Matrix3d::Zero();
@@ -23,7 +24,8 @@ Matrix3d inverse_inertia_world(const Body& body) {
 }
 
 Body body_of(const RigidBodyState& state, const Inertia& inertia) {
-  return {inertia, state.com_world, state.world_from_body.normalized(), inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
+  return {inertia, state.com_world, state.world_from_body.normalized(),
+          inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
 }
 
 void add_force(const Body& body, const Vector3d& force, const Vector3d& point, Wrench& wrench) {
@@ -38,8 +40,9 @@ std::vector<LinkedGroup> groups_of_linked_bodies(const World& world) {
   DisjointSets sets(n);
   std::vector<bool> linked(n, false);
   const auto movable = [&](int body) { return body >= 0 && !world.bodies[body].immovable(); };
-  // Entry by entry: the first movable body that it names, to which it ties the others; -1 where none can move.
-  std::vector<std::pair<std::size_t, std::vector<int>>> first_bodies;   // of an effect's entries
+  // Entry by entry: the first movable body that it names, to which it ties the others; -1 where
+  // none can move.
+  std::vector<std::pair<std::size_t, std::vector<int>>> first_bodies;  // of an effect's entries
   for (std::size_t k = 0; k < effects::all().size(); ++k) {
     const effects::Effect& effect = *effects::all()[k];
     if (!effect.traits().ties || effect.count_in(world) == 0) continue;
@@ -55,7 +58,7 @@ std::vector<LinkedGroup> groups_of_linked_bodies(const World& world) {
       first_of.push_back(first);
     }
   }
-  std::vector<int> group_of(n, -1);   // by the name of a set
+  std::vector<int> group_of(n, -1);  // by the name of a set
   std::vector<LinkedGroup> groups;
   for (int i = 0; i < n; ++i) {
     if (!linked[i]) continue;
@@ -68,14 +71,22 @@ std::vector<LinkedGroup> groups_of_linked_bodies(const World& world) {
   }
   for (const auto& [effect, first_of] : first_bodies)
     for (std::size_t entry = 0; entry < first_of.size(); ++entry)
-      if (first_of[entry] >= 0) groups[group_of[sets.find(first_of[entry])]].entries[effect].push_back(static_cast<int>(entry));
+      if (first_of[entry] >= 0)
+        groups[group_of[sets.find(first_of[entry])]].entries[effect].push_back(
+            static_cast<int>(entry));
   return groups;
 }
 
-LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, LinkedGroup group)
-    : world_(world), laws_(laws), counters_(counters), outer_wrench_(std::move(outer_wrench)), bodies_(std::move(group.bodies)) {
+LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters,
+                           OuterWrench outer_wrench, LinkedGroup group)
+    : world_(world),
+      laws_(laws),
+      counters_(counters),
+      outer_wrench_(std::move(outer_wrench)),
+      bodies_(std::move(group.bodies)) {
   for (const auto& [k, entries] : group.entries) {
-    auto acting = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, entries, *this);
+    auto acting =
+        effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, entries, *this);
     if (!acting) continue;
     row_count_ += acting->row_count();
     if (acting->control() != nullptr) controls_.push_back(terms_.size());
@@ -83,7 +94,9 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
   }
 }
 
-bool LinkedBodies::has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
+bool LinkedBodies::has(int body) const {
+  return std::binary_search(bodies_.begin(), bodies_.end(), body);
+}
 
 int LinkedBodies::place_of(int body) {
   const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
@@ -100,16 +113,20 @@ std::vector<RigidBodyState> LinkedBodies::take(const std::vector<RigidBodyState>
   return local;
 }
 
-void LinkedBodies::put(const std::vector<RigidBodyState>& local, std::vector<RigidBodyState>& states) const {
+void LinkedBodies::put(const std::vector<RigidBodyState>& local,
+                       std::vector<RigidBodyState>& states) const {
   for (std::size_t i = 0; i < bodies_.size(); ++i) states[bodies_[i]] = local[i];
 }
 
-std::vector<Body> LinkedBodies::place_bodies(const std::vector<RigidBodyState>& local, double t) const {
+std::vector<Body> LinkedBodies::place_bodies(const std::vector<RigidBodyState>& local,
+                                             double t) const {
   std::vector<Body> bodies;
   bodies.reserve(bodies_.size() + fixed_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies.push_back(body_of(local[i], world_.bodies[bodies_[i]].inertia));
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    bodies.push_back(body_of(local[i], world_.bodies[bodies_[i]].inertia));
   for (const int fixed : fixed_) {
-    Body body{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+    Body body{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
+              Vector3d::Zero()};
     if (fixed >= 0) {
       body.com_world = prescribed_position(world_.bodies[fixed], t);
       body.velocity_world = prescribed_velocity(world_.bodies[fixed], t);
@@ -121,10 +138,12 @@ std::vector<Body> LinkedBodies::place_bodies(const std::vector<RigidBodyState>& 
 }
 
 // Of everything but rods and joints.
-std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies) {
+std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& local,
+                                         const std::vector<Body>& bodies) {
   const StageTimer timer(counters_.force_seconds);
   std::vector<Wrench> wrenches(bodies.size(), {Vector3d::Zero(), Vector3d::Zero()});
-  for (std::size_t i = 0; i < bodies_.size(); ++i) wrenches[i] = outer_wrench_(bodies_[i], local[i]);
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    wrenches[i] = outer_wrench_(bodies_[i], local[i]);
   for (const Terms& terms : terms_) terms.acting->add_forces(bodies, wrenches);
   return wrenches;
 }
@@ -134,13 +153,15 @@ double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states
   if (controls_.empty()) return next;
   const StageTimer timer(counters_.control_seconds);
   const std::vector<Body> bodies = place_bodies(take(states), time);
-  for (const std::size_t k : controls_) next = std::min(next, terms_[k].acting->control()->look(time, bodies));
+  for (const std::size_t k : controls_)
+    next = std::min(next, terms_[k].acting->control()->look(time, bodies));
   return next;
 }
 
 std::map<int, effects::Memory> LinkedBodies::held() const {
   std::map<int, effects::Memory> all;
-  for (const std::size_t k : controls_) all.emplace(static_cast<int>(terms_[k].effect), terms_[k].acting->control()->memory());
+  for (const std::size_t k : controls_)
+    all.emplace(static_cast<int>(terms_[k].effect), terms_[k].acting->control()->memory());
   return all;
 }
 
@@ -153,7 +174,9 @@ void LinkedBodies::remember(const std::map<int, effects::Memory>& held) {
 }
 
 bool LinkedBodies::is_driven_otherwise(const std::map<int, effects::Memory>& before) const {
-  return std::any_of(controls_.begin(), controls_.end(), [&](std::size_t k) { return terms_[k].acting->control()->differs_from(before.at(static_cast<int>(terms_[k].effect))); });
+  return std::any_of(controls_.begin(), controls_.end(), [&](std::size_t k) {
+    return terms_[k].acting->control()->differs_from(before.at(static_cast<int>(terms_[k].effect)));
+  });
 }
 
 std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
@@ -163,66 +186,84 @@ std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
   return rows;
 }
 
-std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBodyState>& states, double t) {
+std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBodyState>& states,
+                                                      double t) {
   if (!has_constraints()) return {};
   auto all = rows(place_bodies(take(states), t));
-  for (Constraint& row : all) {   // all fixed ends are one: none of them moves by an impulse
+  for (Constraint& row : all) {  // all fixed ends are one: none of them moves by an impulse
     row.body_a = std::min(row.body_a, fixed_end());
     row.body_b = std::min(row.body_b, fixed_end());
   }
   return all;
 }
 
-void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, ContactProblem& problem) {
+void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t,
+              const std::map<int, int>& places, ContactProblem& problem) {
   const int fixed = static_cast<int>(problem.bodies.size());
   bool uses_fixed = false;
   for (Constraint row : group.constraint_rows(states, t)) {
     for (int* const body : {&row.body_a, &row.body_b}) {
       uses_fixed = uses_fixed || *body >= group.fixed_end();
-      *body = *body < group.fixed_end() ? places.at(group.bodies()[static_cast<std::size_t>(*body)]) : fixed;
+      *body = *body < group.fixed_end() ? places.at(group.bodies()[static_cast<std::size_t>(*body)])
+                                        : fixed;
     }
     problem.rows.push_back(row);
   }
-  if (uses_fixed) problem.bodies.push_back({0.0, Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+  if (uses_fixed)
+    problem.bodies.push_back(
+        {0.0, Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
 }
 
 void keep_rates(ContactProblem& problem) {
   const auto rate = [&](int body, const Vector6d& jacobian) {
     const PushedBody& pushed = problem.bodies[static_cast<std::size_t>(body)];
-    return jacobian.head<3>().dot(pushed.velocity_world) + jacobian.tail<3>().dot(pushed.omega_world);
+    return jacobian.head<3>().dot(pushed.velocity_world) +
+           jacobian.tail<3>().dot(pushed.omega_world);
   };
   problem.row_targets.resize(static_cast<Eigen::Index>(problem.rows.size()));
   for (std::size_t k = 0; k < problem.rows.size(); ++k) {
     const auto& [a, b, row] = problem.rows[k];
-    problem.row_targets[static_cast<Eigen::Index>(k)] = rate(a, row.jacobian_a) + rate(b, row.jacobian_b);
+    problem.row_targets[static_cast<Eigen::Index>(k)] =
+        rate(a, row.jacobian_a) + rate(b, row.jacobian_b);
   }
 }
 
-VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches) {
+VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies,
+                                             const std::vector<RigidBodyState>& local,
+                                             std::vector<Wrench>& wrenches) {
   const StageTimer timer(counters_.constraint_seconds);
   const std::vector<Constraint> all = rows(bodies);
   std::vector<ConstrainedBody> constrained;
   constrained.reserve(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    ConstrainedBody body{bodies[i].inertia.inverse_mass, inverse_inertia_world(bodies[i]), Vector6d::Zero()};
+    ConstrainedBody body{bodies[i].inertia.inverse_mass, inverse_inertia_world(bodies[i]),
+                         Vector6d::Zero()};
     if (i < bodies_.size()) {
       const Vector3d gyroscopic = bodies[i].omega_world.cross(local[i].angular_momentum_world);
-      body.free_acceleration << body.inverse_mass * wrenches[i].force_world, body.inverse_inertia_world * (wrenches[i].torque_world - gyroscopic);
+      body.free_acceleration << body.inverse_mass * wrenches[i].force_world,
+          body.inverse_inertia_world * (wrenches[i].torque_world - gyroscopic);
     } else if (fixed_[i - bodies_.size()] >= 0) {
-      const scene::PrescribedMotion& m = world_.bodies[fixed_[i - bodies_.size()]].motion;   // a shaken end accelerates
+      // a shaken end accelerates
+      const scene::PrescribedMotion& m = world_.bodies[fixed_[i - bodies_.size()]].motion;
       if (m.angular_frequency_rad_s != 0.0)
-        body.free_acceleration.head<3>() = -m.angular_frequency_rad_s * m.angular_frequency_rad_s *
-                                           (bodies[i].com_world - world_.bodies[fixed_[i - bodies_.size()]].com_at_0_world - m.velocity_m_s * time_of_stage_);
+        body.free_acceleration.head<3>() =
+            -m.angular_frequency_rad_s * m.angular_frequency_rad_s *
+            (bodies[i].com_world - world_.bodies[fixed_[i - bodies_.size()]].com_at_0_world -
+             m.velocity_m_s * time_of_stage_);
     }
     constrained.push_back(body);
   }
   VectorXd wanted = VectorXd::Zero(static_cast<Eigen::Index>(all.size()));
   if (world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kBaumgarte)
     for (std::size_t k = 0; k < all.size(); ++k)
-      wanted[static_cast<Eigen::Index>(k)] = laws_.baumgarte_acceleration(all[k].row.value, all[k].row.rate, world_.stabilisation->time_constant_s);
+      wanted[static_cast<Eigen::Index>(k)] = laws_.baumgarte_acceleration(
+          all[k].row.value, all[k].row.rate, world_.stabilisation->time_constant_s);
   ++counters_.constraint_solves;
   const VectorXd multipliers = laws_.constraint_multipliers(all, constrained, wanted);
-  if (multipliers.size() != wanted.size()) throw StoppedRun("rods and joints (constraint_multipliers of " + laws_.constraint_source + ") returned " + std::to_string(multipliers.size()) + " multipliers for " + std::to_string(wanted.size()) + " constraints");
+  if (multipliers.size() != wanted.size())
+    throw StoppedRun("rods and joints (constraint_multipliers of " + laws_.constraint_source +
+                     ") returned " + std::to_string(multipliers.size()) + " multipliers for " +
+                     std::to_string(wanted.size()) + " constraints");
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double lambda = multipliers[static_cast<Eigen::Index>(k)];
     const auto& [a, b, row] = all[k];
@@ -238,25 +279,31 @@ VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
   ++counters_.derivative_evaluations;
   std::vector<RigidBodyState> local;
   local.reserve(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) local.push_back(unpack(y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize)));
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    local.push_back(unpack(y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize)));
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Wrench> wrenches = forces(local, bodies);
   if (has_constraints()) add_constraint_forces(bodies, local, wrenches);
   VectorXd rate(y.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i)
-    rate.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = laws_.state_derivative(local[i], bodies[i].inertia, wrenches[i]);
+    rate.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) =
+        laws_.state_derivative(local[i], bodies[i].inertia, wrenches[i]);
   return rate;
 }
 
-std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodyState>& states, double t, double h) {
+std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodyState>& states,
+                                                  double t, double h) {
   step_ = h;
   std::vector<RigidBodyState> local = take(states);
   VectorXd y(static_cast<Eigen::Index>(local.size()) * kStateSize);
-  for (std::size_t i = 0; i < local.size(); ++i) y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = pack(local[i]);
+  for (std::size_t i = 0; i < local.size(); ++i)
+    y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = pack(local[i]);
   const OdeFunction f = [&](double time, const VectorXd& state) {
     if (state.size() != y.size())
-      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source + ") asked for the derivative of a state of " + std::to_string(state.size()) + " numbers instead of " + std::to_string(y.size()));
+      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source +
+                       ") asked for the derivative of a state of " + std::to_string(state.size()) +
+                       " numbers instead of " + std::to_string(y.size()));
     return derivative(time, state);
   };
   ++counters_.integrations;
@@ -265,14 +312,18 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
     local[i] = unpack(end.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize));
     local[i].world_from_body = laws_.renormalize(local[i].world_from_body);
   }
-  if (has_constraints() && world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kProjection) project_local(local, t + h, true);
+  if (has_constraints() && world_.stabilisation &&
+      world_.stabilisation->kind == scene::StabilisationKind::kProjection)
+    project_local(local, t + h, true);
   return local;
 }
 
 // The largest error of these rows, over the group's size: its longest rod, its farthest coordinate.
-double LinkedBodies::open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const {
+double LinkedBodies::open_part(const std::vector<Body>& bodies,
+                               const std::vector<Constraint>& rows) const {
   double worst = 0.0, size = 0.0;
-  for (const Constraint& c : rows) worst = std::isnan(c.row.value) ? c.row.value : std::max(worst, std::abs(c.row.value));
+  for (const Constraint& c : rows)
+    worst = std::isnan(c.row.value) ? c.row.value : std::max(worst, std::abs(c.row.value));
   for (const Terms& terms : terms_) size = std::max(size, terms.acting->size());
   for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
   return worst == 0.0 ? 0.0 : worst / size;
@@ -281,19 +332,25 @@ double LinkedBodies::open_part(const std::vector<Body>& bodies, const std::vecto
 std::vector<ConstrainedBody> LinkedBodies::constrained(const std::vector<Body>& bodies) {
   std::vector<ConstrainedBody> result;
   result.reserve(bodies.size());
-  for (const Body& body : bodies) result.push_back({body.inertia.inverse_mass, inverse_inertia_world(body), Vector6d::Zero()});
+  for (const Body& body : bodies)
+    result.push_back({body.inertia.inverse_mass, inverse_inertia_world(body), Vector6d::Zero()});
   return result;
 }
 
-VectorXd LinkedBodies::correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
+VectorXd LinkedBodies::correction(const std::vector<Constraint>& rows,
+                                  const std::vector<ConstrainedBody>& bodies,
+                                  const VectorXd& error) {
   ++counters_.constraint_corrections;
   VectorXd change = laws_.constraint_correction(rows, bodies, error);
   if (change.size() != 6 * static_cast<Eigen::Index>(bodies.size()))
-    throw StoppedRun("rods and joints (constraint_correction of " + laws_.constraint_source + ") returned " + std::to_string(change.size()) + " numbers instead of 6 a body");
+    throw StoppedRun("rods and joints (constraint_correction of " + laws_.constraint_source +
+                     ") returned " + std::to_string(change.size()) +
+                     " numbers instead of 6 a body");
   return change;
 }
 
-LinkedBodies::Instant LinkedBodies::at_instant(const std::vector<RigidBodyState>& states, double t) try {
+LinkedBodies::Instant LinkedBodies::at_instant(const std::vector<RigidBodyState>& states,
+                                               double t) try {
   const std::vector<Body> bodies = place_bodies(take(states), t);
   return {rows(bodies), constrained(bodies)};
 } catch (const OutOfTime&) {
@@ -304,7 +361,9 @@ LinkedBodies::Instant LinkedBodies::at_instant(const std::vector<RigidBodyState>
 
 VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) try {
   const StageTimer timer(counters_.constraint_seconds);
-  const auto rate = [&](int body, const Vector6d& jacobian) { return jacobian.dot(change.segment<6>(6 * static_cast<Eigen::Index>(body))); };
+  const auto rate = [&](int body, const Vector6d& jacobian) {
+    return jacobian.dot(change.segment<6>(6 * static_cast<Eigen::Index>(body)));
+  };
   VectorXd error(static_cast<Eigen::Index>(instant.rows.size()));
   for (std::size_t k = 0; k < instant.rows.size(); ++k) {
     const auto& [a, b, row] = instant.rows[k];
@@ -319,9 +378,11 @@ VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) 
 
 void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
   const StageTimer timer(counters_.constraint_seconds);
-  const auto correct = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all, bool of_places) {
+  const auto correct = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all,
+                           bool of_places) {
     VectorXd error(static_cast<Eigen::Index>(all.size()));
-    for (std::size_t k = 0; k < all.size(); ++k) error[static_cast<Eigen::Index>(k)] = of_places ? all[k].row.value : all[k].row.rate;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      error[static_cast<Eigen::Index>(k)] = of_places ? all[k].row.value : all[k].row.rate;
     return correction(all, constrained(bodies), error);
   };
   std::vector<Body> bodies = place_bodies(local, t);
@@ -336,18 +397,24 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
       const Vector3d omega = bodies[i].omega_world, turn = change.segment<3>(at + 3);
       local[i].com_world += change.segment<3>(at);
       const double angle = turn.norm();
-      if (angle > 0) local[i].world_from_body = (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * local[i].world_from_body).normalized();
-      local[i].angular_momentum_world = angular_momentum_of(omega, local[i].world_from_body, bodies[i].inertia);
+      if (angle > 0)
+        local[i].world_from_body =
+            (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * local[i].world_from_body)
+                .normalized();
+      local[i].angular_momentum_world =
+          angular_momentum_of(omega, local[i].world_from_body, bodies[i].inertia);
     }
     bodies = place_bodies(local, t);
     all = rows(bodies);
   }
-  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kNegligible)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, subject(), {left, kNegligible, t, step_});
+  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kNegligible))
+    counters_.watch.note(RunWatch::Kind::kProjectionOpen, subject(), {left, kNegligible, t, step_});
   const VectorXd change = correct(bodies, all, false);
   for (std::size_t i = 0; i < local.size(); ++i) {
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
     local[i].momentum_world += bodies[i].inertia.mass * change.segment<3>(at);
-    local[i].angular_momentum_world += angular_momentum_of(change.segment<3>(at + 3), local[i].world_from_body, bodies[i].inertia);
+    local[i].angular_momentum_world +=
+        angular_momentum_of(change.segment<3>(at + 3), local[i].world_from_body, bodies[i].inertia);
   }
 } catch (const OutOfTime&) {
   throw;
@@ -371,18 +438,24 @@ void LinkedBodies::project(std::vector<RigidBodyState>& states, double t) {
 
 void LinkedBodies::watch(const std::vector<RigidBodyState>& states, double t, double h) {
   if (!has_constraints()) return;
-  const bool is_projected = world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kProjection;
+  const bool is_projected =
+      world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kProjection;
   const double allowed = is_projected ? kLinkClosed : kLinkDrifts;
   const std::vector<Body> bodies = place_bodies(take(states), t);
   const auto note = [&](const std::string& name, double open) {
-    if (!(open <= allowed)) counters_.watch.note(RunWatch::Kind::kLinkOpen, fmt::format("'{}'", name), {open, allowed, t, h});
+    if (!(open <= allowed))
+      counters_.watch.note(RunWatch::Kind::kLinkOpen, fmt::format("'{}'", name),
+                           {open, allowed, t, h});
   };
   for (const Terms& terms : terms_) terms.acting->note_open(bodies, note);
 }
 
-std::string LinkedBodies::subject() const { return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it"; }
+std::string LinkedBodies::subject() const {
+  return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it";
+}
 
-void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& measured) try {
+void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t,
+                           const std::vector<ContactPoint>& contacts, LinkForces& measured) try {
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
@@ -395,7 +468,9 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
   Eigen::Index at = 0;
   for (const Terms& terms : terms_) {
     const auto rows = static_cast<Eigen::Index>(terms.acting->row_count());
-    if (!measured.of_effects[terms.effect].empty()) terms.acting->measure(bodies, multipliers.segment(at, rows), measured.of_effects[terms.effect]);
+    if (!measured.of_effects[terms.effect].empty())
+      terms.acting->measure(bodies, multipliers.segment(at, rows),
+                            measured.of_effects[terms.effect]);
     at += rows;
   }
 } catch (const OutOfTime&) {
@@ -405,23 +480,29 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
 }
 
 // The force on A at the point, its opposite on B.
-void LinkedBodies::add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const {
+void LinkedBodies::add_contacts(const std::vector<Body>& bodies,
+                                const std::vector<ContactPoint>& contacts,
+                                std::vector<Wrench>& wrenches) const {
   for (const ContactPoint& contact : contacts)
-    for (const auto& [body, sign] : {std::pair{contact.body_a, 1.0}, std::pair{contact.body_b, -1.0}}) {
+    for (const auto& [body, sign] :
+         {std::pair{contact.body_a, 1.0}, std::pair{contact.body_b, -1.0}}) {
       const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
       if (found == bodies_.end() || *found != body) continue;
       const auto place = static_cast<std::size_t>(found - bodies_.begin());
-      add_force(bodies[place], sign * contact.force_on_a_world, contact.point_world, wrenches[place]);
+      add_force(bodies[place], sign * contact.force_on_a_world, contact.point_world,
+                wrenches[place]);
     }
 }
 
 LinkForces::LinkForces(const World& world) {
-  for (const effects::Effect* effect : effects::all()) of_effects.emplace_back(effect->measured_as() == nullptr ? 0 : effect->count_in(world));
+  for (const effects::Effect* effect : effects::all())
+    of_effects.emplace_back(effect->measured_as() == nullptr ? 0 : effect->count_in(world));
 }
 
 void record(LinkForces forces, Frame& frame) {
   for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
-    if (const auto kept = effects::all()[k]->measured_as()) frame.*kept = std::move(forces.of_effects[k]);
+    if (const auto kept = effects::all()[k]->measured_as())
+      frame.*kept = std::move(forces.of_effects[k]);
 }
 
 LinkForces recorded_forces(const World& world, const Frame& frame) {

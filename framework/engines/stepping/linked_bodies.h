@@ -29,7 +29,8 @@ namespace tumble::engines {
 struct LinkForces {
   explicit LinkForces(const World& world);
 
-  std::vector<std::vector<double>> of_effects;   // by place in effects::all(); empty of those that are not recorded
+  // by place in effects::all(); empty of those that are not recorded
+  std::vector<std::vector<double>> of_effects;
 };
 /// Puts them where a frame keeps them.
 void record(LinkForces forces, Frame& frame);
@@ -38,10 +39,12 @@ LinkForces recorded_forces(const World& world, const Frame& frame);
 
 /// Movable bodies that entries of effects tie together, and these entries.
 struct LinkedGroup {
-  std::vector<int> bodies;                            // ascending
-  std::map<std::size_t, std::vector<int>> entries;    // by place in effects::all(); ascending, one at least
+  std::vector<int> bodies;  // ascending
+  // by place in effects::all(); ascending, one at least
+  std::map<std::size_t, std::vector<int>> entries;
 };
-/// The groups of a world, by their first bodies. Bodies that no entry ties or acts on are in none. Cost: linear in bodies and entries.
+/// The groups of a world, by their first bodies. Bodies that no entry ties or acts on are in none.
+/// Cost: linear in bodies and entries.
 std::vector<LinkedGroup> groups_of_linked_bodies(const World& world);
 
 class LinkedBodies final : effects::GroupPlaces {
@@ -49,7 +52,8 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Gravity and point forces on a body (index in the world) in a state.
   using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
 
-  LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, LinkedGroup group);
+  LinkedBodies(const World& world, const Laws& laws, RunCounters& counters,
+               OuterWrench outer_wrench, LinkedGroup group);
 
   const std::vector<int>& bodies() const { return bodies_; }
   /// Immovable bodies that a link of the group ends at; -1: the world.
@@ -67,7 +71,8 @@ class LinkedBodies final : effects::GroupPlaces {
   double look(double time, const std::vector<RigidBodyState>& states);
 
   /// States of bodies() after a step of the laws' method. @param states  by body of the world, at t
-  std::vector<RigidBodyState> advance(const std::vector<RigidBodyState>& states, double t, double h);
+  std::vector<RigidBodyState> advance(const std::vector<RigidBodyState>& states, double t,
+                                      double h);
 
   /// The rows of rods and joints at one instant, and the bodies between which they stand: bodies(),
   /// then fixed_ends().
@@ -100,21 +105,27 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Adds the forces of this group's links in these states. What lies on its bodies, leans or rubs
   /// against them weighs on the links too.
   /// @param contacts  persistent ones of the world, at that time
-  void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
+  void measure(const std::vector<RigidBodyState>& states, double t,
+               const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
  private:
-  std::string subject() const;   // of messages
+  std::string subject() const;  // of messages
   double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
   bool has(int body) const override;
   int place_of(int body) override;
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
-  std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
+  std::vector<Wrench> forces(const std::vector<RigidBodyState>& local,
+                             const std::vector<Body>& bodies);
   std::vector<Constraint> rows(const std::vector<Body>& bodies);
-  void add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const;
-  VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
+  void add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts,
+                    std::vector<Wrench>& wrenches) const;
+  VectorXd add_constraint_forces(const std::vector<Body>& bodies,
+                                 const std::vector<RigidBodyState>& local,
+                                 std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
   static std::vector<ConstrainedBody> constrained(const std::vector<Body>& bodies);
-  VectorXd correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error);
+  VectorXd correction(const std::vector<Constraint>& rows,
+                      const std::vector<ConstrainedBody>& bodies, const VectorXd& error);
   void project_local(std::vector<RigidBodyState>& local, double t, bool places);
   std::vector<RigidBodyState> take(const std::vector<RigidBodyState>& states) const;
   void put(const std::vector<RigidBodyState>& local, std::vector<RigidBodyState>& states) const;
@@ -124,22 +135,24 @@ class LinkedBodies final : effects::GroupPlaces {
   RunCounters& counters_;
   OuterWrench outer_wrench_;
   std::vector<int> bodies_;
-  std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
+  // immovable ends: bodies of the world, -1 for the world itself
+  std::vector<int> fixed_;
   struct Terms {
-    std::size_t effect;               // its place in effects::all()
+    std::size_t effect;  // its place in effects::all()
     std::unique_ptr<effects::GroupTerms> acting;
   };
-  std::vector<Terms> terms_;          // of the effects that act on the group
-  std::size_t row_count_ = 0;         // of all of them
-  std::vector<std::size_t> controls_; // those of terms_ that look
+  std::vector<Terms> terms_;           // of the effects that act on the group
+  std::size_t row_count_ = 0;          // of all of them
+  std::vector<std::size_t> controls_;  // those of terms_ that look
   double time_of_stage_ = 0.0;
-  double step_ = kUnset;   // the last that advance() took [s]
+  double step_ = kUnset;  // the last that advance() took [s]
 };
 
 /// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
 /// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become
 /// one body that cannot be pushed
-void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, ContactProblem& problem);
+void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t,
+              const std::map<int, int>& places, ContactProblem& problem);
 
 /// Rows are to have the rates afterwards that the problem's bodies give them before.
 void keep_rates(ContactProblem& problem);

@@ -28,17 +28,26 @@ double measure_path_bend(const Laws& laws) {
   try {
     return 2.0 * laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0)[kHeight];
   } catch (const StoppedRun&) {
-    return 1.0;   // the first step of a body fails in the same way, and names the body
+    return 1.0;  // the first step of a body fails in the same way, and names the body
   }
 }
 
 }  // namespace
 
-MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters) : MovingWorld(std::move(world), laws, counters, {}) {}
+MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
+    : MovingWorld(std::move(world), laws, counters, {}) {}
 
-MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes)
-    : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0),
-      paths_(world_.bodies.size()), reported_shortening_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
+MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
+                         std::vector<const collision::CollisionShape*> shapes)
+    : world_(std::move(world)),
+      laws_(laws),
+      counters_(counters),
+      shapes_(std::move(shapes)),
+      rests_(world_.bodies.size()),
+      asleep_(world_.bodies.size(), 0),
+      paths_(world_.bodies.size()),
+      reported_shortening_(world_.bodies.size(), false),
+      principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
   if (shapes_.empty()) {
     for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
@@ -46,11 +55,15 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, s
   }
   path_bend_ = measure_path_bend(laws);
   for (std::size_t k = 0; k < effects::all().size(); ++k)
-    if (auto acting = effects::all()[k]->steady_forces({world_, laws_, counters_.effect_calls[k]})) steady_.push_back({static_cast<int>(k), std::move(acting)});
+    if (auto acting = effects::all()[k]->steady_forces({world_, laws_, counters_.effect_calls[k]}))
+      steady_.push_back({static_cast<int>(k), std::move(acting)});
   group_of_.assign(world_.bodies.size(), -1);
   for (LinkedGroup& group : groups_of_linked_bodies(world_)) {
     for (const int body : group.bodies) group_of_[body] = static_cast<int>(linked_.size());
-    linked_.emplace_back(world_, laws_, counters_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(group));
+    linked_.emplace_back(
+        world_, laws_, counters_,
+        [this](int body, const RigidBodyState& state) { return wrench_on(body, state); },
+        std::move(group));
     linked_.back().project(states_, 0.0);
   }
 }
@@ -61,7 +74,8 @@ void MovingWorld::stand_at(double time, const std::vector<RigidBodyState>& state
   // Immovable bodies stand where their motion has taken them by then, whatever `states` says of
   // them.
   for (int i = 0; i < size(); ++i)
-    if (world_.bodies[i].immovable()) states_[i].com_world = prescribed_position(world_.bodies[i], time);
+    if (world_.bodies[i].immovable())
+      states_[i].com_world = prescribed_position(world_.bodies[i], time);
 }
 
 double MovingWorld::load_forces(const std::map<int, effects::Memory>& memory) {
@@ -69,7 +83,9 @@ double MovingWorld::load_forces(const std::map<int, effects::Memory>& memory) {
   double next = std::numeric_limits<double>::infinity();
   for (Steady& forces : steady_) {
     const auto remembered = memory.find(forces.effect);
-    next = std::min(next, forces.acting->stand_at(time_, remembered == memory.end() ? none : remembered->second, states_));
+    next =
+        std::min(next, forces.acting->stand_at(
+                           time_, remembered == memory.end() ? none : remembered->second, states_));
   }
   return next;
 }
@@ -77,20 +93,25 @@ double MovingWorld::load_forces(const std::map<int, effects::Memory>& memory) {
 std::map<int, effects::Memory> MovingWorld::force_memory() const {
   std::map<int, effects::Memory> all;
   for (const Steady& forces : steady_)
-    if (effects::Memory memory = forces.acting->memory(); !memory.empty()) all.emplace(forces.effect, std::move(memory));
+    if (effects::Memory memory = forces.acting->memory(); !memory.empty())
+      all.emplace(forces.effect, std::move(memory));
   return all;
 }
 
 bool MovingWorld::may_collide(int a, int b) const {
   const WorldBody &first = world_.bodies[a], &second = world_.bodies[b];
-  if ((first.immovable() && second.immovable()) || !first.collides || !second.collides) return false;
-  if (first.passes_movable && second.passes_movable && !first.immovable() && !second.immovable()) return false;
-  return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
+  if ((first.immovable() && second.immovable()) || !first.collides || !second.collides)
+    return false;
+  if (first.passes_movable && second.passes_movable && !first.immovable() && !second.immovable())
+    return false;
+  return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(),
+                                                     std::pair(std::min(a, b), std::max(a, b)));
 }
 
 bool MovingWorld::is_driven(int body) const {
   const scene::PrescribedMotion& m = world_.bodies[body].motion;
-  return !m.velocity_m_s.isZero(0.0) || (m.angular_frequency_rad_s != 0.0 && !m.amplitude_m.isZero(0.0));
+  return !m.velocity_m_s.isZero(0.0) ||
+         (m.angular_frequency_rad_s != 0.0 && !m.amplitude_m.isZero(0.0));
 }
 
 double MovingWorld::look() {
@@ -102,8 +123,13 @@ double MovingWorld::look() {
 bool MovingWorld::keep_constraints(const std::vector<Event>& events) {
   bool any = false;
   for (LinkedBodies& group : linked_) {
-    const auto ours = [&](int body) { return body >= 0 && group_of_[body] == static_cast<int>(&group - linked_.data()); };
-    if (!group.has_constraints() || std::none_of(events.begin(), events.end(), [&](const Event& e) { return ours(e.body_a) || ours(e.body_b); })) continue;
+    const auto ours = [&](int body) {
+      return body >= 0 && group_of_[body] == static_cast<int>(&group - linked_.data());
+    };
+    if (!group.has_constraints() || std::none_of(events.begin(), events.end(), [&](const Event& e) {
+          return ours(e.body_a) || ours(e.body_b);
+        }))
+      continue;
     group.project_velocities(states_, time_);
     any = true;
   }
@@ -111,8 +137,9 @@ bool MovingWorld::keep_constraints(const std::vector<Event>& events) {
 }
 
 void MovingWorld::close_links(std::vector<RigidBodyState>& states, double t) {
-  if (!world_.stabilisation || world_.stabilisation->kind != scene::StabilisationKind::kProjection) return;
-  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  if (!world_.stabilisation || world_.stabilisation->kind != scene::StabilisationKind::kProjection)
+    return;
+  const RunCounters before = counters_;  // what is looked at must not show in what a run counts
   for (LinkedBodies& group : linked_)
     if (!asleep(group.bodies().front())) group.project(states, t);
   counters_ = before;
@@ -126,23 +153,32 @@ void MovingWorld::watch_links(double h) {
 // A method that sees forces a few times a step follows no body that turns about itself several
 // times in it, and a search for impacts along such a path would hardly end.
 void MovingWorld::refuse_fast_turning(int body) const {
-  constexpr double kMostTurnOnPath = 20 * std::numbers::pi;   // rad in a step: ten turns
+  constexpr double kMostTurnOnPath = 20 * std::numbers::pi;  // rad in a step: ten turns
   const Path& path = paths_[body];
   const double step = target_ - time_, speed = path.smooth->bounds().angular_speed;
   const std::string subject = fmt::format("body '{}'", world_.bodies[body].name);
-  if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", subject, laws_.integrator_source));
-  if (shapes_[body]->is_ball() || !(speed * step > kMostTurnOnPath)) return;   // a ball looks the same however it turns
-  throw StoppedRun(fmt::format("{} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely something drives it beyond measure: a motor that overshoots because it holds its torque too "
-                               "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", subject, speed, speed * step, step));
+  if (!pack(path.end).allFinite() || std::isnan(speed))
+    throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", subject,
+                                 laws_.integrator_source));
+  // a ball looks the same however it turns
+  if (shapes_[body]->is_ball() || !(speed * step > kMostTurnOnPath)) return;
+  throw StoppedRun(fmt::format(
+      "{} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely "
+      "something drives it beyond measure: a motor that overshoots because it holds its torque too "
+      "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step "
+      "(\"step_s\") shorter",
+      subject, speed, speed * step, step));
 }
 
-LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts) {
+LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t,
+                                      const std::vector<ContactPoint>& contacts) {
   LinkForces forces(world_);
   for (LinkedBodies& group : linked_) group.measure(states, t, contacts, forces);
   return forces;
 }
 
-void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta) {
+void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBodyState& end,
+                           SmoothPath::Momenta momenta) {
   Path& path = paths_[body];
   path.bounds.reset();
   path.end = end;
@@ -152,7 +188,8 @@ void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBod
 }
 
 void MovingWorld::put_to_rest(int body, int support) {
-  rests_[body] = Rest{support, states_[body].com_world - prescribed_position(world_.bodies[support], time_)};
+  rests_[body] =
+      Rest{support, states_[body].com_world - prescribed_position(world_.bodies[support], time_)};
   states_[body] = still_state(body, time_);
   ++counters_.bodies_put_to_rest;
 }
@@ -198,7 +235,11 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
   // evenly.)
   const Vector3d omega_world = omega_of(state, b.inertia);
   const double speed = omega_world.norm();
-  if (speed > 0) state.world_from_body = (Quaterniond(Eigen::AngleAxisd(speed * (t - time_), omega_world / speed)) * state.world_from_body).normalized();
+  if (speed > 0)
+    state.world_from_body =
+        (Quaterniond(Eigen::AngleAxisd(speed * (t - time_), omega_world / speed)) *
+         state.world_from_body)
+            .normalized();
   return state;
 }
 
@@ -217,7 +258,9 @@ Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
 }
 
 void MovingWorld::go_in_closed_form() {
-  for (const WorldBody& body : world_.bodies) rotations_.emplace_back(body.immovable() ? Matrix3d(Matrix3d::Identity()) : body.inertia.inertia_body);
+  for (const WorldBody& body : world_.bodies)
+    rotations_.emplace_back(body.immovable() ? Matrix3d(Matrix3d::Identity())
+                                             : body.inertia.inertia_body);
   path_bend_ = 1.0;
 }
 
@@ -228,28 +271,36 @@ RigidBodyState MovingWorld::fly(int body, double duration, const VectorXd& start
   ++integrations_in_step_;
   const Inertia& inertia = world_.bodies[body].inertia;
   RigidBodyState state = unpack(start);
-  const Vector3d gravity_world = world_.gravity_world ? *world_.gravity_world : Vector3d(Vector3d::Zero());
-  state.com_world += duration * (inertia.inverse_mass * state.momentum_world + (0.5 * duration) * gravity_world);
+  const Vector3d gravity_world =
+      world_.gravity_world ? *world_.gravity_world : Vector3d(Vector3d::Zero());
+  state.com_world +=
+      duration * (inertia.inverse_mass * state.momentum_world + (0.5 * duration) * gravity_world);
   state.momentum_world += duration * inertia.mass * gravity_world;
   if (state.angular_momentum_world.isZero(0.0)) return state;
-  const Spin spin{state.world_from_body, inertia.inverse_inertia_body * (state.world_from_body.conjugate() * state.angular_momentum_world)};
+  const Spin spin{state.world_from_body,
+                  inertia.inverse_inertia_body *
+                      (state.world_from_body.conjugate() * state.angular_momentum_world)};
   std::optional<SpinSeries>& turning = paths_[body].turning;
   if (rotations_[body].is_asymmetric() && !turning && duration == target_ - time_) {
     const double fastest = bound_rotation(state, inertia, principal_of(body), {0.0}).angular_speed;
-    if (duration <= SpinSeries::reach(rotations_[body].moments(), fastest)) turning.emplace(rotations_[body].moments(), rotations_[body].body_from_principal(), spin);
+    if (duration <= SpinSeries::reach(rotations_[body].moments(), fastest))
+      turning.emplace(rotations_[body].moments(), rotations_[body].body_from_principal(), spin);
   }
-  state.world_from_body = turning ? turning->at(duration).world_from_body : rotations_[body].after(spin, duration).world_from_body;
+  state.world_from_body = turning ? turning->at(duration).world_from_body
+                                  : rotations_[body].after(spin, duration).world_from_body;
   return state;
 }
 
-RigidBodyState MovingWorld::integrate(int body, double duration, double start_time, const VectorXd& start) {
+RigidBodyState MovingWorld::integrate(int body, double duration, double start_time,
+                                      const VectorXd& start) {
   if (flies_freely(body)) return fly(body, duration, start);
   const Inertia& inertia = world_.bodies[body].inertia;
   const OdeFunction derivative = [&](double, const VectorXd& y) {
     ++counters_.derivative_evaluations;
     if (y.size() != start.size())
-      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source + ") asked for the derivative of a state of " +
-                       std::to_string(y.size()) + " numbers instead of " + std::to_string(start.size()));
+      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source +
+                       ") asked for the derivative of a state of " + std::to_string(y.size()) +
+                       " numbers instead of " + std::to_string(start.size()));
     // Stages of a method stand off unit length by (w h)^2 / 32, and R of such a quaternion is no
     // rotation: to a needle, whose least moment turns any tilt of L into spin, that does a thousand
     // times more than what the method itself leaves. On unit quaternions nothing changes, and f(q /
@@ -279,14 +330,15 @@ void MovingWorld::begin_path(int body) {
   if (!can_move(body) || group_of_[body] >= 0) return;
   path.start = pack(states_[body]);
   path.acceleration_world.setZero();
-  for (const Steady& forces : steady_) forces.acting->add_acceleration(body, path.acceleration_world);
+  for (const Steady& forces : steady_)
+    forces.acting->add_acceleration(body, path.acceleration_world);
   path.acceleration_world *= path_bend_;
   path.end = integrate(body, target_ - time_, time_, path.start);
 }
 
 void MovingWorld::begin_linked_paths() {
   for (LinkedBodies& group : linked_) {
-    if (asleep(group.bodies().front())) continue;   // they sleep together
+    if (asleep(group.bodies().front())) continue;  // they sleep together
     const std::vector<RigidBodyState> ends = group.advance(states_, time_, target_ - time_);
     for (std::size_t i = 0; i < ends.size(); ++i) {
       set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
@@ -334,7 +386,8 @@ void MovingWorld::begin_step_again(double target) {
 const RigidBodyState& MovingWorld::path_end(int body) {
   Path& path = paths_[body];
   if (!path.end_known) {
-    path.end_known = true;   // first: a series for the whole step is made by the caller that asks for all of it
+    // first: a series for the whole step is made by the caller that asks for all of it
+    path.end_known = true;
     path.end = integrate(body, target_ - time_, time_, path.start);
   }
   return path.end;
@@ -356,7 +409,8 @@ RigidBodyState MovingWorld::path(int body, double t) {
 collision::MotionState MovingWorld::motion_at(int body, double t) {
   if (can_move(body) && paths_[body].smooth && t <= target_) {
     collision::MotionState motion = paths_[body].smooth->motion_at(t);
-    if (t == target_) motion.pose = {paths_[body].end.com_world, paths_[body].end.world_from_body};   // of a smooth path, always known
+    // of a smooth path, always known
+    if (t == target_) motion.pose = {paths_[body].end.com_world, paths_[body].end.world_from_body};
     if (t == time_) motion.pose = {states_[body].com_world, states_[body].world_from_body};
     return motion;
   }
@@ -370,7 +424,8 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
   // The rate of the path, which for a method of first order is not the state's momentum over the
   // mass.
   const Inertia& inertia = world_.bodies[body].inertia;
-  motion.velocity_world = inertia.inverse_mass * states_[body].momentum_world + (t - time_) * paths_[body].acceleration_world;
+  motion.velocity_world = inertia.inverse_mass * states_[body].momentum_world +
+                          (t - time_) * paths_[body].acceleration_world;
   if (!shapes_[body]->is_ball()) motion.omega_world = omega_of(state, inertia);
   return motion;
 }
@@ -380,8 +435,10 @@ collision::MotionBounds MovingWorld::work_out_bounds(int body) {
   const WorldBody& b = world_.bodies[body];
   if (asleep(body)) return bounds;
   if (!can_move(body)) {
-    const scene::PrescribedMotion& m = b.immovable() ? b.motion : world_.bodies[rests_[body]->support].motion;
-    bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
+    const scene::PrescribedMotion& m =
+        b.immovable() ? b.motion : world_.bodies[rests_[body]->support].motion;
+    bounds.acceleration_deviation =
+        m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
     return bounds;
   }
   if (paths_[body].smooth) return paths_[body].smooth->bounds();
@@ -399,7 +456,8 @@ collision::Motion MovingWorld::motion(int body) {
 double MovingWorld::fastest_in_step(int body) {
   const collision::MotionState start = motion_at(body, time_), end = motion_at(body, target_);
   const double radius = shapes_[body]->is_half_space() ? 0.0 : shapes_[body]->bounding_radius();
-  return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
+  return std::max(start.velocity_world.norm(), end.velocity_world.norm()) +
+         std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
 }
 
 collision::SweptBox MovingWorld::swept_box(int body) {
@@ -412,19 +470,27 @@ collision::SweptBox MovingWorld::swept_box(int body) {
   Vector3d bulge = Vector3d::Zero();
   if (can_move(body) && paths_[body].smooth) {
     const collision::MotionBounds& bounds = paths_[body].smooth->bounds();
-    bulge = (bounds.acceleration_world.cwiseAbs() + Vector3d::Constant(bounds.acceleration_deviation)) * (h * h / 8);
+    bulge =
+        (bounds.acceleration_world.cwiseAbs() + Vector3d::Constant(bounds.acceleration_deviation)) *
+        (h * h / 8);
   } else if (can_move(body)) {
     bulge = paths_[body].acceleration_world.cwiseAbs() * (h * h / 8);
   } else {
     const int mover = resting(body) ? rests_[body]->support : body;
     const scene::PrescribedMotion& m = world_.bodies[mover].motion;
-    bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
+    bulge =
+        m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
   }
-  const double contact_margin = built::kContact && world_.contact && std::isfinite(radius) ? kNegligible * radius : 0.0;
+  const double contact_margin =
+      built::kContact && world_.contact && std::isfinite(radius) ? kNegligible * radius : 0.0;
   const Vector3d margin =
-      bulge + Vector3d::Constant(radius + contact_margin) + kCoordinateRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
-  const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
-  if (built::kContact && world_.contact && can_move(body) && !paths_[body].smooth) {   // contacts begin steps again
+      bulge + Vector3d::Constant(radius + contact_margin) +
+      kCoordinateRounding * (start.cwiseAbs() + end.cwiseAbs() +
+                             Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
+  const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin,
+                                can_move(body) || is_driven(body)};
+  // contacts begin steps again
+  if (built::kContact && world_.contact && can_move(body) && !paths_[body].smooth) {
     paths_[body].box = box;
     paths_[body].box_target = target_;
   }
@@ -447,9 +513,11 @@ void MovingWorld::commit(double t) {
   states_ = std::move(arrived);
   time_ = t;
   if (!is_cut_short) return;
-  for (LinkedBodies& group : linked_) {   // momenta that change evenly between a step's ends fit rods and joints at these only
+  // momenta that change evenly between a step's ends fit rods and joints at these only
+  for (LinkedBodies& group : linked_) {
     const std::optional<SmoothPath>& path = paths_[group.bodies().front()].smooth;
-    if (path && path->momenta() == SmoothPath::Momenta::kEven) group.project_velocities(states_, time_);
+    if (path && path->momenta() == SmoothPath::Momenta::kEven)
+      group.project_velocities(states_, time_);
   }
 }
 

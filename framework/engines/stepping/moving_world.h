@@ -32,7 +32,7 @@ namespace tumble::engines {
 /// A body that lies still on an immovable support and is left alone until something touches it.
 struct Rest {
   int support;
-  Vector3d offset_from_support_world;   // [m]
+  Vector3d offset_from_support_world;  // [m]
 };
 
 class MovingWorld {
@@ -41,7 +41,8 @@ class MovingWorld {
   /// The same with solids that were prepared before: what a body's `shape` in the world says is not
   /// looked at.
   /// @param shapes  by body; stay where they are as long as this lives
-  MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes);
+  MovingWorld(World world, const Laws& laws, RunCounters& counters,
+              std::vector<const collision::CollisionShape*> shapes);
   MovingWorld(const MovingWorld&) = delete;
   MovingWorld& operator=(const MovingWorld&) = delete;
 
@@ -75,7 +76,9 @@ class MovingWorld {
   /// Whether the two may collide at all: one can move, both collide, and the scene does not keep
   /// them apart.
   bool may_collide(int a, int b) const;
-  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body); }
+  bool can_move(int body) const {
+    return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body);
+  }
   /// Whether an immovable body moves by a law of its own.
   bool is_driven(int body) const;
   bool resting(int body) const { return rests_[body].has_value(); }
@@ -112,7 +115,8 @@ class MovingWorld {
   double look();
   /// What springs, rods and joints pull with in these states.
   /// @param contacts  persistent ones, which weigh on them
-  LinkForces measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts);
+  LinkForces measure_links(const std::vector<RigidBodyState>& states, double t,
+                           const std::vector<ContactPoint>& contacts);
   /// For a picture within a step: rods and joints of projected groups hold there too, where the
   /// path between the step's ends is off by its fourth power. Changes nothing but these states.
   void close_links(std::vector<RigidBodyState>& states, double t);
@@ -124,7 +128,8 @@ class MovingWorld {
   bool keep_constraints(const std::vector<Event>& events);
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may
   /// jump there) to `end`.
-  void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
+  void set_path(int body, const RigidBodyState& start, const RigidBodyState& end,
+                SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
   /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step
   /// under way, or where that path is not made of numbers
   void refuse_fast_turning(int body) const;
@@ -150,7 +155,8 @@ class MovingWorld {
   /// turning is asked, not what is wrong with it
   /// @return whether the target was moved
   /// @throws StoppedRun where a step would have to be cut into more than 1e5 parts
-  bool shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step = {});
+  bool shorten_step(const std::vector<std::pair<int, int>>& pairs,
+                    const std::function<bool(std::pair<int, int>)>& in_step = {});
   /// Where a body's path is at time t in [time(), target()]; any t for immovable, resting and
   /// sleeping ones.
   RigidBodyState path(int body, double t);
@@ -175,23 +181,25 @@ class MovingWorld {
 
  private:
   struct Steady {
-    int effect;                     // its place in effects::all()
+    int effect;  // its place in effects::all()
     std::unique_ptr<effects::SteadyForces> acting;
   };
   struct Path {
-    VectorXd start;                 // packed
+    VectorXd start;  // packed
     RigidBodyState end;
-    bool end_known = true;          // false: worked out by path_end, not yet asked for since the step began again
-    bool is_stale = false;          // the state has been changed since the step began
-    std::optional<collision::SweptBox> box;    // of a body alone, from the step's start to box_target
+    // false: worked out by path_end, not yet asked for since the step began again
+    bool end_known = true;
+    bool is_stale = false;  // the state has been changed since the step began
+    // of a body alone, from the step's start to box_target
+    std::optional<collision::SweptBox> box;
     double box_target;
-    Vector3d acceleration_world;    // of the path, constant in the step
+    Vector3d acceleration_world;  // of the path, constant in the step
     std::optional<collision::MotionBounds> bounds;
     double memo_time;
     RigidBodyState memo;
-    double measured_duration, turning_error;   // see turning_error
+    double measured_duration, turning_error;  // see turning_error
     std::optional<SmoothPath> smooth;
-    std::optional<SpinSeries> turning;         // of a body in closed form, from the step's start
+    std::optional<SpinSeries> turning;  // of a body in closed form, from the step's start
   };
 
   void begin_path(int body);
@@ -212,22 +220,26 @@ class MovingWorld {
   World world_;
   const Laws& laws_;
   RunCounters& counters_;
-  std::vector<collision::CollisionShape> own_shapes_;           // empty where they were prepared before
+  // empty where they were prepared before
+  std::vector<collision::CollisionShape> own_shapes_;
   std::vector<const collision::CollisionShape*> shapes_;
   std::vector<RigidBodyState> states_;
   std::vector<std::optional<Rest>> rests_;
-  std::vector<char> asleep_;                     // asked for often: a byte each is read faster than a bit
-  std::vector<Steady> steady_;             // of the effects that act on bodies by themselves
+  // asked for often: a byte each is read faster than a bit
+  std::vector<char> asleep_;
+  std::vector<Steady> steady_;  // of the effects that act on bodies by themselves
   std::vector<Path> paths_;
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
-  std::vector<int> group_of_;                    // by body: place in linked_, -1
-  std::vector<bool> reported_shortening_;   // by body
+  std::vector<int> group_of_;              // by body: place in linked_, -1
+  std::vector<bool> reported_shortening_;  // by body
   double time_ = 0.0, target_ = 0.0;
-  double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
+  // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0
+  // for Euler
+  double path_bend_ = 1.0;
   std::uint64_t integrations_in_step_ = 0;
-  std::vector<std::optional<PrincipalMoments>> principal_;      // by body, once asked for
-  std::vector<FreeRotation> rotations_;          // by body; empty: the laws integrate
+  std::vector<std::optional<PrincipalMoments>> principal_;  // by body, once asked for
+  std::vector<FreeRotation> rotations_;                     // by body; empty: the laws integrate
 };
 
 }  // namespace tumble::engines

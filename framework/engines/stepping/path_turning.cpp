@@ -22,7 +22,8 @@ namespace {
 // its first, half the angle being what quaternion and Taylor series go by. From 1.5 rad on the
 // error comes and goes within the step, and three looks at it miss up to 30 times its size.
 constexpr double kMostTurnInStep = 1.0;
-constexpr double kUnder = 0.01;        // a cut step stays so much below, for what the path's error adds to the bound
+// a cut step stays so much below, for what the path's error adds to the bound
+constexpr double kUnder = 0.01;
 
 // The turning error of a step, too, has to be small for that [rad]: where moments differ a thousand
 // times, a method can break down long before the body has turned by one radian.
@@ -36,14 +37,16 @@ constexpr double kLook = 1e-3;
 // within the two limits above.
 constexpr double kUnseenTurn = 2.0;
 
-constexpr int kMostHalvings = 12;      // a method whose error does not shrink with the step is not helped by shorter ones
+// a method whose error does not shrink with the step is not helped by shorter ones
+constexpr int kMostHalvings = 12;
 
 // The rotation from a to b as axis times angle. [rad]
 Vector3d turn_between(const Quaterniond& a, const Quaterniond& b) {
   Quaterniond turn = b * a.conjugate();
   if (turn.w() < 0) turn.coeffs() *= -1.0;
   const double sine = turn.vec().norm();
-  return sine > 0 ? Vector3d(turn.vec() * (2.0 * std::atan2(sine, turn.w()) / sine)) : Vector3d(2.0 * turn.vec());
+  return sine > 0 ? Vector3d(turn.vec() * (2.0 * std::atan2(sine, turn.w()) / sine))
+                  : Vector3d(2.0 * turn.vec());
 }
 
 }  // namespace
@@ -65,7 +68,9 @@ double MovingWorld::turning_error(int body, double duration) {
   Path& path = paths_[body];
   if (duration == path.measured_duration) return path.turning_error;
   const Inertia& inertia = world_.bodies[body].inertia;
-  const auto after = [&](double t) { return time_ + t == target_ ? path_end(body) : integrate(body, t, time_, path.start); };
+  const auto after = [&](double t) {
+    return time_ + t == target_ ? path_end(body) : integrate(body, t, time_, path.start);
+  };
   const auto error_before = [&](double t, const RigidBodyState& state) -> double {
     const double look = kLook * duration;
     const RigidBodyState earlier = after(t - look);
@@ -75,9 +80,12 @@ double MovingWorld::turning_error(int body, double duration) {
   const RigidBodyState half = after(0.5 * duration), end = after(duration);
   // An error that is zero at both looks shows in the angle, which two half steps give with another
   // error.
-  const RigidBodyState twice_half = integrate(body, 0.5 * duration, time_ + 0.5 * duration, pack(half));
+  const RigidBodyState twice_half =
+      integrate(body, 0.5 * duration, time_ + 0.5 * duration, pack(half));
   const double drift = twice_half.world_from_body.angularDistance(end.world_from_body);
-  path.turning_error = kUnseenTurn * std::max({error_before(0.5 * duration, half), error_before(duration, end), 3.0 * drift / duration});
+  path.turning_error =
+      kUnseenTurn * std::max({error_before(0.5 * duration, half), error_before(duration, end),
+                              3.0 * drift / duration});
   path.measured_duration = duration;
   return path.turning_error;
 }
@@ -87,13 +95,16 @@ double MovingWorld::turning_error(int body, double duration) {
 bool MovingWorld::bound_turning(int body, double duration, collision::MotionBounds& bounds) {
   const Inertia& inertia = world_.bodies[body].inertia;
   Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
-  if (bound_rotation(states_[body], inertia, principal_of(body), disturbance).angular_speed == 0.0) return true;
+  if (bound_rotation(states_[body], inertia, principal_of(body), disturbance).angular_speed == 0.0)
+    return true;
   disturbance.angular_velocity_error = turning_error(body, duration);
-  const RotationBounds rotation = bound_rotation(states_[body], inertia, principal_of(body), disturbance);
+  const RotationBounds rotation =
+      bound_rotation(states_[body], inertia, principal_of(body), disturbance);
   bounds.angular_speed = rotation.angular_speed;
   bounds.angular_acceleration = rotation.angular_acceleration;
   bounds.angular_velocity_error = disturbance.angular_velocity_error;
-  return bounds.angular_speed * duration <= kMostTurnInStep && bounds.angular_velocity_error * duration <= kMostDrift;
+  return bounds.angular_speed * duration <= kMostTurnInStep &&
+         bounds.angular_velocity_error * duration <= kMostDrift;
 }
 
 // The longest part of `duration`, within a factor of about two, in which bounds on the body's
@@ -102,7 +113,9 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
   collision::MotionBounds bounds;
   if (measures_path && bound_turning(body, duration, bounds)) return duration;
   const Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
-  const double speed = bound_rotation(states_[body], world_.bodies[body].inertia, principal_of(body), disturbance).angular_speed;
+  const double speed =
+      bound_rotation(states_[body], world_.bodies[body].inertia, principal_of(body), disturbance)
+          .angular_speed;
   if (!measures_path && speed * duration <= kMostTurnInStep) return duration;
   const double turning_little = std::min(duration, (1.0 - kUnder) * kMostTurnInStep / speed);
   double resolved = turning_little;
@@ -118,31 +131,50 @@ void MovingWorld::watch_turning(int body, double duration) {
   if (!can_move(body)) return;
   const double turning = omega_of(states_[body], world_.bodies[body].inertia).norm() * duration;
   if (turning <= kTurnResolved) return;
-  const bool is_alone = linked_group(body) < 0 && std::none_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->traits().stores_energy && effect->count_in(world_) > 0; });
+  const bool is_alone =
+      linked_group(body) < 0 && std::none_of(effects::all().begin(), effects::all().end(),
+                                             [&](const effects::Effect* effect) {
+                                               return effect->traits().stores_energy &&
+                                                      effect->count_in(world_) > 0;
+                                             });
   if (is_alone && flies_freely(body)) return;
-  if (!is_alone || !shapes_[body]->is_ball()) return counters_.watch.note(RunWatch::Kind::kTurnUnresolved, names_of(world_, {body}), {turning, kTurnResolved, time_, duration});
-  const std::string words = fmt::format("ball '{}' turns more than half a turn in a step: its orientation is not to be trusted, how it moves is", world_.bodies[body].name);
-  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
+  if (!is_alone || !shapes_[body]->is_ball())
+    return counters_.watch.note(RunWatch::Kind::kTurnUnresolved, names_of(world_, {body}),
+                                {turning, kTurnResolved, time_, duration});
+  const std::string words = fmt::format(
+      "ball '{}' turns more than half a turn in a step: its orientation is not to be trusted, how "
+      "it moves is",
+      world_.bodies[body].name);
+  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) ==
+      counters_.notices.end())
+    counters_.notices.push_back(words);
 }
 
-bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step) {
+bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs,
+                               const std::function<bool(std::pair<int, int>)>& in_step) {
   enum class Need : char { kNothing, kTurning, kPath };
   std::vector<Need> needs(size(), Need::kNothing);
   for (const auto& pair : pairs) {
     const Need need = in_step && in_step(pair) ? Need::kTurning : Need::kPath;
     for (const int body : {pair.first, pair.second}) needs[body] = std::max(needs[body], need);
   }
-  constexpr const char* kTooFar = ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower";
+  constexpr const char* kTooFar =
+      ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower";
   const double asked = target_ - time_;
   const auto turning_of = [&](int body, double step) {
-    return fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[body].name, omega_of(states_[body], world_.bodies[body].inertia).norm() * step, step);
+    return fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[body].name,
+                       omega_of(states_[body], world_.bodies[body].inertia).norm() * step, step);
   };
   double duration = asked;
   int fastest = -1;
   for (int body = 0; body < size(); ++body) {
-    if (needs[body] == Need::kNothing || !can_move(body) || shapes_[body]->is_ball()) continue;   // however a ball turns, it looks the same
-    if (paths_[body].smooth) {   // its bounds are exact at any length, but a search goes by them a radian at a time
-      if (omega_of(states_[body], world_.bodies[body].inertia).norm() * asked > kMostTurning * kMostTurnInStep) throw StoppedRun(turning_of(body, asked) + kTooFar);
+    // however a ball turns, it looks the same
+    if (needs[body] == Need::kNothing || !can_move(body) || shapes_[body]->is_ball()) continue;
+    // its bounds are exact at any length, but a search goes by them a radian at a time
+    if (paths_[body].smooth) {
+      if (omega_of(states_[body], world_.bodies[body].inertia).norm() * asked >
+          kMostTurning * kMostTurnInStep)
+        throw StoppedRun(turning_of(body, asked) + kTooFar);
       continue;
     }
     const double resolved = resolved_duration(body, duration, needs[body] == Need::kPath);
@@ -154,7 +186,10 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, co
   if (asked > kMostTurning * duration) throw StoppedRun(turns + kTooFar);
   if (!reported_shortening_[fastest]) {
     reported_shortening_[fastest] = true;
-    counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));
+    counters_.notices.push_back(
+        fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, "
+                    "so that no collision is missed",
+                    turns, duration));
   }
   ++counters_.shortened_steps;
   begin_step_again(time_ + duration);

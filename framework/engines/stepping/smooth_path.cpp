@@ -11,14 +11,17 @@ namespace {
 
 Quaterniond exponential(const Vector3d& rotation) {
   const double angle = rotation.norm();
-  if (angle < 1e-8) return Quaterniond(1.0, 0.5 * rotation.x(), 0.5 * rotation.y(), 0.5 * rotation.z()).normalized();
+  if (angle < 1e-8)
+    return Quaterniond(1.0, 0.5 * rotation.x(), 0.5 * rotation.y(), 0.5 * rotation.z())
+        .normalized();
   return Quaterniond(Eigen::AngleAxisd(angle, rotation / angle));
 }
 
 Vector3d logarithm(Quaterniond q) {
   if (q.w() < 0) q.coeffs() *= -1.0;
   const double sine = q.vec().norm();
-  return sine < 1e-12 ? Vector3d(2.0 * q.vec()) : Vector3d(q.vec() * (2.0 * std::atan2(sine, q.w()) / sine));
+  return sine < 1e-12 ? Vector3d(2.0 * q.vec())
+                      : Vector3d(q.vec() * (2.0 * std::atan2(sine, q.w()) / sine));
 }
 
 // The angular velocity, in the turned frame, of exp(phi(t)) is turning(phi) phi' (the right
@@ -33,10 +36,12 @@ Matrix3d turning(const Vector3d& phi) {
   const double a = phi.norm();
   const Matrix3d s = skew(phi);
   if (a < 1e-4) return Matrix3d::Identity() - 0.5 * s + s * s / 6.0;
-  return Matrix3d::Identity() - (1 - std::cos(a)) / (a * a) * s + (a - std::sin(a)) / (a * a * a) * s * s;
+  return Matrix3d::Identity() - (1 - std::cos(a)) / (a * a) * s +
+         (a - std::sin(a)) / (a * a * a) * s * s;
 }
 
-void hermite(const Vector3d& from, const Vector3d& slope_from, const Vector3d& to, const Vector3d& slope_to, Vector3d* c) {
+void hermite(const Vector3d& from, const Vector3d& slope_from, const Vector3d& to,
+             const Vector3d& slope_to, Vector3d* c) {
   c[0] = from;
   c[1] = slope_from;
   const Vector3d way = to - from;
@@ -48,10 +53,17 @@ Vector3d slope(const Vector3d* c, double s) { return c[1] + s * (2.0 * c[2] + s 
 
 }  // namespace
 
-SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta)
-    : t0_(t0), h_(t1 - t0), inertia_(inertia), start_(start.world_from_body), momenta_(momenta), momentum_{start.momentum_world, end.momentum_world},
+SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end,
+                       const Inertia& inertia, double t0, double t1, Momenta momenta)
+    : t0_(t0),
+      h_(t1 - t0),
+      inertia_(inertia),
+      start_(start.world_from_body),
+      momenta_(momenta),
+      momentum_{start.momentum_world, end.momentum_world},
       angular_momentum_{start.angular_momentum_world, end.angular_momentum_world} {
-  hermite(start.com_world, h_ * inertia.inverse_mass * start.momentum_world, end.com_world, h_ * inertia.inverse_mass * end.momentum_world, x_);
+  hermite(start.com_world, h_ * inertia.inverse_mass * start.momentum_world, end.com_world,
+          h_ * inertia.inverse_mass * end.momentum_world, x_);
 
   const Vector3d turn_start = h_ * (start.world_from_body.conjugate() * omega_of(start, inertia));
   const Vector3d turn_end = h_ * (end.world_from_body.conjugate() * omega_of(end, inertia));
@@ -70,9 +82,11 @@ SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end, c
   bounds_.acceleration_world = 0.5 * (a0 + a1);
   bounds_.acceleration_deviation = 0.5 * (a1 - a0).norm();
   const Vector3d p0 = phi_[1], p1 = phi_[1] + phi_[2], p2 = slope(phi_, 1.0);
-  bounds_.angular_speed = std::max({p0.norm(), p1.norm(), p2.norm()}) / h_;   // |J phi'| <= |phi'|
-  const double second = std::max((2.0 * phi_[2]).norm(), (2.0 * phi_[2] + 6.0 * phi_[3]).norm()) / (h_ * h_);
-  bounds_.angular_acceleration = second + bounds_.angular_speed * bounds_.angular_speed;   // |J'| <= |phi'| / 2 + |phi'| / 3
+  bounds_.angular_speed = std::max({p0.norm(), p1.norm(), p2.norm()}) / h_;  // |J phi'| <= |phi'|
+  const double second =
+      std::max((2.0 * phi_[2]).norm(), (2.0 * phi_[2] + 6.0 * phi_[3]).norm()) / (h_ * h_);
+  // |J'| <= |phi'| / 2 + |phi'| / 3
+  bounds_.angular_acceleration = second + bounds_.angular_speed * bounds_.angular_speed;
 }
 
 Vector3d SmoothPath::omega_world(double s, Quaterniond& world_from_body) const {

@@ -22,7 +22,8 @@ class SmoothPath {
   enum class Momenta { kOfPath, kEven };
 
   /// @pre t0 < t1. Velocities are those of the states' momenta.
-  SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta = Momenta::kOfPath);
+  SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia,
+             double t0, double t1, Momenta momenta = Momenta::kOfPath);
 
   /// Momenta that change evenly begin with those of `state`, where the path begins with a velocity
   /// of its own: a straight path has that of its end from the start, which the impacts and the
@@ -43,11 +44,11 @@ class SmoothPath {
 
   double t0_ = 0.0, h_ = 1.0;
   Inertia inertia_;
-  Vector3d x_[4];           // coefficients of s^k, s = (t - t0) / h
-  Vector3d phi_[4];         // likewise; phi_[0] = 0
+  Vector3d x_[4];    // coefficients of s^k, s = (t - t0) / h
+  Vector3d phi_[4];  // likewise; phi_[0] = 0
   Quaterniond start_;
   Momenta momenta_ = Momenta::kOfPath;
-  Vector3d momentum_[2], angular_momentum_[2];   // at the ends
+  Vector3d momentum_[2], angular_momentum_[2];  // at the ends
   collision::MotionBounds bounds_;
 };
 

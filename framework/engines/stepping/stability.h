@@ -27,15 +27,17 @@ double amplification(const Laws& laws, double angular_frequency, double damping,
 double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
 
 struct SpringStability {
-  std::string of;                  // what takes most part in the fastest swing, in words: "spring 'a'"
-  double angular_frequency;        // of that swing where the run starts [rad/s]
-  double damping;                  // c of  y'' = -w^2 y - c y'  for it [1/s]
-  double amplification;            // a step
-  double largest_step;             // that does not lengthen it [s]; 0 where none does not
+  // what takes most part in the fastest swing, in words: "spring 'a'"
+  std::string of;
+  double angular_frequency;  // of that swing where the run starts [rad/s]
+  double damping;            // c of  y'' = -w^2 y - c y'  for it [1/s]
+  double amplification;      // a step
+  double largest_step;       // that does not lengthen it [s]; 0 where none does not
 
-  std::string remedy, last_remedy; // beside a shorter step; where no step does
+  std::string remedy, last_remedy;  // beside a shorter step; where no step does
 
-  bool is_overdamped() const { return damping > 2.0 * angular_frequency; }   // no swing: its damper's matter
+  // no swing: its damper's matter
+  bool is_overdamped() const { return damping > 2.0 * angular_frequency; }
 };
 
 /// The fastest swing of what draws the bodies of a world back where it starts (springs), along
@@ -48,10 +50,10 @@ std::optional<SpringStability> judge_springs(const World& world, const Laws& law
 
 /// Of anything else that limits a step.
 struct StepLimit {
-  std::string of;                  // in words, with the name
-  double amplification;            // of what should die away, a step
-  double largest_step;             // that does not lengthen it [s]; 0 where none does not
-  std::string remedy;              // beside a shorter step
+  std::string of;        // in words, with the name
+  double amplification;  // of what should die away, a step
+  double largest_step;   // that does not lengthen it [s]; 0 where none does not
+  std::string remedy;    // beside a shorter step
 };
 
 /// The way of moving from which the dampers of the world's springs take most (the largest
@@ -74,20 +76,25 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
 /// largest step comes from an upper bound then.
 /// @return nothing where the method does not lengthen it, and where rods end beside centres of mass
 /// or joints are there too: such worlds are not judged
-std::optional<StepLimit> judge_rods(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step);
+std::optional<StepLimit> judge_rods(const World& world,
+                                    const std::vector<effects::Carrier>& carriers,
+                                    const std::vector<double>& loads, const Laws& laws,
+                                    double step);
 
 /// What carries in a world, rods and joints: in the order of effects and their entries.
 struct Carriers {
   explicit Carriers(const World& world);
 
   std::vector<effects::Carrier> all;
-  std::vector<std::size_t> effect;   // by carrier: its effect's place in effects::all()
+  std::vector<std::size_t> effect;  // by carrier: its effect's place in effects::all()
 };
 
 /// What they carry. [N]
 struct LinkLoads {
-  std::vector<double> loads;       // by carrier
-  bool by_falling = false;         // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes taut with a jerk
+  std::vector<double> loads;  // by carrier
+  // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes
+  // taut with a jerk
+  bool by_falling = false;
 };
 
 /// About the most that each will carry in a run by gravity and what moves at the start: the weight
@@ -98,30 +105,36 @@ LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carr
 /// The fastest swing of bodies between joints that carry these loads, an upper bound: w^2 = max sum
 /// of load times arm / moment of inertia.
 /// @return nothing where the method does not lengthen it
-std::optional<StepLimit> judge_joints(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step);
+std::optional<StepLimit> judge_joints(const World& world,
+                                      const std::vector<effects::Carrier>& carriers,
+                                      const std::vector<double>& loads, const Laws& laws,
+                                      double step);
 
 struct StepsOfARun {
-  double step, duration;           // [s]
+  double step, duration;  // [s]
 };
 
 /// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's
 /// term take part in; reports one where it can be seen.
 /// @throws UserError naming the effect, the body or the term, what happens to it and the largest
 /// step that does not do it
-void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
+void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps,
+                           const std::string& where, std::vector<std::string>& notices);
 
 /// Reports rods and joints whose bodies swing too fast for the step of a method that has a range,
 /// with the step that follows them all through the run. Not refused: what hangs straight does not
 /// swing.
 /// @param at_start  what rods and joints pull with where the run starts
 /// @return that step, where one is reported [s]
-std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
+std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start,
+                                            const Laws& laws, const StepsOfARun& steps,
+                                            std::vector<std::string>& notices);
 
 /// Energy that nothing can have brought in.
 struct Runaway {
-  int body;                        // that has most of it
-  double energy, first_energy;     // of the world, now and where the run started [J]
-  double by_impacts;                 // of the difference, what impacts have brought in [J]
+  int body;                     // that has most of it
+  double energy, first_energy;  // of the world, now and where the run started [J]
+  double by_impacts;            // of the difference, what impacts have brought in [J]
 };
 
 /// Looks on while a world moves: energy that nothing can have brought in is the method's, or a
@@ -133,29 +146,35 @@ class EnergyWatch {
   /// @param step  of the run [s]
   /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else
   /// worlds with effects that bring energy in go unwatched
-  EnergyWatch(double restitution_threshold, double step, bool sees_switches) : restitution_threshold_(restitution_threshold), step_(step), sees_switches_(sees_switches) {}
+  EnergyWatch(double restitution_threshold, double step, bool sees_switches)
+      : restitution_threshold_(restitution_threshold), step_(step), sees_switches_(sees_switches) {}
 
   /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') /
   /// 2 of its impulse.
   void note(const Event& event) {
     if (event.kind != EventKind::kCollision) return;
-    by_impacts_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
+    by_impacts_ +=
+        event.energy_change == event.energy_change
+            ? event.energy_change
+            : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
   /// @return nothing while all is well, and for worlds that moving walls, or effects that may bring
   /// in any amount, drive
-  std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
+  std::optional<Runaway> look(double time, const World& world,
+                              const std::vector<RigidBodyState>& states);
   /// Notes what energy has risen by above the least it has been, where that is more than steps
   /// leave of all that the world had to give.
   void tell(const World& world, RunCounters& counters) const;
 
  private:
   struct Rise {
-    double time, size;             // [s], [J]
-    int body;                      // that had most of the world's energy then
+    double time, size;  // [s], [J]
+    int body;           // that had most of the world's energy then
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const std::vector<RigidBodyState>& states);
-  void note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states);
+  void note_rise(double time, double energy, double kinetic, const World& world,
+                 const std::vector<RigidBodyState>& states);
   /// What the model itself is free to make: what moves slower than the restitution threshold, and
   /// lies, is lifted by this part of its size. [J]
   double unseen(double lifted) const { return of_restitution_threshold_ + lifted * of_sizes_; }
@@ -163,13 +182,18 @@ class EnergyWatch {
 
   double restitution_threshold_, step_;
   bool sees_switches_, is_first_step_ = true;
-  std::vector<std::unique_ptr<effects::WorkMeter>> meters_;     // of the effects that bring energy into the world, from the first look on
+  // of the effects that bring energy into the world, from the first look on
+  std::vector<std::unique_ptr<effects::WorkMeter>> meters_;
   bool has_meters_ = false;
-  double work_ = 0.0, given_ = 0.0;                    // what effects have brought in, at most, and without its sign [J]
-  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_impacts_ = 0.0;   // [J]
-  double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the restitution threshold, and m g size [J]
-  double rounding_ = 0.0;          // what it leaves of an energy, where one has risen [J]
-  std::vector<Rise> rises_;        // each larger than the one before
+  // what effects have brought in, at most, and without its sign [J]
+  double work_ = 0.0, given_ = 0.0;
+  // [J]
+  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0,
+         by_impacts_ = 0.0;
+  // the least so far; of all bodies m v^2 of the restitution threshold, and m g size [J]
+  double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;
+  double rounding_ = 0.0;    // what it leaves of an energy, where one has risen [J]
+  std::vector<Rise> rises_;  // each larger than the one before
 };
 
 /// What acts on bodies at an instant.
@@ -182,6 +206,7 @@ struct ActingForces {
 /// What a run says that ends because of it: the body, the time, and the effect that most likely put
 /// the energy in: impacts where they have brought in half of it, else the spring, rod, joint or
 /// contact that pulls hardest at the body, else the integration.
-std::string runaway_message(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws);
+std::string runaway_message(double time, const World& world, const Runaway& runaway,
+                            const ActingForces& acting, const Laws& laws);
 
 }  // namespace tumble::engines

@@ -20,13 +20,15 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kTaut = 0.999;   // of a line's length: what starts nearer to where it hangs than this falls before its links pull
+// of a line's length: what starts nearer to where it hangs than this falls before its links pull
+constexpr double kTaut = 0.999;
 
 /// Movable bodies as a tree that hangs from what does not move: each on the carrier by which it is
 /// nearest to it.
 class Hanging {
  public:
-  Hanging(const World& world, const std::vector<effects::Carrier>& carriers) : world_(world), carriers_(carriers), hung_(world.bodies.size()) {
+  Hanging(const World& world, const std::vector<effects::Carrier>& carriers)
+      : world_(world), carriers_(carriers), hung_(world.bodies.size()) {
     for (const WorldBody& body : world.bodies) states_.push_back(body.state);
     ends_on_.resize(world.bodies.size());
     for (std::size_t k = 0; k < carriers.size(); ++k)
@@ -46,13 +48,15 @@ class Hanging {
   void find_loads(std::vector<double>& loads) {
     hang();
     const double gravity = world_.gravity_world ? world_.gravity_world->norm() : 0.0;
-    double energy = 0.0;   // of all that hangs: kinetic, and what it can fall by
+    double energy = 0.0;  // of all that hangs: kinetic, and what it can fall by
     for (const int body : order_) {
       const WorldBody& hanging = world_.bodies[static_cast<std::size_t>(body)];
       const Hung& hung = hung_[static_cast<std::size_t>(body)];
-      energy += kinetic_energy(hanging.state, hanging.inertia) + hanging.inertia.mass * gravity * std::max(0.0, hung.depth - hung.down);
+      energy += kinetic_energy(hanging.state, hanging.inertia) +
+                hanging.inertia.mass * gravity * std::max(0.0, hung.depth - hung.down);
     }
-    std::vector<double> mass(world_.bodies.size(), 0.0), moment(world_.bodies.size(), 0.0);   // below each, itself included
+    // below each, itself included
+    std::vector<double> mass(world_.bodies.size(), 0.0), moment(world_.bodies.size(), 0.0);
     for (auto body = order_.rbegin(); body != order_.rend(); ++body) {
       const auto i = static_cast<std::size_t>(*body);
       mass[i] += world_.bodies[i].inertia.mass;
@@ -61,18 +65,22 @@ class Hanging {
         mass[static_cast<std::size_t>(hung_[i].above)] += mass[i];
         moment[static_cast<std::size_t>(hung_[i].above)] += moment[i];
       }
-      const double weight = mass[i] * gravity, swing = 2.0 * energy * mass[i] / std::max(moment[i], std::numeric_limits<double>::min());
+      const double weight = mass[i] * gravity,
+                   swing = 2.0 * energy * mass[i] /
+                           std::max(moment[i], std::numeric_limits<double>::min());
       const bool is_jerked = swing > weight || hung_[i].distance < kTaut * hung_[i].depth;
       by_falling_ = by_falling_ || is_jerked;
-      loads[hung_[i].carrier] = weight + swing * (is_jerked ? std::sqrt(mass[i] / lighter_of(*body)) : 1.0);
+      loads[hung_[i].carrier] =
+          weight + swing * (is_jerked ? std::sqrt(mass[i] / lighter_of(*body)) : 1.0);
     }
   }
 
  private:
   struct Hung {
-    double depth = std::numeric_limits<double>::infinity();   // of its centre, along the carriers [m]
-    double down = 0.0;       // of its centre now, below where it all hangs, along gravity [m]
-    double distance = 0.0;   // of its centre now, from there [m]
+    // of its centre, along the carriers [m]
+    double depth = std::numeric_limits<double>::infinity();
+    double down = 0.0;      // of its centre now, below where it all hangs, along gravity [m]
+    double distance = 0.0;  // of its centre now, from there [m]
     int above = -1;
     std::size_t carrier = 0;
   };
@@ -81,15 +89,24 @@ class Hanging {
   double lighter_of(int body) const {
     const Hung& hung = hung_[static_cast<std::size_t>(body)];
     const double own = world_.bodies[static_cast<std::size_t>(body)].inertia.mass;
-    return hung.above < 0 ? own : std::min(own, world_.bodies[static_cast<std::size_t>(hung.above)].inertia.mass);
+    return hung.above < 0
+               ? own
+               : std::min(own, world_.bodies[static_cast<std::size_t>(hung.above)].inertia.mass);
   }
-  bool is_movable(const Anchor& anchor) const { return anchor.body >= 0 && !world_.bodies[static_cast<std::size_t>(anchor.body)].immovable(); }
-  Vector3d down() const { return world_.gravity_world && !world_.gravity_world->isZero(0.0) ? world_.gravity_world->normalized() : Vector3d(Vector3d::UnitZ()); }
+  bool is_movable(const Anchor& anchor) const {
+    return anchor.body >= 0 && !world_.bodies[static_cast<std::size_t>(anchor.body)].immovable();
+  }
+  Vector3d down() const {
+    return world_.gravity_world && !world_.gravity_world->isZero(0.0)
+               ? world_.gravity_world->normalized()
+               : Vector3d(Vector3d::UnitZ());
+  }
 
   void hang() {
     using Entry = std::pair<double, int>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
-    const auto reach = [&](std::size_t k, const Anchor& to, double depth, int above, const Vector3d& root) {
+    const auto reach = [&](std::size_t k, const Anchor& to, double depth, int above,
+                           const Vector3d& root) {
       Hung& hung = hung_[static_cast<std::size_t>(to.body)];
       const double reached = depth + carriers_[k].length + to.point_body.norm();
       if (!(reached < hung.depth)) return;
@@ -99,12 +116,14 @@ class Hanging {
     };
     std::vector<Vector3d> roots(world_.bodies.size(), Vector3d::Zero());
     for (std::size_t k = 0; k < carriers_.size(); ++k)
-      for (const auto& [from, to] : {std::pair{carriers_[k].a, carriers_[k].b}, std::pair{carriers_[k].b, carriers_[k].a}})
+      for (const auto& [from, to] :
+           {std::pair{carriers_[k].a, carriers_[k].b}, std::pair{carriers_[k].b, carriers_[k].a}})
         if (!is_movable(from) && is_movable(to)) {
           const Vector3d root = anchor_point(from, states_);
           const double before = hung_[static_cast<std::size_t>(to.body)].depth;
           reach(k, to, 0.0, -1, root);
-          if (hung_[static_cast<std::size_t>(to.body)].depth < before) roots[static_cast<std::size_t>(to.body)] = root;
+          if (hung_[static_cast<std::size_t>(to.body)].depth < before)
+            roots[static_cast<std::size_t>(to.body)] = root;
         }
     std::vector<char> done(world_.bodies.size(), 0);
     while (!next.empty()) {
@@ -114,11 +133,14 @@ class Hanging {
       order_.push_back(body);
       for (const std::size_t k : ends_on_[static_cast<std::size_t>(body)]) {
         const bool is_a = carriers_[k].a.body == body;
-        const Anchor &from = is_a ? carriers_[k].a : carriers_[k].b, &to = is_a ? carriers_[k].b : carriers_[k].a;
+        const Anchor &from = is_a ? carriers_[k].a : carriers_[k].b,
+                     &to = is_a ? carriers_[k].b : carriers_[k].a;
         if (!is_movable(to) || done[static_cast<std::size_t>(to.body)]) continue;
         const double before = hung_[static_cast<std::size_t>(to.body)].depth;
-        reach(k, to, hung_[static_cast<std::size_t>(body)].depth + from.point_body.norm(), body, roots[static_cast<std::size_t>(body)]);
-        if (hung_[static_cast<std::size_t>(to.body)].depth < before) roots[static_cast<std::size_t>(to.body)] = roots[static_cast<std::size_t>(body)];
+        reach(k, to, hung_[static_cast<std::size_t>(body)].depth + from.point_body.norm(), body,
+              roots[static_cast<std::size_t>(body)]);
+        if (hung_[static_cast<std::size_t>(to.body)].depth < before)
+          roots[static_cast<std::size_t>(to.body)] = roots[static_cast<std::size_t>(body)];
       }
     }
   }
@@ -127,8 +149,8 @@ class Hanging {
   const std::vector<effects::Carrier>& carriers_;
   std::vector<RigidBodyState> states_;
   std::vector<Hung> hung_;
-  std::vector<std::vector<std::size_t>> ends_on_;   // by body
-  std::vector<int> order_;                          // from where they hang outwards
+  std::vector<std::vector<std::size_t>> ends_on_;  // by body
+  std::vector<int> order_;                         // from where they hang outwards
   bool by_falling_ = false;
 };
 
@@ -154,10 +176,13 @@ LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carr
 // (sum_k T_k |r_ik|) angle_i^2  and the kinetic one at least  1/2 sum_i I_i angle_i'^2, so that
 // w^2 <= max_i  sum_k T_k |r_ik| / I_i.  A row of equal bars reaches it: neighbours turn to and
 // fro.
-std::optional<StepLimit> judge_joints(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step) {
+std::optional<StepLimit> judge_joints(const World& world,
+                                      const std::vector<effects::Carrier>& carriers,
+                                      const std::vector<double>& loads, const Laws& laws,
+                                      double step) {
   std::vector<double> stiffness(world.bodies.size(), 0.0);
   std::vector<char> turns(world.bodies.size(), 0);
-  for (const bool of_joints : {true, false})   // sums in this order
+  for (const bool of_joints : {true, false})  // sums in this order
     for (std::size_t k = 0; k < carriers.size(); ++k) {
       if ((carriers[k].length == 0.0) != of_joints) continue;
       for (const Anchor* anchor : {&carriers[k].a, &carriers[k].b}) {
@@ -178,10 +203,13 @@ std::optional<StepLimit> judge_joints(const World& world, const std::vector<effe
     fastest = i;
   }
   if (!(squared > 0)) return std::nullopt;
-  const double frequency = std::sqrt(squared), amplified = amplification(laws, frequency, 0.0, step);
+  const double frequency = std::sqrt(squared),
+               amplified = amplification(laws, frequency, 0.0, step);
   if (amplified <= 1.0 + kNegligible) return std::nullopt;
-  return StepLimit{fmt::format("the swing of body '{}' between its joints ({:.4g} rad/s where they carry most)", world.bodies[fastest].name, frequency), amplified,
-                   largest_stable_step(laws, frequency, 0.0, step), "longer or fewer links"};
+  return StepLimit{
+      fmt::format("the swing of body '{}' between its joints ({:.4g} rad/s where they carry most)",
+                  world.bodies[fastest].name, frequency),
+      amplified, largest_stable_step(laws, frequency, 0.0, step), "longer or fewer links"};
 }
 
 }  // namespace tumble::engines

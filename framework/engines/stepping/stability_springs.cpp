@@ -24,14 +24,19 @@ constexpr Eigen::Index kMostHeldBodies = 60;
 /// as easy to move.
 class LinkedCoordinates {
  public:
-  LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows, const std::vector<Constraint>& held) : world_(world), place_(world.bodies.size(), -1) {
+  LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows,
+                    const std::vector<Constraint>& held)
+      : world_(world), place_(world.bodies.size(), -1) {
     for (const effects::StiffRow& row : rows) take(row.body_a), take(row.body_b);
     for (const Constraint& row : held) take(row.body_a), take(row.body_b);
   }
 
   Eigen::Index size() const { return 6 * bodies_; }
-  Eigen::Index place(int body) const { return place_[static_cast<std::size_t>(body)]; }   // of its first coordinate
-  bool is_movable(int body) const { return body >= 0 && place_[static_cast<std::size_t>(body)] >= 0; }
+  // of its first coordinate
+  Eigen::Index place(int body) const { return place_[static_cast<std::size_t>(body)]; }
+  bool is_movable(int body) const {
+    return body >= 0 && place_[static_cast<std::size_t>(body)] >= 0;
+  }
 
   /// Adds J M^-1/2 of one body. @param jacobian  (6), (linear, angular), world
   void add(int body, const Vector6d& jacobian, Eigen::Ref<VectorXd> row) const {
@@ -39,13 +44,16 @@ class LinkedCoordinates {
     const WorldBody& moved = world_.bodies[static_cast<std::size_t>(body)];
     const Matrix3d R = moved.state.world_from_body.toRotationMatrix();
     const Matrix3d root = symmetric_root(moved.inertia.inverse_inertia_body);
-    row.segment<3>(place_[static_cast<std::size_t>(body)]) += std::sqrt(moved.inertia.inverse_mass) * jacobian.head<3>();
-    row.segment<3>(place_[static_cast<std::size_t>(body)] + 3) += root * (R.transpose() * jacobian.tail<3>());
+    row.segment<3>(place_[static_cast<std::size_t>(body)]) +=
+        std::sqrt(moved.inertia.inverse_mass) * jacobian.head<3>();
+    row.segment<3>(place_[static_cast<std::size_t>(body)] + 3) +=
+        root * (R.transpose() * jacobian.tail<3>());
   }
 
  private:
   void take(int body) {
-    if (body < 0 || world_.bodies[static_cast<std::size_t>(body)].immovable() || is_movable(body)) return;
+    if (body < 0 || world_.bodies[static_cast<std::size_t>(body)].immovable() || is_movable(body))
+      return;
     place_[static_cast<std::size_t>(body)] = 6 * bodies_++;
   }
 
@@ -58,8 +66,10 @@ class LinkedCoordinates {
 MatrixXd held_directions(const std::vector<Constraint>& held, const LinkedCoordinates& linked) {
   MatrixXd directions = MatrixXd::Zero(linked.size(), static_cast<Eigen::Index>(held.size()));
   for (std::size_t k = 0; k < held.size(); ++k) {
-    linked.add(held[k].body_a, held[k].row.jacobian_a, directions.col(static_cast<Eigen::Index>(k)));
-    linked.add(held[k].body_b, held[k].row.jacobian_b, directions.col(static_cast<Eigen::Index>(k)));
+    linked.add(held[k].body_a, held[k].row.jacobian_a,
+               directions.col(static_cast<Eigen::Index>(k)));
+    linked.add(held[k].body_b, held[k].row.jacobian_b,
+               directions.col(static_cast<Eigen::Index>(k)));
   }
   return directions;
 }
@@ -72,7 +82,8 @@ Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
   std::vector<RigidBodyState> start;
   for (const WorldBody& body : world.bodies) start.push_back(body.state);
   std::vector<Constraint> holding;
-  for (const effects::Effect* effect : effects::all()) effect->append_held_rows(world, start, holding);
+  for (const effects::Effect* effect : effects::all())
+    effect->append_held_rows(world, start, holding);
   const LinkedCoordinates linked(world, rows, holding);
   const bool is_small = linked.size() <= 6 * kMostHeldBodies;
   std::vector<bool> is_held(world.bodies.size(), false);
@@ -84,7 +95,9 @@ Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
   VectorXd way = VectorXd::Zero(linked.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const effects::StiffRow& row = rows[k];
-    const auto held = [&](int body) { return body >= 0 && is_held[static_cast<std::size_t>(body)]; };
+    const auto held = [&](int body) {
+      return body >= 0 && is_held[static_cast<std::size_t>(body)];
+    };
     if (!is_small && (held(row.body_a) || held(row.body_b))) continue;
     linked.add(row.body_a, row.jacobian_a, way);
     linked.add(row.body_b, row.jacobian_b, way);
@@ -98,15 +111,16 @@ Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
   }
   if (holding.empty() || !is_small) return ways;
   const MatrixXd directions = held_directions(holding, linked), free(ways);
-  return MatrixXd(free - directions * least_squares(directions, free)).sparseView();   // redundant rows are allowed
+  // redundant rows are allowed
+  return MatrixXd(free - directions * least_squares(directions, free)).sparseView();
 }
 
 /// The way of moving on which a diagonal D over the rows acts most: x^T J^T D J x where x^T M x =
 /// 1.
 struct MostActedOn {
-  Eigen::Index row = 0;      // that takes most part in it
-  double most = 0.0;         // of D
-  double other = 0.0;        // the same sum of another diagonal
+  Eigen::Index row = 0;  // that takes most part in it
+  double most = 0.0;     // of D
+  double other = 0.0;    // the same sum of another diagonal
 };
 
 MostActedOn most_acted_on(const Sparse& shared, const VectorXd& diagonal, const VectorXd& other) {
@@ -115,14 +129,16 @@ MostActedOn most_acted_on(const Sparse& shared, const VectorXd& diagonal, const 
   MostActedOn result;
   if (shared.rows() > kMostSprings) {
     result.most = (scaled.cwiseAbs() * VectorXd::Ones(shared.rows())).maxCoeff(&result.row);
-    result.other = diagonal[result.row] > 0 ? result.most * other[result.row] / diagonal[result.row] : 0.0;
+    result.other =
+        diagonal[result.row] > 0 ? result.most * other[result.row] / diagonal[result.row] : 0.0;
     return result;
   }
   const SymmetricEigen eigen = symmetric_eigen(MatrixXd(scaled));
   const VectorXd part = eigen.vectors.rightCols<1>();
   result.most = eigen.values[shared.rows() - 1];
   part.cwiseAbs().maxCoeff(&result.row);
-  if (result.most > 0) result.other = other.dot((shared * root.cwiseProduct(part)).cwiseAbs2()) / result.most;
+  if (result.most > 0)
+    result.other = other.dot((shared * root.cwiseProduct(part)).cwiseAbs2()) / result.most;
   return result;
 }
 
@@ -132,7 +148,8 @@ struct StiffRows {
   explicit StiffRows(const World& world) {
     std::vector<RigidBodyState> start;
     for (const WorldBody& body : world.bodies) start.push_back(body.state);
-    for (const effects::Effect* effect : effects::all()) effect->append_stiff_rows(world, start, rows);
+    for (const effects::Effect* effect : effects::all())
+      effect->append_stiff_rows(world, start, rows);
     stiffness.resize(static_cast<Eigen::Index>(rows.size()));
     damping.resize(stiffness.size());
     for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
@@ -155,23 +172,35 @@ struct StiffRows {
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step) {
   const StiffRows springs(world);
   if (springs.rows.empty()) return std::nullopt;
-  const MostActedOn swing = most_acted_on(springs.shared(world), springs.stiffness, springs.damping);
+  const MostActedOn swing =
+      most_acted_on(springs.shared(world), springs.stiffness, springs.damping);
   if (!(swing.most > 0)) return std::nullopt;
   const double frequency = std::sqrt(swing.most), damping = swing.other;
   const effects::StiffRow& most = springs.at(swing.row);
-  return SpringStability{most.of, frequency, damping, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step), most.remedy, most.last_remedy};
+  return SpringStability{most.of,
+                         frequency,
+                         damping,
+                         amplification(laws, frequency, damping, step),
+                         largest_stable_step(laws, frequency, damping, step),
+                         most.remedy,
+                         most.last_remedy};
 }
 
 std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step) {
   const StiffRows springs(world);
-  if (std::none_of(springs.rows.begin(), springs.rows.end(), [](const effects::StiffRow& row) { return row.damping > 0; })) return std::nullopt;
-  const MostActedOn decay = most_acted_on(springs.shared(world), springs.damping, springs.stiffness);
+  if (std::none_of(springs.rows.begin(), springs.rows.end(),
+                   [](const effects::StiffRow& row) { return row.damping > 0; }))
+    return std::nullopt;
+  const MostActedOn decay =
+      most_acted_on(springs.shared(world), springs.damping, springs.stiffness);
   const double frequency = std::sqrt(decay.other), damping = decay.most;
   if (!(damping > 2.0 * frequency)) return std::nullopt;
   const double amplified = amplification(laws, frequency, damping, step);
   if (!(amplified > 1.0 + kNegligible)) return std::nullopt;
-  return StepLimit{fmt::format("what the damper of {} takes from velocities ({:.4g} 1/s where the run starts)", springs.at(decay.row).of, damping), amplified,
-                   largest_stable_step(laws, frequency, damping, step), "less damping"};
+  return StepLimit{
+      fmt::format("what the damper of {} takes from velocities ({:.4g} 1/s where the run starts)",
+                  springs.at(decay.row).of, damping),
+      amplified, largest_stable_step(laws, frequency, damping, step), "less damping"};
 }
 
 }  // namespace tumble::engines

@@ -31,7 +31,8 @@ struct StartPair {
 ///   2^-24 (|x_a| + r_a + |x_b| + r_b),
 /// and both for place and shape: 2^-23 of it. Never more than a ten-thousandth of the smaller body,
 /// which would be seen.
-double explained_overlap(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b);
+double explained_overlap(const collision::CollisionShape& a, const collision::Pose& pose_a,
+                         const collision::CollisionShape& b, const collision::Pose& pose_b);
 
 /// Some bodies overlap at the start. What the user reads where nothing is done about it names the
 /// first pair that rounding does not explain, with both numbers.
@@ -48,11 +49,13 @@ class OverlapAtStart : public UserError {
 
 /// Looks at one pair for an engine, and keeps it where it matters.
 /// @param touching  an overlap this deep is a rounding of doubles [m]
-void look_at_start(int a, int b, const collision::CollisionShape& shape_a, const collision::Pose& pose_a, const collision::CollisionShape& shape_b, const collision::Pose& pose_b,
-                   double touching, std::vector<StartPair>& near);
+void look_at_start(int a, int b, const collision::CollisionShape& shape_a,
+                   const collision::Pose& pose_a, const collision::CollisionShape& shape_b,
+                   const collision::Pose& pose_b, double touching, std::vector<StartPair>& near);
 
 /// @throws OverlapAtStart where one of the pairs overlaps
-void refuse_overlaps(const std::string& where, const scene::Scene& scene, const std::vector<StartPair>& near);
+void refuse_overlaps(const std::string& where, const scene::Scene& scene,
+                     const std::vector<StartPair>& near);
 
 /// The scene with bodies moved apart, outward from what is immovable, so that none of the pairs
 /// overlaps; and a sentence about it.
@@ -61,6 +64,7 @@ struct MovedApart {
   scene::Scene scene;
   std::string notice;
 };
-std::optional<MovedApart> moved_apart(const scene::Scene& scene, const std::vector<StartPair>& near);
+std::optional<MovedApart> moved_apart(const scene::Scene& scene,
+                                      const std::vector<StartPair>& near);
 
 }  // namespace tumble::engines

@@ -17,10 +17,13 @@ class StartWatch final : public TrajectorySink {
  public:
   /// @param scene    as the user wrote it
   /// @param pushed   bodies that a callback acts on at the start: their velocities are not compared
-  StartWatch(const scene::Scene& scene, std::set<int> pushed, TrajectorySink& sink) : scene_(scene), pushed_(std::move(pushed)), sink_(sink) {}
+  StartWatch(const scene::Scene& scene, std::set<int> pushed, TrajectorySink& sink)
+      : scene_(scene), pushed_(std::move(pushed)), sink_(sink) {}
 
   void add(std::string notice) { notices_.push_back(std::move(notice)); }
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
+    sink_.begin(info, bodies);
+  }
   void frame(const Frame& frame) override;
   void event(const Event& event) override { sink_.event(event); }
   void end(const Counters& counters, const std::string& stopped_by) override;

@@ -7,7 +7,9 @@
 namespace tumble::engines {
 
 Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_from_body) {
-  if (shape.is_half_space()) return {Vector3d::Constant(-std::numeric_limits<double>::infinity()), Vector3d::Constant(std::numeric_limits<double>::infinity())};
+  if (shape.is_half_space())
+    return {Vector3d::Constant(-std::numeric_limits<double>::infinity()),
+            Vector3d::Constant(std::numeric_limits<double>::infinity())};
   Box box;
   for (const Vector3d& vertex : shape.vertices()) {
     const Vector3d arm_world = world_from_body * vertex;
@@ -17,17 +19,24 @@ Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_
   return {box.low - margin, box.high + margin};
 }
 
-ActivePairs::ActivePairs(int bodies, double cell) : own_entries_(std::make_unique<Entries>(static_cast<std::size_t>(bodies))), entries_(own_entries_.get()), number_(0) { make_buckets(bodies, cell); }
+ActivePairs::ActivePairs(int bodies, double cell)
+    : own_entries_(std::make_unique<Entries>(static_cast<std::size_t>(bodies))),
+      entries_(own_entries_.get()),
+      number_(0) {
+  make_buckets(bodies, cell);
+}
 
-ActivePairs::ActivePairs(Entries& entries, int number, int held, double cell) : entries_(&entries), number_(static_cast<std::int16_t>(number)) {
-  require(number >= 0 && number <= std::numeric_limits<std::int16_t>::max(), "grids that share bodies have numbers");
+ActivePairs::ActivePairs(Entries& entries, int number, int held, double cell)
+    : entries_(&entries), number_(static_cast<std::int16_t>(number)) {
+  require(number >= 0 && number <= std::numeric_limits<std::int16_t>::max(),
+          "grids that share bodies have numbers");
   make_buckets(held, cell);
 }
 
 void ActivePairs::make_buckets(int held, double cell) {
   cell_ = cell;
   std::uint32_t heads = 64;
-  while (heads < static_cast<std::uint32_t>(held)) heads *= 2;   // a cell holds a few bodies
+  while (heads < static_cast<std::uint32_t>(held)) heads *= 2;  // a cell holds a few bodies
   mask_ = heads - 1;
   buckets_.resize(heads);
 }
@@ -39,7 +48,8 @@ ActivePairs::SmallBox ActivePairs::small_of(const Box& box) {
     small.low[axis] = static_cast<float>(box.low[axis]);
     small.high[axis] = static_cast<float>(box.high[axis]);
     if (small.low[axis] > box.low[axis]) small.low[axis] = std::nextafter(small.low[axis], -kEnd);
-    if (small.high[axis] < box.high[axis]) small.high[axis] = std::nextafter(small.high[axis], kEnd);
+    if (small.high[axis] < box.high[axis])
+      small.high[axis] = std::nextafter(small.high[axis], kEnd);
   }
   return small;
 }
@@ -79,9 +89,11 @@ void ActivePairs::leave(int body, std::size_t bucket) {
   std::int32_t place = 0;
   for (;; at = static_cast<std::size_t>(buckets_[at].next)) {
     const Bucket& b = buckets_[at];
-    for (place = 0; place < b.count && b.slots[static_cast<std::size_t>(place)].body != body; ++place) {}
+    for (place = 0; place < b.count && b.slots[static_cast<std::size_t>(place)].body != body;
+         ++place) {
+    }
     if (place < b.count) break;
-    if (b.next < 0) return;   // already removed with another cell of its box
+    if (b.next < 0) return;  // already removed with another cell of its box
   }
   std::size_t last = at;
   while (buckets_[last].next >= 0) {
@@ -89,8 +101,10 @@ void ActivePairs::leave(int body, std::size_t bucket) {
     last = static_cast<std::size_t>(buckets_[last].next);
   }
   if (last == at && last != bucket)
-    for (before = bucket; buckets_[before].next != static_cast<std::int32_t>(last);) before = static_cast<std::size_t>(buckets_[before].next);
-  buckets_[at].slots[static_cast<std::size_t>(place)] = buckets_[last].slots[static_cast<std::size_t>(buckets_[last].count - 1)];
+    for (before = bucket; buckets_[before].next != static_cast<std::int32_t>(last);)
+      before = static_cast<std::size_t>(buckets_[before].next);
+  buckets_[at].slots[static_cast<std::size_t>(place)] =
+      buckets_[last].slots[static_cast<std::size_t>(buckets_[last].count - 1)];
   if (--buckets_[last].count == 0 && last != bucket) {
     buckets_[before].next = -1;
     free_.push_back(static_cast<std::int32_t>(last));
@@ -100,8 +114,10 @@ void ActivePairs::leave(int body, std::size_t bucket) {
 void ActivePairs::take_out(int body) {
   Entry& its = entry(body);
   if (its.grid != number_) return;
-  if (its.is_wide) wide_.erase(std::find(wide_.begin(), wide_.end(), body));
-  else for_each_cell(its, [&](std::size_t bucket) { leave(body, bucket); });
+  if (its.is_wide)
+    wide_.erase(std::find(wide_.begin(), wide_.end(), body));
+  else
+    for_each_cell(its, [&](std::size_t bucket) { leave(body, bucket); });
   its.grid = -1;
   its.is_wide = false;
 }
@@ -115,7 +131,8 @@ ActivePairs::Entry ActivePairs::entry_of(const Box& box) const {
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(box.low[axis] / cell_), high = std::floor(box.high[axis] / cell_);
     cells *= high - low + 1;
-    if (!(std::abs(low) < kFarthest && std::abs(high) < kFarthest)) cells = std::numeric_limits<double>::infinity();
+    if (!(std::abs(low) < kFarthest && std::abs(high) < kFarthest))
+      cells = std::numeric_limits<double>::infinity();
     if (!(cells <= kMostCells)) break;
     entry.low[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(low);
     entry.high[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(high);
@@ -138,7 +155,8 @@ void ActivePairs::set_box(int body, const Box& box) {
     __builtin_prefetch(&buckets_[bucket]);
     __builtin_prefetch(reinterpret_cast<const char*>(&buckets_[bucket]) + 64);
   });
-  if (its.is_wide || its.grid != number_ || its.low != next.low || its.high != next.high) take_out(body);
+  if (its.is_wide || its.grid != number_ || its.low != next.low || its.high != next.high)
+    take_out(body);
   its = next;
   const SmallBox small = small_of(box);
   for_each_cell(next, [&](std::size_t bucket) { enter(body, small, bucket); });

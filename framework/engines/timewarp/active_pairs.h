@@ -29,8 +29,8 @@ struct Box {
   }
   bool overlaps(const Box& other) const {
     // All six comparisons without a branch: which one separates two boxes is unpredictable.
-    return (low.x() <= other.high.x()) & (other.low.x() <= high.x()) & (low.y() <= other.high.y()) & (other.low.y() <= high.y()) & (low.z() <= other.high.z()) &
-           (other.low.z() <= high.z());
+    return (low.x() <= other.high.x()) & (other.low.x() <= high.x()) & (low.y() <= other.high.y()) &
+           (other.low.y() <= high.y()) & (low.z() <= other.high.z()) & (other.low.z() <= high.z());
   }
 };
 
@@ -42,8 +42,8 @@ class ActivePairs {
  public:
   struct Entry {
     Box box;
-    std::array<std::int32_t, 3> low{0, 0, 0}, high{-1, -1, -1};   // cells
-    std::int16_t grid = -1;   // the grid that holds it; -1: none
+    std::array<std::int32_t, 3> low{0, 0, 0}, high{-1, -1, -1};  // cells
+    std::int16_t grid = -1;                                      // the grid that holds it; -1: none
     bool is_wide = false;
   };
   using Entries = std::vector<Entry, LargePages<Entry>>;
@@ -75,14 +75,22 @@ class ActivePairs {
     for (std::size_t body = 0; body < entries_->size(); ++body) {
       const Entry& e = (*entries_)[body];
       if (e.grid != number_) continue;
-      row(e.is_wide ? 'w' : 'b', 0, static_cast<int>(body), std::array<double, 12>{e.box.low.x(), e.box.low.y(), e.box.low.z(), e.box.high.x(), e.box.high.y(), e.box.high.z(), double(e.low[0]), double(e.low[1]), double(e.low[2]),
-                                                                                  double(e.high[0]), double(e.high[1]), double(e.high[2])});
+      row(e.is_wide ? 'w' : 'b', 0, static_cast<int>(body),
+          std::array<double, 12>{e.box.low.x(), e.box.low.y(), e.box.low.z(), e.box.high.x(),
+                                 e.box.high.y(), e.box.high.z(), double(e.low[0]), double(e.low[1]),
+                                 double(e.low[2]), double(e.high[0]), double(e.high[1]),
+                                 double(e.high[2])});
     }
     for (std::size_t head = 0; head <= mask_; ++head)
-      for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
-        for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) {
-          const Slot& slot = buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)];
-          row('c', head, slot.body, std::array<double, 12>{slot.box.low[0], slot.box.low[1], slot.box.low[2], slot.box.high[0], slot.box.high[1], slot.box.high[2]});
+      for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0;
+           at = buckets_[static_cast<std::size_t>(at)].next)
+        for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count;
+             ++place) {
+          const Slot& slot =
+              buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)];
+          row('c', head, slot.body,
+              std::array<double, 12>{slot.box.low[0], slot.box.low[1], slot.box.low[2],
+                                     slot.box.high[0], slot.box.high[1], slot.box.high[2]});
         }
   }
   const Box& box(int body) const { return entry(body).box; }
@@ -107,15 +115,16 @@ class ActivePairs {
   }
 
  private:
-  static constexpr std::int32_t kInABucket = 4;   // two cache lines
-  static constexpr double kMostCells = 1000;   // of a box in the grid; a box of more cells is wide
+  static constexpr std::int32_t kInABucket = 4;  // two cache lines
+  static constexpr double kMostCells = 1000;  // of a box in the grid; a box of more cells is wide
 
   // A box in single precision, rounded outwards: it separates most boxes that share a cell without
   // further memory access.
   struct SmallBox {
     float low[3], high[3];
     bool overlaps(const SmallBox& other) const {
-      return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) & (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+      return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
+             (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
     }
   };
   static SmallBox small_of(const Box& box);
@@ -140,13 +149,20 @@ class ActivePairs {
   void for_each_overlapping(const Entry& own, int body, const Found& found) const {
     for (const int other : wide_)
       if (other != body && own.box.overlaps(entry(other).box)) found(other);
-    if (own.is_wide) {   // every body in cells, once: at its lowest cell. Reads the buckets, because entries of other grids belong to other threads
+    // every body in cells, once: at its lowest cell. Reads the buckets, because entries of other
+    // grids belong to other threads
+    if (own.is_wide) {
       for (std::size_t head = 0; head <= mask_; ++head)
-        for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
-          for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) {
-            const int other = buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)].body;
+        for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0;
+             at = buckets_[static_cast<std::size_t>(at)].next)
+          for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count;
+               ++place) {
+            const int other =
+                buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)].body;
             const Entry& its = entry(other);
-            if (other != body && head == bucket_of(its.low[0], its.low[1], its.low[2]) && own.box.overlaps(its.box)) found(other);
+            if (other != body && head == bucket_of(its.low[0], its.low[1], its.low[2]) &&
+                own.box.overlaps(its.box))
+              found(other);
           }
       return;
     }
@@ -154,14 +170,17 @@ class ActivePairs {
     for (std::int32_t i = own.low[0]; i <= own.high[0]; ++i)
       for (std::int32_t j = own.low[1]; j <= own.high[1]; ++j)
         for (std::int32_t k = own.low[2]; k <= own.high[2]; ++k)
-          for (std::int32_t at = static_cast<std::int32_t>(bucket_of(i, j, k)); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next) {
+          for (std::int32_t at = static_cast<std::int32_t>(bucket_of(i, j, k)); at >= 0;
+               at = buckets_[static_cast<std::size_t>(at)].next) {
             const Bucket& bucket = buckets_[static_cast<std::size_t>(at)];
             for (std::int32_t place = 0; place < bucket.count; ++place) {
               const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
               if (!small.overlaps(slot.box) || slot.body == body) continue;
               const Entry& other = entry(slot.body);
               // The lowest cell that both intersect; this also separates cells that share a bucket.
-              const bool here = (i == std::max(own.low[0], other.low[0])) & (j == std::max(own.low[1], other.low[1])) & (k == std::max(own.low[2], other.low[2]));
+              const bool here = (i == std::max(own.low[0], other.low[0])) &
+                                (j == std::max(own.low[1], other.low[1])) &
+                                (k == std::max(own.low[2], other.low[2]));
               if (here && own.box.overlaps(other.box)) found(slot.body);
             }
           }
@@ -180,12 +199,13 @@ class ActivePairs {
 
   double cell_;
   std::uint32_t mask_;
-  std::vector<Bucket, LargePages<Bucket>> buckets_;             // the first mask_ + 1 are heads of chains, the others continue a chain
-  std::vector<std::int32_t> free_;          // unused continuations
-  std::unique_ptr<Entries> own_entries_;    // of a grid that has all bodies
-  Entries* entries_;                        // by body
+  // the first mask_ + 1 are heads of chains, the others continue a chain
+  std::vector<Bucket, LargePages<Bucket>> buckets_;
+  std::vector<std::int32_t> free_;        // unused continuations
+  std::unique_ptr<Entries> own_entries_;  // of a grid that has all bodies
+  Entries* entries_;                      // by body
   std::int16_t number_;
-  std::vector<int> wide_;                   // ascending
+  std::vector<int> wide_;  // ascending
 };
 
 }  // namespace tumble::engines

@@ -22,7 +22,8 @@ class EventQueue {
  public:
   /// @param width  of a bin [s], > 0: about a hundred events should fall into one; infinite: one
   ///   heap for all
-  explicit EventQueue(double width = std::numeric_limits<double>::infinity()) : per_second_(1.0 / width), bins_(per_second_ > 0 ? kBins : 0) {}
+  explicit EventQueue(double width = std::numeric_limits<double>::infinity())
+      : per_second_(1.0 / width), bins_(per_second_ > 0 ? kBins : 0) {}
 
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
@@ -31,9 +32,12 @@ class EventQueue {
   void push(const Item& item) {
     ++size_;
     const std::int64_t bin = bin_of(item.key.time);
-    if (bin <= current_) rise(item);
-    else if (bin < current_ + kBins) put(bin, item);
-    else far_.push_back(item);
+    if (bin <= current_)
+      rise(item);
+    else if (bin < current_ + kBins)
+      put(bin, item);
+    else
+      far_.push_back(item);
     if (heap_.empty()) go_on();
   }
 
@@ -78,11 +82,14 @@ class EventQueue {
   }
 
  private:
-  static constexpr std::size_t kChildren = 4;       // flatter than a binary heap: fewer cache misses per pop
+  // flatter than a binary heap: fewer cache misses per pop
+  static constexpr std::size_t kChildren = 4;
   static constexpr std::int64_t kBins = 4096;
 
   // Never decreases with time, rounding included: an item in a later bin is later.
-  std::int64_t bin_of(double time) const { return static_cast<std::int64_t>(std::min(std::floor(time * per_second_), 4e18)); }
+  std::int64_t bin_of(double time) const {
+    return static_cast<std::int64_t>(std::min(std::floor(time * per_second_), 4e18));
+  }
 
   // Advances to the next bin that is not empty.
   void go_on() {
@@ -121,8 +128,10 @@ class EventQueue {
     std::vector<Item> still_far;
     for (const Item& item : far_) {
       const std::int64_t bin = bin_of(item.key.time);
-      if (bin < current_ + kBins) put(bin, item);
-      else still_far.push_back(item);
+      if (bin < current_ + kBins)
+        put(bin, item);
+      else
+        still_far.push_back(item);
     }
     far_.swap(still_far);
   }
@@ -156,7 +165,8 @@ class EventQueue {
   }
 
   double per_second_;
-  std::vector<std::vector<Item>> bins_;   // by bin modulo kBins: the bins in (current_, current_ + kBins)
+  // by bin modulo kBins: the bins in (current_, current_ + kBins)
+  std::vector<std::vector<Item>> bins_;
   std::vector<std::vector<Item>> spare_;  // memory of bins that are empty now
   std::vector<Item> heap_;                // bins up to current_
   std::vector<Item> far_;                 // beyond

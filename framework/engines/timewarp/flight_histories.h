@@ -43,25 +43,31 @@ class FlightHistory {
 /// Two threads may push and drop the flights of two bodies concurrently.
 class FlightHistories {
  public:
-  explicit FlightHistories(std::size_t bodies) : histories_(bodies), grown_(bodies), slab_(bodies * kFirstSlots) {
+  explicit FlightHistories(std::size_t bodies)
+      : histories_(bodies), grown_(bodies), slab_(bodies * kFirstSlots) {
     for (std::size_t i = 0; i < bodies; ++i) {
       histories_[i].slots_ = &slab_[i * kFirstSlots];
       histories_[i].mask_ = kFirstSlots - 1;
     }
   }
 
-  const FlightHistory& operator[](int body) const { return histories_[static_cast<std::size_t>(body)]; }
+  const FlightHistory& operator[](int body) const {
+    return histories_[static_cast<std::size_t>(body)];
+  }
 
   /// Prefetches the flights of a body.
   void fetch(int body) const {
     __builtin_prefetch(&histories_[static_cast<std::size_t>(body)]);
-    const char* slots = reinterpret_cast<const char*>(&slab_[static_cast<std::size_t>(body) * kFirstSlots]);
-    for (std::size_t at = 0; at < kFirstSlots * sizeof(Flight); at += 64) __builtin_prefetch(slots + at);
+    const char* slots =
+        reinterpret_cast<const char*>(&slab_[static_cast<std::size_t>(body) * kFirstSlots]);
+    for (std::size_t at = 0; at < kFirstSlots * sizeof(Flight); at += 64)
+      __builtin_prefetch(slots + at);
   }
 
   void push(int body, const Flight& flight) {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
-    if (history.count_ == history.mask_ + 1) resize(static_cast<std::size_t>(body), 2 * (history.mask_ + 1));
+    if (history.count_ == history.mask_ + 1)
+      resize(static_cast<std::size_t>(body), 2 * (history.mask_ + 1));
     history.slots_[(history.first_ + history.count_++) & history.mask_] = flight;
   }
   /// Drops the last flight: a rollback.
@@ -82,11 +88,12 @@ class FlightHistories {
     }
     // At a quarter of its capacity the buffer is halved: a burst of events does not reserve memory
     // for the rest of the run.
-    if (history.mask_ + 1 > kFirstSlots && 4 * history.count_ <= history.mask_ + 1) resize(static_cast<std::size_t>(body), std::max(kFirstSlots, (history.mask_ + 1) / 2));
+    if (history.mask_ + 1 > kFirstSlots && 4 * history.count_ <= history.mask_ + 1)
+      resize(static_cast<std::size_t>(body), std::max(kFirstSlots, (history.mask_ + 1) / 2));
   }
 
  private:
-  static constexpr std::size_t kFirstSlots = 2;   // a power of two
+  static constexpr std::size_t kFirstSlots = 2;  // a power of two
 
   void resize(std::size_t body, std::size_t slots) {
     FlightHistory& history = histories_[body];

@@ -13,11 +13,13 @@ namespace {
 
 // Calls a decision; `problem_of` describes what makes its answer unusable, empty for a usable one.
 template <class Function, class ProblemOf>
-void guard(Function& function, const char* name, const std::string& source, const ProblemOf& problem_of) {
+void guard(Function& function, const char* name, const std::string& source,
+           const ProblemOf& problem_of) {
   function = [inner = function, name, source, problem_of](const auto&... arguments) {
     try {
       auto answer = inner(arguments...);
-      if (const std::string problem = problem_of(answer); !problem.empty()) throw StoppedRun(fmt::format("{} (of {}) returned {}", name, source, problem));
+      if (const std::string problem = problem_of(answer); !problem.empty())
+        throw StoppedRun(fmt::format("{} (of {}) returned {}", name, source, problem));
       return answer;
     } catch (const StoppedRun&) {
       throw;
@@ -38,7 +40,11 @@ std::string of_rollbacks(const std::vector<Rollback>& rollbacks) {
     if (std::isnan(rollback.stamp.time)) return "a rollback to a time that is not a number";
   return "";
 }
-std::string of_event(const ScheduledEvent& event) { return std::isnan(event.stamp.time) || std::isnan(event.safe_time) ? "an event with a time that is not a number" : ""; }
+std::string of_event(const ScheduledEvent& event) {
+  return std::isnan(event.stamp.time) || std::isnan(event.safe_time)
+             ? "an event with a time that is not a number"
+             : "";
+}
 
 }  // namespace
 
@@ -50,7 +56,8 @@ Scheduling guarded(const Scheduling& scheduling, const std::string& source) {
     const std::string problem = of_event(decision.next);
     return problem.empty() ? of_rollbacks(decision.rollbacks) : problem;
   });
-  guard(safe.contact_groups, "contact_groups", source, [](const std::vector<std::vector<std::int32_t>>& answer) { return any(answer); });
+  guard(safe.contact_groups, "contact_groups", source,
+        [](const std::vector<std::vector<std::int32_t>>& answer) { return any(answer); });
   guard(safe.on_group_check, "on_group_check", source, [](const GroupDecision& decision) {
     const std::string problem = of_event(decision.next);
     return problem.empty() ? of_rollbacks(decision.rollbacks) : problem;
@@ -61,7 +68,8 @@ Scheduling guarded(const Scheduling& scheduling, const std::string& source) {
   guard(safe.after_rollback, "after_rollback", source, of_event);
   guard(safe.global_virtual_time, "global_virtual_time", source, of_time);
   guard(safe.may_commit, "may_commit", source, [](bool answer) { return any(answer); });
-  guard(safe.states_to_purge, "states_to_purge", source, [](std::uint32_t answer) { return any(answer); });
+  guard(safe.states_to_purge, "states_to_purge", source,
+        [](std::uint32_t answer) { return any(answer); });
   return safe;
 }
 

@@ -13,19 +13,29 @@ namespace tumble::engines {
 /// numbers that are used only once (versions, segments), addresses in memory and stale items are
 /// left out.
 struct StateSnapshot {
-  std::string states;   // by body: local virtual time and every saved flight
-  std::string groups;   // by flight on a segment: the island's members, start state, steps so far, and all flights that began with the same event
-  std::string events;   // the pending events; the executed events that are not rolled back; the callbacks that have been executed
-  std::string cells;    // boxes swept from global to local virtual time, their cells, the bodies of each bucket, and the overlapping pairs
+  std::string states;  // by body: local virtual time and every saved flight
+  // by flight on a segment: the island's members, start state, steps so far, and all flights that
+  // began with the same event
+  std::string groups;
+  // the pending events; the executed events that are not rolled back; the callbacks that have been
+  // executed
+  std::string events;
+  // boxes swept from global to local virtual time, their cells, the bodies of each bucket, and the
+  // overlapping pairs
+  std::string cells;
 };
 
 struct RollbackCheck {
-  int every = 0;        // events (with several threads: epochs) between two injections, at least; 0: never
-  int most_steps = 50;  // of processes between the two rollbacks, in total: 1 to this number, each in turn (with several threads: epochs)
-  int first = 0;        // place of the first injection in that sequence
+  // events (with several threads: epochs) between two injections, at least; 0: never
+  int every = 0;
+  // of processes between the two rollbacks, in total: 1 to this number, each in turn (with several
+  // threads: epochs)
+  int most_steps = 50;
+  int first = 0;  // place of the first injection in that sequence
   /// @param t      the time of both rollbacks [s]
   /// @param steps  taken between them
-  std::function<void(double t, int steps, const StateSnapshot& before, const StateSnapshot& after)> report;
+  std::function<void(double t, int steps, const StateSnapshot& before, const StateSnapshot& after)>
+      report;
 };
 
 }  // namespace tumble::engines

@@ -9,15 +9,16 @@ namespace {
 
 constexpr std::int32_t kSomeWall = -1;
 
-
 }  // namespace
 
-GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight, double safe_time, double to) {
+GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight, double safe_time,
+                           double to) {
   LogicalProcesses& processes = *run.world().processes();
   GroupFinding finding;
   const std::vector<BodyPair> ties = processes.ties_of(processes.segments().start(flight.segment));
   finding.end = run.own_end(body, flight, to);
-  if (finding.end && finding.end->time < safe_time) finding.end.reset();   // the scheduler skipped this interval
+  // the scheduler skipped this interval
+  if (finding.end && finding.end->time < safe_time) finding.end.reset();
   if (!finding.end) {
     for (const auto& [a, b] : ties) finding.contacts.push_back({a, b, kInfinity});
     return finding;
@@ -27,29 +28,35 @@ GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight,
   const std::vector<BodyPair> stays = processes.ties_of(end.after);
   for (const auto& [a, b] : stays) finding.contacts.push_back({a, b, kInfinity});
   for (const BodyPair& tie : ties)
-    if (!std::binary_search(stays.begin(), stays.end(), tie)) finding.contacts.push_back({tie.first, tie.second, end.time});
+    if (!std::binary_search(stays.begin(), stays.end(), tie))
+      finding.contacts.push_back({tie.first, tie.second, end.time});
   finding.contacts.push_back({body, kSomeWall, end.time});
   return finding;
 }
 
-std::vector<GroupContact> contacts_of(const FlightWorld& world, const std::vector<BegunFlight>& begun) {
+std::vector<GroupContact> contacts_of(const FlightWorld& world,
+                                      const std::vector<BegunFlight>& begun) {
   std::vector<GroupContact> contacts;
   std::vector<int> seen;
   for (const BegunFlight& flight : begun) {
     const int segment = flight.flight.segment;
     if (segment < 0 || std::find(seen.begin(), seen.end(), segment) != seen.end()) continue;
     seen.push_back(segment);
-    for (const auto& [a, b] : world.processes()->ties_of(world.processes()->segments().start(segment))) contacts.push_back({a, b, kInfinity});
+    for (const auto& [a, b] :
+         world.processes()->ties_of(world.processes()->segments().start(segment)))
+      contacts.push_back({a, b, kInfinity});
   }
   return contacts;
 }
 
 Groups groups_of(const std::vector<BegunFlight>& begun) {
-  std::map<int, std::vector<std::int32_t>> members;   // by segment
+  std::map<int, std::vector<std::int32_t>> members;  // by segment
   Groups groups;
   for (const BegunFlight& flight : begun)
-    if (flight.flight.segment >= 0) members[flight.flight.segment].push_back(flight.body);
-    else groups.push_back({flight.body});
+    if (flight.flight.segment >= 0)
+      members[flight.flight.segment].push_back(flight.body);
+    else
+      groups.push_back({flight.body});
   for (auto& [segment, bodies] : members) {
     std::sort(bodies.begin(), bodies.end());
     groups.push_back(std::move(bodies));
@@ -64,7 +71,9 @@ std::string in_words(const FlightWorld& world, const Groups& groups) {
     text += text.empty() ? "{" : " {";
     for (std::size_t k = 0; k < group.size(); ++k) {
       const bool is_body = group[k] >= 0 && group[k] < world.size();
-      text += (k > 0 ? ", " : "") + (is_body ? "'" + world.world().bodies[static_cast<std::size_t>(group[k])].name + "'" : std::to_string(group[k]));
+      text += (k > 0 ? ", " : "") +
+              (is_body ? "'" + world.world().bodies[static_cast<std::size_t>(group[k])].name + "'"
+                       : std::to_string(group[k]));
     }
     text += "}";
   }

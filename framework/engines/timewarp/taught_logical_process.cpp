@@ -5,7 +5,8 @@
 namespace tumble::engines {
 namespace {
 
-constexpr std::size_t kMostKept = 2, kFewKept = 16;   // of the boxes that are there, and so many: what a heap may hold
+// of the boxes that are there, and so many: what a heap may hold
+constexpr std::size_t kMostKept = 2, kFewKept = 16;
 
 }  // namespace
 
@@ -48,7 +49,8 @@ Box SweptBox::box() const {
   Box box;
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     for (std::size_t heap : {axis, kAxes + axis})
-      while (!bounds_[heap].empty() && !alive_.contains(bounds_[heap].top().second)) bounds_[heap].pop();
+      while (!bounds_[heap].empty() && !alive_.contains(bounds_[heap].top().second))
+        bounds_[heap].pop();
     if (bounds_[axis].empty()) return Box{};
     box.low[static_cast<Eigen::Index>(axis)] = -bounds_[axis].top().first;
     box.high[static_cast<Eigen::Index>(axis)] = bounds_[kAxes + axis].top().first;
@@ -56,13 +58,17 @@ Box SweptBox::box() const {
   return box;
 }
 
-TaughtLogicalProcess::TaughtLogicalProcess(const FlightWorld& world, int body) : world_(world), body_(body) {
+TaughtLogicalProcess::TaughtLogicalProcess(const FlightWorld& world, int body)
+    : world_(world), body_(body) {
   const Flight& first = world.first_flight(body);
-  push(first.begin, first, {first.begin, 0, StampKind::kCollision, -1, -1}, box_of(first, first.begin, first.begin));
+  push(first.begin, first, {first.begin, 0, StampKind::kCollision, -1, -1},
+       box_of(first, first.begin, first.begin));
 }
 
 const KeptState* TaughtLogicalProcess::at(double t) const {
-  const auto later = std::upper_bound(states_.begin(), states_.end(), t, [](double time, const KeptState& state) { return time < state.time; });
+  const auto later =
+      std::upper_bound(states_.begin(), states_.end(), t,
+                       [](double time, const KeptState& state) { return time < state.time; });
   return later == states_.begin() ? nullptr : &*std::prev(later);
 }
 
@@ -77,32 +83,39 @@ void TaughtLogicalProcess::integrate_to(double t) {
   push(t, last.flight, last.began, box_of(last.flight, last.time, t));
 }
 
-void TaughtLogicalProcess::begin(const Flight& flight, const EventStamp& began) { push(flight.begin, flight, began, box_of(flight, flight.begin, flight.begin)); }
+void TaughtLogicalProcess::begin(const Flight& flight, const EventStamp& began) {
+  push(flight.begin, flight, began, box_of(flight, flight.begin, flight.begin));
+}
 
 // A segment is let go of with the last state that names it.
 void TaughtLogicalProcess::drop_latest() {
   const KeptState dropped = states_.back();
   swept_.remove(dropped.id);
   states_.pop_back();
-  if (states_.empty() || states_.back().flight.version != dropped.flight.version) world_.release(dropped.flight);
+  if (states_.empty() || states_.back().flight.version != dropped.flight.version)
+    world_.release(dropped.flight);
 }
 
 void TaughtLogicalProcess::drop_oldest(std::size_t count) {
   const auto end = states_.begin() + static_cast<std::ptrdiff_t>(count);
   for (auto state = states_.begin(); state != end; ++state) {
     swept_.remove(state->id);
-    if (std::next(state) == states_.end() || std::next(state)->flight.version != state->flight.version) world_.release(state->flight);
+    if (std::next(state) == states_.end() ||
+        std::next(state)->flight.version != state->flight.version)
+      world_.release(state->flight);
   }
   states_.erase(states_.begin(), end);
 }
 
-void TaughtLogicalProcess::push(double time, const Flight& flight, const EventStamp& began, const Box& box) {
+void TaughtLogicalProcess::push(double time, const Flight& flight, const EventStamp& began,
+                                const Box& box) {
   states_.push_back({next_id_, time, flight, began});
   swept_.add(next_id_++, box);
 }
 
 Box TaughtLogicalProcess::box_of(const Flight& flight, double from, double to) const {
-  return swept_box(world_, body_, flight, until_end(world_, flight, from), until_end(world_, flight, to));
+  return swept_box(world_, body_, flight, until_end(world_, flight, from),
+                   until_end(world_, flight, to));
 }
 
 }  // namespace tumble::engines

@@ -41,15 +41,15 @@ class SweptBox {
   using Heap = std::priority_queue<Bound>;
 
   std::map<std::uint64_t, Box> alive_;
-  mutable std::array<Heap, 2 * kAxes> bounds_;   // of -low, then of high
+  mutable std::array<Heap, 2 * kAxes> bounds_;  // of -low, then of high
 };
 
 /// The time of a body and its flight then: enough to continue from.
 struct KeptState {
-  std::uint64_t id;      // unique among all states of a body in a run
-  double time;           // [s]
+  std::uint64_t id;  // unique among all states of a body in a run
+  double time;       // [s]
   Flight flight;
-  EventStamp began;        // the event that began the flight; without bodies for the run's start
+  EventStamp began;  // the event that began the flight; without bodies for the run's start
 };
 
 /// The time up to which a flight's motion is known, at most t. A segment of an island ends where a
@@ -86,7 +86,7 @@ class TaughtLogicalProcess {
 
   const FlightWorld& world_;
   int body_;
-  std::vector<KeptState> states_;   // never empty after construction, except during a rollback
+  std::vector<KeptState> states_;  // never empty after construction, except during a rollback
   SweptBox swept_;
   std::uint64_t next_id_ = 0;
 };

@@ -15,7 +15,8 @@ namespace tumble::engines {
 /// not wait.
 class TaughtQueue {
  public:
-  explicit TaughtQueue(std::function<bool(const Stamp&, const Stamp&)> comes_before) : comes_before_(std::move(comes_before)) {}
+  explicit TaughtQueue(std::function<bool(const Stamp&, const Stamp&)> comes_before)
+      : comes_before_(std::move(comes_before)) {}
 
   /// @return its index
   int add(const ScheduledEvent& event) {

@@ -21,7 +21,8 @@
 
 namespace tumble::engines {
 
-constexpr std::size_t kMostTaughtMoves = 50000;   // changes of virtual times that are kept for the chart
+// changes of virtual times that are kept for the chart
+constexpr std::size_t kMostTaughtMoves = 50000;
 
 /// An executed event, until it is committed or rolled back.
 struct Executed {
@@ -30,22 +31,34 @@ struct Executed {
   Event first;
   std::vector<Event> more;
   bool is_silent;               // no event is recorded
-  std::set<int> rolled_back{};   // the processes that have rolled it back
+  std::set<int> rolled_back{};  // the processes that have rolled it back
 };
 
 class TaughtTimewarp {
  public:
-  TaughtTimewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink, const Trajectory& reference);
+  TaughtTimewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                 TrajectorySink& sink, const Trajectory& reference);
   void run();
 
  private:
   const FlightWorld& world() const { return run_.world(); }
   TaughtLogicalProcess& process(int body) { return processes_[static_cast<std::size_t>(body)]; }
-  const Flight& flight_of(int body) { return world().can_move(body) ? process(body).flight() : world().first_flight(body); }
-  double local_time(int body) { return world().can_move(body) ? process(body).local_time() : std::numeric_limits<double>::infinity(); }
+  const Flight& flight_of(int body) {
+    return world().can_move(body) ? process(body).flight() : world().first_flight(body);
+  }
+  double local_time(int body) {
+    return world().can_move(body) ? process(body).local_time()
+                                  : std::numeric_limits<double>::infinity();
+  }
   std::string name(const EventStamp& key) const;
-  Box box(int body) { return world().can_move(body) ? process(body).swept() : boxes_[static_cast<std::size_t>(body)]; }
-  std::string name(int body) const { return body < 0 || body >= world().size() ? fmt::format("body {}", body) : "'" + world().world().bodies[static_cast<std::size_t>(body)].name + "'"; }
+  Box box(int body) {
+    return world().can_move(body) ? process(body).swept() : boxes_[static_cast<std::size_t>(body)];
+  }
+  std::string name(int body) const {
+    return body < 0 || body >= world().size()
+               ? fmt::format("body {}", body)
+               : "'" + world().world().bodies[static_cast<std::size_t>(body)].name + "'";
+  }
 
   void loop();
   void work_at(int id);
@@ -64,7 +77,10 @@ class TaughtTimewarp {
 
   // The end of the run is a check time, too: without it an impact before the end would be missed
   // where the next check is due after it.
-  double due(const ScheduledEvent& check) const { return check.safe_time < run_.duration() ? std::min(check.stamp.time, run_.duration()) : check.stamp.time; }
+  double due(const ScheduledEvent& check) const {
+    return check.safe_time < run_.duration() ? std::min(check.stamp.time, run_.duration())
+                                             : check.stamp.time;
+  }
   void put_check(int id, ScheduledEvent check) {
     check.stamp.time = due(check);
     queue_.put(id, check);
@@ -88,7 +104,8 @@ class TaughtTimewarp {
   void commit_frame();
   void purge();
   void move(int body, double from, double to) {
-    if (times_.moves.size() < kMostTaughtMoves) times_.moves.push_back({place_[static_cast<std::size_t>(body)], from, to, gvt_});
+    if (times_.moves.size() < kMostTaughtMoves)
+      times_.moves.push_back({place_[static_cast<std::size_t>(body)], from, to, gvt_});
   }
 
   TraceWatch watch_;
@@ -96,21 +113,24 @@ class TaughtTimewarp {
   TrajectorySink& sink_;
   Scheduling decide_;
   double rate_;
-  std::vector<TaughtLogicalProcess> processes_;      // by body; unused for walls
-  std::vector<Box> boxes_;                    // by body; used for walls
-  std::vector<int> place_;                    // by body: index among the processes
-  std::vector<std::uint32_t> next_version_ = std::vector<std::uint32_t>(static_cast<std::size_t>(world().size()), 1);
+  std::vector<TaughtLogicalProcess> processes_;  // by body; unused for walls
+  std::vector<Box> boxes_;                       // by body; used for walls
+  std::vector<int> place_;                       // by body: index among the processes
+  std::vector<std::uint32_t> next_version_ =
+      std::vector<std::uint32_t>(static_cast<std::size_t>(world().size()), 1);
   TaughtQueue queue_;
   std::map<std::pair<int, int>, int> pairs_;  // pairs with overlapping boxes, to their check
-  std::map<int, int> groups_;                 // current segments that may end by themselves, to their check
+  // current segments that may end by themselves, to their check
+  std::map<int, int> groups_;
   std::vector<Executed> executed_;
   VirtualTimes times_;
-  double gvt_ = 0.0;                          // global virtual time [s]
-  Stamp committed_{-1.0, 0, WorkKind::kCallback, -1, -1};            // the last committed item, frame or event
-  EventStamp committed_key_{-1.0, 0, StampKind::kCallback, -1, -1};   // the last committed event
-  double drawn_until_ = -1.0;                 // redraws up to this time were at the front [s]
+  double gvt_ = 0.0;  // global virtual time [s]
+  // the last committed item, frame or event
+  Stamp committed_{-1.0, 0, WorkKind::kCallback, -1, -1};
+  EventStamp committed_key_{-1.0, 0, StampKind::kCallback, -1, -1};  // the last committed event
+  double drawn_until_ = -1.0;  // redraws up to this time were at the front [s]
   long next_redraw_ = 0;
-  std::size_t since_gvt_ = 0, since_asked_ = 0;   // events
+  std::size_t since_gvt_ = 0, since_asked_ = 0;  // events
 };
 
 }  // namespace tumble::engines

@@ -11,18 +11,29 @@
 namespace tumble::engines {
 namespace {
 
-constexpr std::size_t kFewProcesses = 4;          // with at most this number global virtual time is computed after every event; with more, once per as many events as processes
-constexpr std::size_t kMostEventsAtOneGvt = 20000;   // after which a run in which nothing becomes certain is stopped
+// with at most this number global virtual time is computed after every event; with more, once per
+// as many events as processes
+constexpr std::size_t kFewProcesses = 4;
+// after which a run in which nothing becomes certain is stopped
+constexpr std::size_t kMostEventsAtOneGvt = 20000;
 
 }  // namespace
 
-TaughtTimewarp::TaughtTimewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink, const Trajectory& reference)
-    : watch_(sink, reference), run_(scene, laws, options, watch_), sink_(sink), decide_(guarded(laws.scheduling, laws.scheduling_source)), rate_(options.frame_rate_hz), queue_(decide_.comes_before) {
+TaughtTimewarp::TaughtTimewarp(const scene::Scene& scene, const Laws& laws,
+                               const RunOptions& options, TrajectorySink& sink,
+                               const Trajectory& reference)
+    : watch_(sink, reference),
+      run_(scene, laws, options, watch_),
+      sink_(sink),
+      decide_(guarded(laws.scheduling, laws.scheduling_source)),
+      rate_(options.frame_rate_hz),
+      queue_(decide_.comes_before) {
   for (int i = 0; i < world().size(); ++i) {
     processes_.emplace_back(world(), i);
     boxes_.push_back(world().can_move(i) ? Box{} : box_of_immovable(world(), i, run_.duration()));
     place_.push_back(static_cast<int>(times_.processes.size()));
-    if (world().can_move(i)) times_.processes.push_back(world().world().bodies[static_cast<std::size_t>(i)].name);
+    if (world().can_move(i))
+      times_.processes.push_back(world().world().bodies[static_cast<std::size_t>(i)].name);
   }
 }
 
@@ -36,7 +47,10 @@ void TaughtTimewarp::run() {
     stopped_by = stop.what();
   }
   sink_.virtual_times(times_);
-  if (stopped_by.empty()) run_.counters.notices.push_back(fmt::format("committed trace: {} events, each the ordered reference's to the last bit", watch_.events()));
+  if (stopped_by.empty())
+    run_.counters.notices.push_back(
+        fmt::format("committed trace: {} events, each the ordered reference's to the last bit",
+                    watch_.events()));
   run_.end(stopped_by);
 }
 
@@ -48,13 +62,18 @@ void TaughtTimewarp::loop() {
   queue_.add({{0.0, kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
   while (const std::optional<int> id = queue_.pop()) {
     if (queue_.event(*id).stamp.time > run_.duration()) {
-      queue_.park(*id);   // a rollback may restore it
+      queue_.park(*id);  // a rollback may restore it
       continue;
     }
     work_at(*id);
     if (++since_gvt_ > kMostEventsAtOneGvt)
-      throw StoppedRun(fmt::format("{} events were executed and global virtual time still stands at {:.9g} s. Likely: it is not the least of all local times and safe times, or a check returns to the queue at a time at which it was already", kMostEventsAtOneGvt, gvt_));
-    if (++since_asked_ >= (world().movers().size() <= kFewProcesses ? 1 : world().movers().size())) look_at_gvt(false);
+      throw StoppedRun(
+          fmt::format("{} events were executed and global virtual time still stands at {:.9g} s. "
+                      "Likely: it is not the least of all local times and safe times, or a check "
+                      "returns to the queue at a time at which it was already",
+                      kMostEventsAtOneGvt, gvt_));
+    if (++since_asked_ >= (world().movers().size() <= kFewProcesses ? 1 : world().movers().size()))
+      look_at_gvt(false);
   }
   look_at_gvt(true);
 }
@@ -79,13 +98,18 @@ void TaughtTimewarp::redraw(int id) {
   queue_.remove(id);
   if (t >= run_.duration()) return;
   const double next = static_cast<double>(++next_redraw_) / rate_;
-  queue_.add({{std::min(next, run_.duration()), kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
+  queue_.add({{std::min(next, run_.duration()), kLastMicrostep, WorkKind::kRedraw, -1, -1},
+              kInfinity,
+              {}});
 }
 
 const KeptState& TaughtTimewarp::state_at(int body, double t) {
   if (const KeptState* state = process(body).at(t)) return *state;
-  throw StoppedRun(fmt::format("{} is needed at t = {:.9g} s, but its earliest state is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), a check is due at a time before it, or global virtual time is too late",
-                               name(body), t, process(body).states().front().time, gvt_));
+  throw StoppedRun(fmt::format(
+      "{} is needed at t = {:.9g} s, but its earliest state is that of {:.9g} s, with global "
+      "virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), a check is due at "
+      "a time before it, or global virtual time is too late",
+      name(body), t, process(body).states().front().time, gvt_));
 }
 
 // Every segment has been released with the last state that named it, or is released now; and every
@@ -94,7 +118,9 @@ void TaughtTimewarp::check_nothing_leaked() {
   keep_group_checks();
   const auto checks = [&] {
     const std::vector<int> ids = queue_.ids();
-    return static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [&](int id) { return queue_.event(id).stamp.kind == WorkKind::kGroup; }));
+    return static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [&](int id) {
+      return queue_.event(id).stamp.kind == WorkKind::kGroup;
+    }));
   };
   require(checks() == groups_.size(), "no group check outlives its group");
   if (!world().processes()) return;
@@ -107,21 +133,30 @@ void TaughtTimewarp::check_nothing_leaked() {
 void TaughtTimewarp::check(int id) {
   ScheduledEvent event = queue_.event(id);
   const int a = event.stamp.body_a, b = event.stamp.body_b;
-  for (const int body : event.receivers) state_at(body, std::min(event.safe_time, event.stamp.time));   // stops the run where a state is missing
+  // stops the run where a state is missing
+  for (const int body : event.receivers)
+    state_at(body, std::min(event.safe_time, event.stamp.time));
   ++run_.counters.pair_checks;
   const double t = event.stamp.time;
-  const std::optional<FoundImpact> found = find_impact(run_, process(a), process(b), event.safe_time, t);
-  const auto flight_at = [&](int body) { return world().can_move(body) ? state_at(body, t).flight : world().first_flight(body); };
+  const std::optional<FoundImpact> found =
+      find_impact(run_, process(a), process(b), event.safe_time, t);
+  const auto flight_at = [&](int body) {
+    return world().can_move(body) ? state_at(body, t).flight : world().first_flight(body);
+  };
   CheckFinding finding = closeness(world(), a, flight_at(a), b, flight_at(b), t);
   if (found) {
     finding.contact = stamp_of(found->key);
     event.receivers = found->processes;
   }
   const CheckDecision decision = decide_.on_collision_check(event, finding, run_.step());
-  if (decision.collides && !found) throw StoppedRun(fmt::format("on_collision_check says that {} and {} collide, but no impact was found in [{:.9g}, {:.9g}] s", name(a), name(b), event.safe_time, event.stamp.time));
+  if (decision.collides && !found)
+    throw StoppedRun(
+        fmt::format("on_collision_check says that {} and {} collide, but no impact was found in "
+                    "[{:.9g}, {:.9g}] s",
+                    name(a), name(b), event.safe_time, event.stamp.time));
   if (decision.collides) collide(id, *found, decision);
   const auto pair = pairs_.find({a, b});
-  if (pair == pairs_.end() || pair->second != id) return;   // their boxes have separated
+  if (pair == pairs_.end() || pair->second != id) return;  // their boxes have separated
   event.safe_time = decision.next.safe_time;
   event.stamp.time = decision.next.stamp.time;
   event.receivers = bodies_that_move_with(world(), {{a, flight_of(a)}, {b, flight_of(b)}});
@@ -145,9 +180,14 @@ void TaughtTimewarp::find_pairs(int body, double from) {
   const Box own = box(body);
   for (int other = 0; other < world().size(); ++other) {
     const std::pair pair(std::min(body, other), std::max(body, other));
-    if (other == body || !world().may_collide(body, other) || pairs_.contains(pair) || !own.overlaps(box(other))) continue;
-    ScheduledEvent check{{process(body).local_time(), 0, WorkKind::kCollision, pair.first, pair.second}, std::min(from, local_time(other)),
-                         bodies_that_move_with(world(), {{pair.first, flight_of(pair.first)}, {pair.second, flight_of(pair.second)}})};
+    if (other == body || !world().may_collide(body, other) || pairs_.contains(pair) ||
+        !own.overlaps(box(other)))
+      continue;
+    ScheduledEvent check{
+        {process(body).local_time(), 0, WorkKind::kCollision, pair.first, pair.second},
+        std::min(from, local_time(other)),
+        bodies_that_move_with(
+            world(), {{pair.first, flight_of(pair.first)}, {pair.second, flight_of(pair.second)}})};
     check.stamp.time = due(check);
     pairs_[pair] = queue_.add(check);
     ++run_.counters.candidate_pairs;
@@ -165,7 +205,8 @@ void TaughtTimewarp::drop_pairs_of(int body) {
   });
 }
 
-void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
+void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                         TrajectorySink& sink) {
   TrajectoryRecorder reference;
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});

@@ -19,6 +19,7 @@ namespace tumble::engines {
 /// @pre `laws.scheduling` is filled
 /// @throws UserError where the scene has an effect that flights do not model
 /// Cost: O(n) per integration step
-void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
+void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                         TrajectorySink& sink);
 
 }  // namespace tumble::engines

@@ -14,12 +14,17 @@ class TraceWatch final : public TrajectorySink {
  public:
   /// @param reference  the ordered run of the scene; times that it did not reach are not judged.
   ///   Must outlive this
-  TraceWatch(TrajectorySink& sink, const Trajectory& reference) : sink_(sink), reference_(reference) {}
+  TraceWatch(TrajectorySink& sink, const Trajectory& reference)
+      : sink_(sink), reference_(reference) {}
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
+    sink_.begin(info, bodies);
+  }
   void frame(const Frame& frame) override;
   void event(const Event& event) override;
-  void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
+  void end(const Counters& counters, const std::string& stopped_by) override {
+    sink_.end(counters, stopped_by);
+  }
   void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
   /// Why the run is incomplete although it ended: an event of the reference is missing. Empty: none
@@ -33,7 +38,7 @@ class TraceWatch final : public TrajectorySink {
 
   TrajectorySink& sink_;
   const Trajectory& reference_;
-  std::size_t events_ = 0, frames_ = 0;   // passed on
+  std::size_t events_ = 0, frames_ = 0;  // passed on
 };
 
 }  // namespace tumble::engines

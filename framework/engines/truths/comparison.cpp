@@ -8,7 +8,8 @@
 
 namespace tumble::truths {
 
-void Comparison::check(const std::string& output, double error, double floor, double tolerance, const std::string& note) {
+void Comparison::check(const std::string& output, double error, double floor, double tolerance,
+                       const std::string& note) {
   const Verdict verdict = error <= tolerance ? Verdict::kRight : Verdict::kWrong;  // false for NaN
   lines_.push_back({output, error, floor, tolerance, verdict, note});
 }
@@ -18,11 +19,13 @@ void Comparison::closed_form(const Case& truth, const std::string& output, doubl
 }
 
 void Comparison::closed_form(const Case& truth, const std::string& output, const VectorXd& found) {
-  closed_form(output, largest_difference(found, truth.output(output).vector()), truth.floor(output));
+  closed_form(output, largest_difference(found, truth.output(output).vector()),
+              truth.floor(output));
 }
 
 void Comparison::agree(const std::string& output, bool agrees, const std::string& note) {
-  lines_.push_back({output, agrees ? 0.0 : kUnset, kUnset, 0.0, agrees ? Verdict::kRight : Verdict::kWrong, note});
+  lines_.push_back({output, agrees ? 0.0 : kUnset, kUnset, 0.0,
+                    agrees ? Verdict::kRight : Verdict::kWrong, note});
 }
 
 void Comparison::not_compared(const std::string& output, const std::string& why) {
@@ -30,7 +33,9 @@ void Comparison::not_compared(const std::string& output, const std::string& why)
 }
 
 void Comparison::attempt(const std::string& outputs, const std::function<void()>& group) {
-  const auto stopped = [&](Verdict verdict, const std::string& note) { lines_.push_back({outputs, kUnset, kUnset, kUnset, verdict, note}); };
+  const auto stopped = [&](Verdict verdict, const std::string& note) {
+    lines_.push_back({outputs, kUnset, kUnset, kUnset, verdict, note});
+  };
   try {
     group();
   } catch (const NotImplemented& missing) {
@@ -69,12 +74,17 @@ double badness(const Line& line) {
 }  // namespace
 
 const Line* worst_line(const std::vector<Line>& lines) {
-  const auto worst = std::max_element(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return badness(a) < badness(b); });
+  const auto worst = std::max_element(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
+    return badness(a) < badness(b);
+  });
   return worst == lines.end() ? nullptr : &*worst;
 }
 
 Verdict verdict_of(const std::vector<Line>& lines) {
-  const auto any = [&](Verdict verdict) { return std::any_of(lines.begin(), lines.end(), [=](const Line& line) { return line.verdict == verdict; }); };
+  const auto any = [&](Verdict verdict) {
+    return std::any_of(lines.begin(), lines.end(),
+                       [=](const Line& line) { return line.verdict == verdict; });
+  };
   for (const Verdict verdict : {Verdict::kWrong, Verdict::kNotAttempted, Verdict::kRight}) {
     if (any(verdict)) return verdict;
   }

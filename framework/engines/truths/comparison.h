@@ -10,14 +10,14 @@
 
 namespace tumble::truths {
 
-inline constexpr double kNoFrames = 1e-3;   // Hz, of a run of which only events are used
+inline constexpr double kNoFrames = 1e-3;  // Hz, of a run of which only events are used
 
 /// A closed form passes within this multiple of the error that double precision forces: a few dozen
 /// roundings.
 inline constexpr double kClosedFormFactor = 100.0;
 
-/// The classical Runge-Kutta method's, where its error goes as h^4; how far a right one may be off it; and, half of that, how near to
-/// each other two successive orders are that have settled.
+/// The classical Runge-Kutta method's, where its error goes as h^4; how far a right one may be off
+/// it; and, half of that, how near to each other two successive orders are that have settled.
 inline constexpr double kOrder = 4.0, kOrderTolerance = 0.1, kSettled = 0.05;
 
 enum class Verdict {
@@ -29,12 +29,14 @@ enum class Verdict {
 
 /// One output of one case.
 struct Line {
-  std::string output;         // "j", "rows[3].toi"
-  double error = kUnset;      // |found - expected|, largest component, in the output's unit
-  double error_floor = kUnset;      // forced by double precision; NaN where the file has none
+  std::string output;           // "j", "rows[3].toi"
+  double error = kUnset;        // |found - expected|, largest component, in the output's unit
+  double error_floor = kUnset;  // forced by double precision; NaN where the file has none
   double tolerance = kUnset;
   Verdict verdict = Verdict::kNotCompared;
-  std::string note;           // the origin of a tolerance that is not the closed form's; the reason for no comparison; the error that stopped it
+  // the origin of a tolerance that is not the closed form's; the reason for no comparison; the
+  // error that stopped it
+  std::string note;
 };
 
 /// Collects the lines of one case.
@@ -43,9 +45,12 @@ class Comparison {
   const std::vector<Line>& lines() const { return lines_; }
 
   /// One error against a tolerance. NaN and infinity never pass.
-  void check(const std::string& output, double error, double floor, double tolerance, const std::string& note = "");
+  void check(const std::string& output, double error, double floor, double tolerance,
+             const std::string& note = "");
   /// With the closed form's tolerance: 100 times the floor.
-  void closed_form(const std::string& output, double error, double floor) { check(output, error, floor, kClosedFormFactor * floor); }
+  void closed_form(const std::string& output, double error, double floor) {
+    check(output, error, floor, kClosedFormFactor * floor);
+  }
   /// Scalar or vector output of a case, by name, with its floor from the file. A list shorter than
   /// Right or wrong without a number: a yes or no, a count, a name.
   void closed_form(const Case& truth, const std::string& output, double found);

@@ -38,6 +38,8 @@ void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& compa
 /// The part of toi_tunnel that runs a scene.
 void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison);
 
-inline double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
+inline double energy_of(const Frame& frame) {
+  return frame.kinetic_energy + frame.potential_energy;
+}
 
 }  // namespace tumble::truths

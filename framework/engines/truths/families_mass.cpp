@@ -8,12 +8,16 @@ namespace {
 
 TriangleMesh mesh_of(const Case& truth) {
   TriangleMesh mesh;
-  for (const Value& vertex : truth.input("vertices").list()) mesh.vertices.push_back(vertex.vector3());
+  for (const Value& vertex : truth.input("vertices").list())
+    mesh.vertices.push_back(vertex.vector3());
   const int count = static_cast<int>(mesh.vertices.size());
   for (const Value& face : truth.input("faces").list()) {
     for (std::size_t i = 0; i < 3; ++i) {
       if (const int corner = face.at(i).integer(); corner < 0 || corner >= count)
-        throw UserError(face.at(i).place(), "there is no vertex " + std::to_string(corner) + " among " + std::to_string(count), "Correct the face.");
+        throw UserError(
+            face.at(i).place(),
+            "there is no vertex " + std::to_string(corner) + " among " + std::to_string(count),
+            "Correct the face.");
     }
     mesh.faces.push_back({face.at(0).integer(), face.at(1).integer(), face.at(2).integer()});
   }
@@ -24,15 +28,18 @@ TriangleMesh mesh_of(const Case& truth) {
 /// c c').
 Matrix3d about_origin(const MassProperties& found) {
   const Vector3d& c = found.com_mesh;
-  return found.inertia_com_mesh + found.mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
+  return found.inertia_com_mesh +
+         found.mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
 }
 
 }  // namespace
 
 void compare_mass_properties(const Case& truth, const Laws&, Comparison& comparison) {
-  const MassProperties found = compute_mass_properties(mesh_of(truth), truth.input("density").number());
+  const MassProperties found =
+      compute_mass_properties(mesh_of(truth), truth.input("density").number());
   const auto matrix = [&](const std::string& output, const Matrix3d& m) {
-    comparison.closed_form(output, (m - truth.output(output).matrix3()).cwiseAbs().maxCoeff(), truth.floor(output));
+    comparison.closed_form(output, (m - truth.output(output).matrix3()).cwiseAbs().maxCoeff(),
+                           truth.floor(output));
   };
   comparison.closed_form(truth, "volume", found.volume);
   comparison.closed_form(truth, "mass", found.mass);
@@ -41,7 +48,8 @@ void compare_mass_properties(const Case& truth, const Laws&, Comparison& compari
   matrix("inertia_about_com", found.inertia_com_mesh);
   comparison.closed_form(truth, "principal_moments_com", VectorXd(found.principal_moments));
   if (truth.has_output("naive_binary64_errors"))
-    comparison.not_compared("naive_binary64_errors", "errors of a textbook sum about the world's origin, for information");
+    comparison.not_compared("naive_binary64_errors",
+                            "errors of a textbook sum about the world's origin, for information");
 }
 
 }  // namespace tumble::truths

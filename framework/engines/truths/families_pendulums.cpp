@@ -15,7 +15,6 @@
 namespace tumble::truths {
 namespace {
 
-
 /// The unit vector at an angle, and its derivative by the angle.
 Vector3d along(double angle) { return {std::sin(angle), -std::cos(angle), 0.0}; }
 Vector3d across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
@@ -27,8 +26,11 @@ struct Chain {
   double g;
 
   explicit Chain(const Case& truth)
-      : masses(truth.input("masses").vector()), lengths(truth.input("lengths").vector()), angles(truth.input("theta0").vector()),
-        rates(truth.input("omega0").vector()), g(truth.input("g").number()) {}
+      : masses(truth.input("masses").vector()),
+        lengths(truth.input("lengths").vector()),
+        angles(truth.input("theta0").vector()),
+        rates(truth.input("omega0").vector()),
+        g(truth.input("g").number()) {}
   Eigen::Index size() const { return masses.size(); }
   scene::Scene scene(const std::string& name) const;
   double fastest_rate() const;
@@ -39,13 +41,16 @@ scene::Scene Chain::scene(const std::string& name) const {
   scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   Vector3d place = Vector3d::Zero(), velocity = Vector3d::Zero();
-  std::string above;   // the first rod is attached to the world
+  std::string above;  // the first rod is attached to the world
   for (Eigen::Index i = 0; i < size(); ++i) {
     place += lengths[i] * along(angles[i]);
     velocity += lengths[i] * rates[i] * across(angles[i]);
     const std::string bob = "bob" + std::to_string(i);
     scene.bodies.push_back(point_mass(bob, masses[i], place, velocity));
-    scene::EntryWriter{scene}("rods", {{"name", "rod" + std::to_string(i)}, {"a", scene::AnchorSpec{above}}, {"b", scene::AnchorSpec{bob}}, {"length_m", lengths[i]}});
+    scene::EntryWriter{scene}("rods", {{"name", "rod" + std::to_string(i)},
+                                       {"a", scene::AnchorSpec{above}},
+                                       {"b", scene::AnchorSpec{bob}},
+                                       {"length_m", lengths[i]}});
     above = bob;
   }
   return scene;
@@ -55,12 +60,14 @@ scene::Scene Chain::scene(const std::string& name) const {
 // rates at the start.
 double Chain::fastest_rate() const {
   const double whole = lengths.sum(), shortest = lengths.minCoeff();
-  return std::max({std::sqrt(g * masses.sum() / (shortest * masses.minCoeff())), std::sqrt(g * whole) / shortest, rates.cwiseAbs().maxCoeff()});
+  return std::max({std::sqrt(g * masses.sum() / (shortest * masses.minCoeff())),
+                   std::sqrt(g * whole) / shortest, rates.cwiseAbs().maxCoeff()});
 }
 
 /// From bob i - 1 (the pivot for 0) to bob i, of positions or velocities.
-Vector3d step_of(const Frame& frame, std::size_t i, Vector3d BodyPose::* what) {
-  return i == 0 ? Vector3d(frame.poses[0].*what) : Vector3d(frame.poses[i].*what - frame.poses[i - 1].*what);
+Vector3d step_of(const Frame& frame, std::size_t i, Vector3d BodyPose::*what) {
+  return i == 0 ? Vector3d(frame.poses[0].*what)
+                : Vector3d(frame.poses[i].*what - frame.poses[i - 1].*what);
 }
 
 /// Angles at the end of a run with whole turns, followed from frame to frame.
@@ -69,7 +76,8 @@ VectorXd angles_at_end(const Chain& chain, const Trajectory& run) {
   for (const Frame& frame : run.frames) {
     for (Eigen::Index i = 0; i < chain.size(); ++i) {
       const Vector3d rod = step_of(frame, static_cast<std::size_t>(i), &BodyPose::com_world);
-      angles[i] += std::remainder(std::atan2(rod.x(), -rod.y()) - angles[i], 2.0 * std::numbers::pi);
+      angles[i] +=
+          std::remainder(std::atan2(rod.x(), -rod.y()) - angles[i], 2.0 * std::numbers::pi);
     }
   }
   return angles;
@@ -79,16 +87,18 @@ VectorXd rates_of(const Chain& chain, const Frame& frame) {
   VectorXd rates(chain.size());
   for (Eigen::Index i = 0; i < chain.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const Vector3d rod = step_of(frame, at, &BodyPose::com_world), velocity = step_of(frame, at, &BodyPose::velocity_world);
+    const Vector3d rod = step_of(frame, at, &BodyPose::com_world),
+                   velocity = step_of(frame, at, &BodyPose::velocity_world);
     rates[i] = rod.cross(velocity).z() / rod.squaredNorm();
   }
   return rates;
 }
 
 /// x and y of all bobs in sequence, of positions or velocities.
-VectorXd in_plane(const Frame& frame, Vector3d BodyPose::* what) {
+VectorXd in_plane(const Frame& frame, Vector3d BodyPose::*what) {
   VectorXd all(2 * static_cast<Eigen::Index>(frame.poses.size()));
-  for (std::size_t i = 0; i < frame.poses.size(); ++i) all.segment<2>(2 * static_cast<Eigen::Index>(i)) = (frame.poses[i].*what).head<2>();
+  for (std::size_t i = 0; i < frame.poses.size(); ++i)
+    all.segment<2>(2 * static_cast<Eigen::Index>(i)) = (frame.poses[i].*what).head<2>();
   return all;
 }
 
@@ -100,27 +110,40 @@ VectorXd flat_rows(const Value& rows) {
 }
 
 VectorXd tensions_of(const Frame& frame) {
-  return Eigen::Map<const VectorXd>(frame.rod_tensions.data(), static_cast<Eigen::Index>(frame.rod_tensions.size()));
+  return Eigen::Map<const VectorXd>(frame.rod_tensions.data(),
+                                    static_cast<Eigen::Index>(frame.rod_tensions.size()));
 }
 
 // Tensions solve a system with the matrix J M^-1 J^T: with a light bob in the chain its condition
 // is four times the ratio of masses, and rounding of its entries changes them by that factor; 25
 // for a few dozen roundings.
-void compare_tensions_at_start(const Case& truth, const Chain& chain, const VectorXd& found, Comparison& comparison) {
+void compare_tensions_at_start(const Case& truth, const Chain& chain, const VectorXd& found,
+                               Comparison& comparison) {
   constexpr double kFewDozen = 25.0, kRounding = 0x1p-53;
   const VectorXd expected = truth.output("rod_tensions_t0").vector();
-  const double floor = truth.floor("rod_tensions_t0"), condition = 4.0 * chain.masses.maxCoeff() / chain.masses.minCoeff();
-  const double solved = kFewDozen * kRounding * condition * expected.cwiseAbs().maxCoeff(), rounding = kClosedFormFactor * floor;
-  comparison.check("rod_tensions_t0", largest_difference(found, expected), floor, std::max(rounding, solved), solved > rounding ? "tolerance: rounding times the condition of the rods' matrix" : "");
+  const double floor = truth.floor("rod_tensions_t0"),
+               condition = 4.0 * chain.masses.maxCoeff() / chain.masses.minCoeff();
+  const double solved = kFewDozen * kRounding * condition * expected.cwiseAbs().maxCoeff(),
+               rounding = kClosedFormFactor * floor;
+  comparison.check(
+      "rod_tensions_t0", largest_difference(found, expected), floor, std::max(rounding, solved),
+      solved > rounding ? "tolerance: rounding times the condition of the rods' matrix" : "");
 }
 
-std::vector<Quantity> quantities_of_chain(const Case& truth, const Chain& chain, const std::string& t) {
-  const auto of_bobs = [&](const std::string& output, Vector3d BodyPose::* what) {
-    return Quantity{output, vector_of_last_frame([what](const Frame& frame) { return in_plane(frame, what); }), flat_rows(truth.output(output)), truth.floor(output)};
+std::vector<Quantity> quantities_of_chain(const Case& truth, const Chain& chain,
+                                          const std::string& t) {
+  const auto of_bobs = [&](const std::string& output, Vector3d BodyPose::*what) {
+    return Quantity{
+        output, vector_of_last_frame([what](const Frame& frame) { return in_plane(frame, what); }),
+        flat_rows(truth.output(output)), truth.floor(output)};
   };
-  return {of_bobs("positions_" + t, &BodyPose::com_world), of_bobs("velocities_" + t, &BodyPose::velocity_world),
-          derived(truth, "theta_" + t, [chain](const Trajectory& run) { return angles_at_end(chain, run); }),
-          derived(truth, "omega_" + t, vector_of_last_frame([chain](const Frame& frame) { return rates_of(chain, frame); })),
+  return {of_bobs("positions_" + t, &BodyPose::com_world),
+          of_bobs("velocities_" + t, &BodyPose::velocity_world),
+          derived(truth, "theta_" + t,
+                  [chain](const Trajectory& run) { return angles_at_end(chain, run); }),
+          derived(truth, "omega_" + t, vector_of_last_frame([chain](const Frame& frame) {
+                    return rates_of(chain, frame);
+                  })),
           derived(truth, "rod_tensions_" + t, vector_of_last_frame(tensions_of))};
 }
 
@@ -136,7 +159,10 @@ void compare_chain(const Case& truth, const Laws& laws, Comparison& comparison) 
   });
   for (const Value& time : truth.input("times").list()) {
     const std::string t = "t" + time.text();
-    comparison.attempt("run to " + t, [&] { compare_refined({scene, time.number(), t, chain.fastest_rate(), true}, laws, quantities_of_chain(truth, chain, t), comparison); });
+    comparison.attempt("run to " + t, [&] {
+      compare_refined({scene, time.number(), t, chain.fastest_rate(), true}, laws,
+                      quantities_of_chain(truth, chain, t), comparison);
+    });
   }
 }
 
@@ -148,8 +174,11 @@ struct CompoundPendulum {
   double m, d, I_pivot, g, angle;
 
   explicit CompoundPendulum(const Case& truth)
-      : m(truth.input("m").number()), d(truth.input("d_pivot_to_com").number()), I_pivot(truth.input("I_about_pivot").number()),
-        g(truth.input("g").number()), angle(truth.input("theta0").number()) {}
+      : m(truth.input("m").number()),
+        d(truth.input("d_pivot_to_com").number()),
+        I_pivot(truth.input("I_about_pivot").number()),
+        g(truth.input("g").number()),
+        angle(truth.input("theta0").number()) {}
   double rate() const { return std::sqrt(m * g * d / I_pivot); }
   scene::Scene scene(const std::string& name) const;
 };
@@ -159,21 +188,32 @@ scene::Scene CompoundPendulum::scene(const std::string& name) const {
   scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   scene::BodySpec body = point_mass("body", m, d * along(angle), Vector3d::Zero());
-  body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));   // body -y points from the pivot to the centre of mass
+  // body -y points from the pivot to the centre of mass
+  body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));
   const double I_com = I_pivot - m * d * d;
-  constexpr double kPoint = 1e-12;   // of I_pivot: a smaller difference is rounding, and all the mass is in one point
+  // of I_pivot: a smaller difference is rounding, and all the mass is in one point
+  constexpr double kPoint = 1e-12;
   const bool is_point = !(I_com > kPoint * I_pivot);
   if (!is_point) body.inertia_body_kg_m2 = I_com * Matrix3d::Identity();
   scene.bodies.push_back(body);
   if (!is_point) {
-    scene::EntryWriter{scene}("joints", {{"name", "hinge"}, {"kind", "hinge"}, {"body_a", "body"}, {"point_m", Vector3d(Vector3d::Zero())}, {"axis", Vector3d(Vector3d::UnitZ())}});
+    scene::EntryWriter{scene}("joints", {{"name", "hinge"},
+                                         {"kind", "hinge"},
+                                         {"body_a", "body"},
+                                         {"point_m", Vector3d(Vector3d::Zero())},
+                                         {"axis", Vector3d(Vector3d::UnitZ())}});
   } else {
-    scene::EntryWriter{scene}("rods", {{"name", "rod"}, {"a", scene::AnchorSpec{}}, {"b", scene::AnchorSpec{"body"}}, {"length_m", d}});
+    scene::EntryWriter{scene}("rods", {{"name", "rod"},
+                                       {"a", scene::AnchorSpec{}},
+                                       {"b", scene::AnchorSpec{"body"}},
+                                       {"length_m", d}});
   }
   return scene;
 }
 
-double pivot_force(const Frame& frame) { return frame.joint_forces.empty() ? std::abs(frame.rod_tensions[0]) : frame.joint_forces[0]; }
+double pivot_force(const Frame& frame) {
+  return frame.joint_forces.empty() ? std::abs(frame.rod_tensions[0]) : frame.joint_forces[0];
+}
 
 /// At the end of a run, with whole turns.
 double angle_at_end(const CompoundPendulum& pendulum, const Trajectory& run) {
@@ -202,9 +242,9 @@ struct Growth {
 /// (t - s)); a rounding of the energy at the bottom is amplified by 1/sin(theta0) at the turning
 /// point.
 Growth growth_to(const CompoundPendulum& pendulum, double t) {
-  constexpr int kSteps = 4000;   // growth to a few per cent, which suffices for a tolerance
+  constexpr int kSteps = 4000;  // growth to a few per cent, which suffices for a tolerance
   const double h = t / kSteps, w2 = pendulum.rate() * pendulum.rate();
-  using State = Eigen::Matrix<double, 2, 3>;   // (theta, rate) and Phi
+  using State = Eigen::Matrix<double, 2, 3>;  // (theta, rate) and Phi
   const auto slope = [&](const State& y) -> State {
     State f;
     f.row(0) = y.row(1);
@@ -216,17 +256,22 @@ Growth growth_to(const CompoundPendulum& pendulum, double t) {
   y << pendulum.angle, 1.0, 0.0, 0.0, 0.0, 1.0;
   std::vector<State> way{y};
   for (int k = 0; k < kSteps; ++k) {
-    const State k1 = slope(y), k2 = slope(y + 0.5 * h * k1), k3 = slope(y + 0.5 * h * k2), k4 = slope(y + h * k3);
+    const State k1 = slope(y), k2 = slope(y + 0.5 * h * k1), k3 = slope(y + 0.5 * h * k2),
+                k4 = slope(y + h * k3);
     y += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     way.push_back(y);
   }
   // |F| of (theta, rate): along the rod m (g cos + d rate^2), across it m g sin (1 - m d^2 / I).
   const auto force = [&](double angle, double rate) {
-    return std::hypot(pendulum.m * (pendulum.g * std::cos(angle) + pendulum.d * rate * rate), pendulum.m * pendulum.g * std::sin(angle) * (1.0 - pendulum.m * pendulum.d * pendulum.d / pendulum.I_pivot));
+    return std::hypot(pendulum.m * (pendulum.g * std::cos(angle) + pendulum.d * rate * rate),
+                      pendulum.m * pendulum.g * std::sin(angle) *
+                          (1.0 - pendulum.m * pendulum.d * pendulum.d / pendulum.I_pivot));
   };
   constexpr double kAside = 1e-6;
   const double angle = y(0, 0), rate = y(1, 0);
-  const Eigen::RowVector2d of_force((force(angle + kAside, rate) - force(angle - kAside, rate)) / (2 * kAside), (force(angle, rate + kAside) - force(angle, rate - kAside)) / (2 * kAside));
+  const Eigen::RowVector2d of_force(
+      (force(angle + kAside, rate) - force(angle - kAside, rate)) / (2 * kAside),
+      (force(angle, rate + kAside) - force(angle, rate - kAside)) / (2 * kAside));
   Growth squares;
   for (const State& at : way) {
     const Eigen::Matrix2d later = y.rightCols<2>() * at.rightCols<2>().inverse();
@@ -240,20 +285,27 @@ Growth growth_to(const CompoundPendulum& pendulum, double t) {
 }
 
 /// @param instant  as in the outputs' names: "t1", "at_0.25T"
-void compare_pendulum_at(const Case& truth, const CompoundPendulum& pendulum, const std::string& instant, double t, const Laws& laws, Comparison& comparison) {
+void compare_pendulum_at(const Case& truth, const CompoundPendulum& pendulum,
+                         const std::string& instant, double t, const Laws& laws,
+                         Comparison& comparison) {
   comparison.attempt("run to " + instant, [&] {
     const std::string force = "pivot_force_" + instant;
     // The hinge reports the size of the force.
-    Quantity size{"|" + force + "|", of_last_frame(pivot_force), VectorXd::Constant(1, truth.output(force).vector().norm()), truth.floor(force), false};
+    Quantity size{"|" + force + "|", of_last_frame(pivot_force),
+                  VectorXd::Constant(1, truth.output(force).vector().norm()), truth.floor(force),
+                  false};
     Quantity rate = quantity(truth, "thetadot_" + instant, of_last_frame(rate_of));
-    Quantity angle = quantity(truth, "theta_" + instant, [pendulum](const Trajectory& run) { return VectorXd::Constant(1, angle_at_end(pendulum, run)); });
+    Quantity angle = quantity(truth, "theta_" + instant, [pendulum](const Trajectory& run) {
+      return VectorXd::Constant(1, angle_at_end(pendulum, run));
+    });
     const Growth growth = growth_to(pendulum, t);
     angle.growth = growth.angle;
     rate.growth = growth.rate;
     size.growth = growth.force;
     // Half the scene's gravity as well: a swing of large amplitude is faster than small ones only
     // by its own speed.
-    compare_refined({pendulum.scene(truth.id), t, instant, 2.0 * pendulum.rate(), true}, laws, {angle, rate, size}, comparison);
+    compare_refined({pendulum.scene(truth.id), t, instant, 2.0 * pendulum.rate(), true}, laws,
+                    {angle, rate, size}, comparison);
   });
 }
 
@@ -265,22 +317,36 @@ void compare_compound_pendulum(const Case& truth, const Laws& laws, Comparison& 
   comparison.attempt("start", [&] {
     const Frame start = start_of(pendulum.scene(truth.id), laws);
     comparison.closed_form(truth, "energy", energy_of(start));
-    comparison.closed_form("|pivot_force_t0|", std::abs(pivot_force(start) - truth.output("pivot_force_t0").vector().norm()), truth.floor("pivot_force_t0"));
+    comparison.closed_form(
+        "|pivot_force_t0|",
+        std::abs(pivot_force(start) - truth.output("pivot_force_t0").vector().norm()),
+        truth.floor("pivot_force_t0"));
   });
   for (const auto& [name, value] : truth.outputs.members()) {
     const std::string prefix = "theta_";
     if (name.rfind(prefix, 0) != 0) continue;
     const std::string instant = name.substr(prefix.size());
-    const double t = instant.rfind("at_", 0) == 0 ? std::stod(instant.substr(3)) * T : std::stod(instant.substr(1));
+    const double t = instant.rfind("at_", 0) == 0 ? std::stod(instant.substr(3)) * T
+                                                  : std::stod(instant.substr(1));
     compare_pendulum_at(truth, pendulum, instant, t, laws, comparison);
   }
   // It passes the lowest point at T / 4 and 3 T / 4: the times follow from position and velocity
   // near them.
   comparison.attempt("period", [&] {
-    const auto passage = [&](const Trajectory& run) { return run.frames.back().time - std::remainder(angle_at_end(pendulum, run), 2.0 * std::numbers::pi) / rate_of(run.frames.back()); };
-    Quantity period = quantity(truth, "period", [=](const Trajectory& run) { return VectorXd::Constant(1, 4.0 * passage(run)); });
-    const Quantity fastest = quantity(truth, "thetadot_bottom", of_last_frame([](const Frame& frame) { return std::abs(rate_of(frame)); }));
-    compare_refined({pendulum.scene(truth.id), 0.25 * T, "quarter_period", 2.0 * pendulum.rate(), true}, laws, {period, fastest}, comparison);
+    const auto passage = [&](const Trajectory& run) {
+      return run.frames.back().time -
+             std::remainder(angle_at_end(pendulum, run), 2.0 * std::numbers::pi) /
+                 rate_of(run.frames.back());
+    };
+    Quantity period = quantity(truth, "period", [=](const Trajectory& run) {
+      return VectorXd::Constant(1, 4.0 * passage(run));
+    });
+    const Quantity fastest =
+        quantity(truth, "thetadot_bottom",
+                 of_last_frame([](const Frame& frame) { return std::abs(rate_of(frame)); }));
+    compare_refined(
+        {pendulum.scene(truth.id), 0.25 * T, "quarter_period", 2.0 * pendulum.rate(), true}, laws,
+        {period, fastest}, comparison);
   });
 }
 

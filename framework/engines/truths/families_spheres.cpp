@@ -11,7 +11,6 @@
 namespace tumble::truths {
 namespace {
 
-
 // ---- newtons_cradle ----------------------------------------------------------------------------
 
 /// Equal balls in a row along x that just touch, the first k of them moving.
@@ -21,7 +20,8 @@ scene::Scene cradle(const Case& truth) {
   scene::Scene scene = empty_scene(truth.id, 0.1, engines::kNegligibleSpeed);
   for (int i = 0; i < n; ++i) {
     const Vector3d velocity(i < moving ? truth.input("v").number() : 0.0, 0.0, 0.0);
-    scene.bodies.push_back(ball("ball" + std::to_string(i), truth.input("mass").number(), kRadius, Vector3d(i, 0, 0), velocity, truth.input("e").number()));
+    scene.bodies.push_back(ball("ball" + std::to_string(i), truth.input("mass").number(), kRadius,
+                                Vector3d(i, 0, 0), velocity, truth.input("e").number()));
   }
   return scene;
 }
@@ -39,16 +39,21 @@ Spheres spheres_in_box(const Case& truth, double duration) {
   const Value& x = truth.input("x0");
   const Value& v = truth.input("v0");
   const Vector3d box = truth.input("box").vector3();
-  Spheres spheres{empty_scene(truth.id, duration, engines::kNegligibleSpeed), static_cast<int>(masses.size())};
+  Spheres spheres{empty_scene(truth.id, duration, engines::kNegligibleSpeed),
+                  static_cast<int>(masses.size())};
   for (int i = 0; i < spheres.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    spheres.scene.bodies.push_back(ball("ball" + std::to_string(i), masses[i], truth.input("radii").at(at).number(), x.at(at).vector3(), v.at(at).vector3(), 1.0));
+    spheres.scene.bodies.push_back(ball("ball" + std::to_string(i), masses[i],
+                                        truth.input("radii").at(at).number(), x.at(at).vector3(),
+                                        v.at(at).vector3(), 1.0));
     spheres.kinetic_energy += 0.5 * masses[i] * v.at(at).vector3().squaredNorm();
   }
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d inward = Vector3d::Unit(axis);
-    spheres.scene.bodies.push_back(wall("low" + std::to_string(axis), Vector3d::Zero(), inward, 1.0));
-    spheres.scene.bodies.push_back(wall("high" + std::to_string(axis), box[axis] * inward, -inward, 1.0));
+    spheres.scene.bodies.push_back(
+        wall("low" + std::to_string(axis), Vector3d::Zero(), inward, 1.0));
+    spheres.scene.bodies.push_back(
+        wall("high" + std::to_string(axis), box[axis] * inward, -inward, 1.0));
   }
   return spheres;
 }
@@ -59,7 +64,8 @@ struct Flight {
   VectorXd positions, velocities;
 };
 
-Flight just_after(const Spheres& spheres, const Laws& laws, const std::vector<Event>& impacts, std::size_t index) {
+Flight just_after(const Spheres& spheres, const Laws& laws, const std::vector<Event>& impacts,
+                  std::size_t index) {
   const double t = impacts[index].time;
   const Frame frame = frame_at(spheres.scene, laws, 0.5 * (t + impacts[index + 1].time));
   Flight flight{VectorXd(3 * spheres.count), VectorXd(3 * spheres.count)};
@@ -74,19 +80,27 @@ Flight just_after(const Spheres& spheres, const Laws& laws, const std::vector<Ev
 VectorXd flat(const Value& rows) {
   const auto& list = rows.list();
   VectorXd all(3 * static_cast<Eigen::Index>(list.size()));
-  for (std::size_t i = 0; i < list.size(); ++i) all.segment<3>(3 * static_cast<Eigen::Index>(i)) = list[i].vector3();
+  for (std::size_t i = 0; i < list.size(); ++i)
+    all.segment<3>(3 * static_cast<Eigen::Index>(i)) = list[i].vector3();
   return all;
 }
 
-void compare_collision(const Value& row, const Flight& flight, const Event& impact, int wall_hits, const std::string& name, Comparison& comparison) {
+void compare_collision(const Value& row, const Flight& flight, const Event& impact, int wall_hits,
+                       const std::string& name, Comparison& comparison) {
   const double floor = row.at("tolerance_floor").number();
   const Value& pair = row.at("pair");
   const bool same = pair.at(0).integer() == impact.body_a && pair.at(1).integer() == impact.body_b;
-  comparison.agree(name + ".pair", same, "found " + std::to_string(impact.body_a) + " and " + std::to_string(impact.body_b));
-  comparison.agree(name + ".wall_hits_so_far", wall_hits == row.at("wall_hits_so_far").integer(), "found " + std::to_string(wall_hits));
+  comparison.agree(
+      name + ".pair", same,
+      "found " + std::to_string(impact.body_a) + " and " + std::to_string(impact.body_b));
+  comparison.agree(name + ".wall_hits_so_far", wall_hits == row.at("wall_hits_so_far").integer(),
+                   "found " + std::to_string(wall_hits));
   comparison.closed_form(name + ".t", std::abs(impact.time - row.at("t").number()), floor);
-  comparison.closed_form(name + ".positions", largest_difference(flight.positions, flat(row.at("positions"))), floor);
-  comparison.closed_form(name + ".velocities_after", largest_difference(flight.velocities, flat(row.at("velocities_after"))), floor);
+  comparison.closed_form(name + ".positions",
+                         largest_difference(flight.positions, flat(row.at("positions"))), floor);
+  comparison.closed_form(name + ".velocities_after",
+                         largest_difference(flight.velocities, flat(row.at("velocities_after"))),
+                         floor);
 }
 
 }  // namespace
@@ -97,20 +111,30 @@ void compare_cradle(const Case& truth, const Laws& laws, Comparison& comparison)
   const Frame& before = run.frames.front();
   const Frame after = frame_at(scene, laws, scene.duration_s);
   VectorXd velocities(static_cast<Eigen::Index>(after.poses.size()));
-  for (Eigen::Index i = 0; i < velocities.size(); ++i) velocities[i] = after.poses[static_cast<std::size_t>(i)].velocity_world.x();
+  for (Eigen::Index i = 0; i < velocities.size(); ++i)
+    velocities[i] = after.poses[static_cast<std::size_t>(i)].velocity_world.x();
   for (const auto& [name, output] : truth.outputs.members()) {
-    if (name.rfind("velocities_after_sequential", 0) == 0) comparison.closed_form(truth, name, velocities);
-    else if (name == "pair_impulses_used") comparison.closed_form(truth, name, static_cast<double>(impacts_of(run).size()));
-    else if (name == "momentum") comparison.closed_form(truth, name, after.momentum_world.x());
-    else if (name == "kinetic_energy_before") comparison.closed_form(truth, name, before.kinetic_energy);
-    else if (name == "kinetic_energy_sequential") comparison.closed_form(truth, name, after.kinetic_energy);
-    else comparison.not_compared(name, "another law: here pairs collide one after the other, not all at once");
+    if (name.rfind("velocities_after_sequential", 0) == 0)
+      comparison.closed_form(truth, name, velocities);
+    else if (name == "pair_impulses_used")
+      comparison.closed_form(truth, name, static_cast<double>(impacts_of(run).size()));
+    else if (name == "momentum")
+      comparison.closed_form(truth, name, after.momentum_world.x());
+    else if (name == "kinetic_energy_before")
+      comparison.closed_form(truth, name, before.kinetic_energy);
+    else if (name == "kinetic_energy_sequential")
+      comparison.closed_form(truth, name, after.kinetic_energy);
+    else
+      comparison.not_compared(
+          name, "another law: here pairs collide one after the other, not all at once");
   }
 }
 
 void compare_hard_spheres(const Case& truth, const Laws& laws, Comparison& comparison) {
   const auto& rows = truth.output("collisions").list();
-  if (rows.empty()) throw UserError(truth.output("collisions").place(), "lists no collision", "A case needs at least one.");
+  if (rows.empty())
+    throw UserError(truth.output("collisions").place(), "lists no collision",
+                    "A case needs at least one.");
   const int beyond = truth.output("first_collision_beyond_double").integer();
   const double duration = rows.back().at("t").number() + 1.0;
   const Spheres spheres = spheres_in_box(truth, duration);
@@ -125,28 +149,37 @@ void compare_hard_spheres(const Case& truth, const Laws& laws, Comparison& compa
       continue;
     }
     if (rows[row].at("k").integer() >= beyond) break;
-    compare_collision(rows[row], just_after(spheres, laws, impacts, i), impacts[i], wall_hits, "collision" + rows[row].at("k").text(), comparison);
+    compare_collision(rows[row], just_after(spheres, laws, impacts, i), impacts[i], wall_hits,
+                      "collision" + rows[row].at("k").text(), comparison);
     ++row;
   }
   const bool all_met = row == rows.size() || rows[row].at("k").integer() >= beyond;
-  if (!all_met) comparison.agree("collisions", false, "only " + std::to_string(row) + " collisions of pairs were found");
+  if (!all_met)
+    comparison.agree("collisions", false,
+                     "only " + std::to_string(row) + " collisions of pairs were found");
   if (row < rows.size() && all_met)
-    comparison.not_compared("collisions " + std::to_string(beyond) + " and later", "rounding of the inputs alone changes them by more than a percent");
+    comparison.not_compared("collisions " + std::to_string(beyond) + " and later",
+                            "rounding of the inputs alone changes them by more than a percent");
 
   // Energy is conserved to the end, up to a few roundings per impact (goal: 1e-12).
   const Frame end = frame_at(spheres.scene, laws, duration);
-  comparison.check("kinetic_energy", std::abs(end.kinetic_energy - truth.output("kinetic_energy").number()), truth.floor("kinetic_energy"),
-                   std::max(kClosedFormFactor * truth.floor("kinetic_energy"), 1e-12 * spheres.kinetic_energy),
-                   "after " + std::to_string(impacts.size()) + " impacts");
+  comparison.check(
+      "kinetic_energy", std::abs(end.kinetic_energy - truth.output("kinetic_energy").number()),
+      truth.floor("kinetic_energy"),
+      std::max(kClosedFormFactor * truth.floor("kinetic_energy"), 1e-12 * spheres.kinetic_energy),
+      "after " + std::to_string(impacts.size()) + " impacts");
   for (const std::string name : {"lyapunov_per_pair_collision", "lyapunov_per_second"})
-    if (truth.has_output(name)) comparison.not_compared(name, "an estimate of the growth of errors, from which the floors follow");
+    if (truth.has_output(name))
+      comparison.not_compared(name,
+                              "an estimate of the growth of errors, from which the floors follow");
 }
 
 void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison) {
   const double thickness = truth.input("wall_thickness").number(), e = truth.input("e").number();
   scene::Scene scene = empty_scene(truth.id, truth.input("T").number(), engines::kNegligibleSpeed);
   scene.step_s = truth.input("dt").number();
-  scene.bodies.push_back(ball("bullet", 0.01, truth.input("R").number(), Vector3d(truth.input("x_centre_0").number(), 0, 0),
+  scene.bodies.push_back(ball("bullet", 0.01, truth.input("R").number(),
+                              Vector3d(truth.input("x_centre_0").number(), 0, 0),
                               Vector3d(truth.input("v").number(), 0, 0), e));
   scene::BodySpec slab;
   slab.name = "wall";
@@ -155,7 +188,8 @@ void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& compari
   slab.position_m.x() = truth.input("wall_front_face_x").number() + 0.5 * thickness;
   slab.restitution = e;
   scene.bodies.push_back(slab);
-  comparison.closed_form(truth, "x_centre_at_T", frame_at(scene, laws, scene.duration_s).poses[0].com_world.x());
+  comparison.closed_form(truth, "x_centre_at_T",
+                         frame_at(scene, laws, scene.duration_s).poses[0].com_world.x());
 }
 
 }  // namespace tumble::truths

@@ -12,11 +12,11 @@
 namespace tumble::truths {
 
 struct ImpactProblem {
-  std::string name;                      // of the case
-  ScalarFunction gap, gap_rate;          // [m], [m/s]
-  double low, high;                      // [s]: the step that contains the impact
-  double toi;                            // of the file [s]
-  std::function<double()> closed_form;   // the same [s]; empty where there is none
+  std::string name;                     // of the case
+  ScalarFunction gap, gap_rate;         // [m], [m/s]
+  double low, high;                     // [s]: the step that contains the impact
+  double toi;                           // of the file [s]
+  std::function<double()> closed_form;  // the same [s]; empty where there is none
 };
 
 /// @param window_s  length of a step; the first begins at 0

@@ -10,8 +10,8 @@ namespace tumble::truths {
 
 struct KnownPosition {
   double time_s;
-  std::size_t body;           // of the scene
-  Vector3d com_world;         // [m]
+  std::size_t body;    // of the scene
+  Vector3d com_world;  // [m]
 };
 
 /// Families chain and double_pendulum (point masses on rods in the x-z plane, released from rest)

@@ -10,18 +10,22 @@ namespace tumble::truths {
 /// @param rest_speed  impacts that separate more slowly end in rest [m/s]
 scene::Scene empty_scene(const std::string& name, double duration, double restitution_threshold);
 
-scene::BodySpec ball(const std::string& name, double mass, double radius, const Vector3d& position, const Vector3d& velocity, double restitution);
+scene::BodySpec ball(const std::string& name, double mass, double radius, const Vector3d& position,
+                     const Vector3d& velocity, double restitution);
 /// Immovable half-space below a plane. @param normal  unit, world, out of the solid
-scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal, double restitution);
+scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal,
+                     double restitution);
 
 /// A body without contacts, held by springs and rods at its centre, so that its inertia has no
 /// effect.
-scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position, const Vector3d& velocity);
+scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position,
+                           const Vector3d& velocity);
 
 /// Point masses on rods, each attached to the one before, the first to the world's origin; with
 /// gravity, constraints kept by projection.
 /// @param direction  unit, along the chain  @param length  of each rod [m]
-scene::Scene straight_chain(const std::vector<double>& masses, double length, const Vector3d& direction, const Vector3d& gravity);
+scene::Scene straight_chain(const std::vector<double>& masses, double length,
+                            const Vector3d& direction, const Vector3d& gravity);
 
 /// The whole run; `frame_rate_hz` may be small where only events are used.
 /// @throws UserError as run_scene; std::runtime_error when the run was stopped early
@@ -29,7 +33,8 @@ Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double fra
 
 /// A run to t of equal steps with at most as many frames, each at the end of a step: such a frame
 /// is a state, while a frame within a step is interpolated. @pre frames divides steps
-Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps, long frames);
+Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps,
+                        long frames);
 
 /// The scene of run_in_steps, cut into equal steps, and the rate of frames at their ends.
 struct SteppedScene {

@@ -14,12 +14,14 @@ namespace tumble::truths {
 
 struct ModuleTruths {
   /// By family: computes a case with the module and compares all its outputs.
-  std::map<std::string, std::function<void(const modules::AnyModule&, const Case&, Comparison&)>> families;
+  std::map<std::string, std::function<void(const modules::AnyModule&, const Case&, Comparison&)>>
+      families;
 };
 
 /// @param compare  as above, for the module's own type
 template <class Module>
-std::function<void(const modules::AnyModule&, const Case&, Comparison&)> for_module(void (*compare)(const Module&, const Case&, Comparison&)) {
+std::function<void(const modules::AnyModule&, const Case&, Comparison&)> for_module(
+    void (*compare)(const Module&, const Case&, Comparison&)) {
   return [compare](const modules::AnyModule& module, const Case& truth, Comparison& comparison) {
     compare(*static_cast<const Module*>(module.get()), truth, comparison);
   };

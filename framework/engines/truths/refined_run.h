@@ -17,11 +17,12 @@ struct Quantity {
   using Reading = std::function<VectorXd(const Trajectory&)>;
   using Difference = std::function<double(const VectorXd& found, const VectorXd& expected)>;
 
-  std::string output;                  // its name in the file of reference values
-  Reading found;                       // of a run whose last frame is at the end time
+  std::string output;  // its name in the file of reference values
+  Reading found;       // of a run whose last frame is at the end time
   VectorXd expected;
   double error_floor = kUnset;
-  bool is_state = true;                // its error shows the method's order; energies, which many methods conserve better, do not
+  // its error shows the method's order; energies, which many methods conserve better, do not
+  bool is_state = true;
   Difference difference = largest_difference;
   /// Where the family knows it: the change of the quantity at the end by rounding of the state
   /// during the run, root mean square over the run of |d quantity / d state| |state| (absolute, for
@@ -43,17 +44,19 @@ VectorXd components(const Quaterniond& q);
 double difference_of_orientations(const VectorXd& found, const VectorXd& expected);
 
 struct RefinedRun {
-  scene::Scene scene;                  // its duration and step are not used
-  double t;                            // the end time, > 0 [s]
-  std::string name;                    // of the end time, for the line about the order: "t0.5"
-  double fastest_rate;                 // of the motion, roughly: determines the first step [rad/s]
-  bool frames_throughout = false;      // frames dense enough to follow the motion, not only the last
+  scene::Scene scene;   // its duration and step are not used
+  double t;             // the end time, > 0 [s]
+  std::string name;     // of the end time, for the line about the order: "t0.5"
+  double fastest_rate;  // of the motion, roughly: determines the first step [rad/s]
+  // frames dense enough to follow the motion, not only the last
+  bool frames_throughout = false;
 };
 
 /// Halves the step until the order has settled and the change by a halving is small, though still
 /// above round-off, or the time limit is reached. Then compares each quantity with a tolerance, the
 /// largest of 100 floors, the predicted truncation error, and the growth of the rounding of all
 /// steps (8 eps sqrt(steps) `growth`), and the order with 4.
-void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, Comparison& comparison);
+void compare_refined(const RefinedRun& run, const Laws& laws,
+                     const std::vector<Quantity>& quantities, Comparison& comparison);
 
 }  // namespace tumble::truths

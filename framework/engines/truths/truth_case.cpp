@@ -9,7 +9,8 @@ namespace tumble::truths {
 namespace {
 
 [[noreturn]] void not_a(const Value& value, const std::string& wanted) {
-  throw UserError(value.place(), "expected " + wanted, "A truth file has numbers as decimal strings; see tests/truths.");
+  throw UserError(value.place(), "expected " + wanted,
+                  "A truth file has numbers as decimal strings; see tests/truths.");
 }
 
 std::string found_in(const Value::Content& content) {
@@ -40,7 +41,8 @@ double Value::number() const {
 
 int Value::integer() const {
   const double x = number();
-  if (std::abs(x) > 1e9 || x != std::floor(x)) not_a(*this, "a whole number, found '" + text() + "'");
+  if (std::abs(x) > 1e9 || x != std::floor(x))
+    not_a(*this, "a whole number, found '" + text() + "'");
   return static_cast<int>(x);
 }
 
@@ -57,7 +59,8 @@ const Value::Members& Value::members() const {
 VectorXd Value::vector() const {
   const List& items = list();
   VectorXd v(static_cast<Eigen::Index>(items.size()));
-  for (std::size_t i = 0; i < items.size(); ++i) v[static_cast<Eigen::Index>(i)] = items[i].number();
+  for (std::size_t i = 0; i < items.size(); ++i)
+    v[static_cast<Eigen::Index>(i)] = items[i].number();
   return v;
 }
 
@@ -78,12 +81,14 @@ Matrix3d Value::matrix3() const {
 const Value& Value::at(std::size_t index) const {
   const List& items = list();
   if (index < items.size()) return items[index];
-  throw UserError(place_, "has " + std::to_string(items.size()) + " items, which is too few", "Compare it with a case of that family in tests/truths.");
+  throw UserError(place_, "has " + std::to_string(items.size()) + " items, which is too few",
+                  "Compare it with a case of that family in tests/truths.");
 }
 
 const Value& Value::at(const std::string& name) const {
   if (const Value* value = find(name)) return *value;
-  throw UserError(place_, "has no '" + name + "', which its family needs", "Compare it with a case of that family in tests/truths.");
+  throw UserError(place_, "has no '" + name + "', which its family needs",
+                  "Compare it with a case of that family in tests/truths.");
 }
 
 const Value* Value::find(const std::string& name) const {

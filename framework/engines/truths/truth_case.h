@@ -27,7 +27,8 @@ class Value {
   Value() = default;
   /// @param place  for messages, file and JSON pointer:
   ///   "tests/truths/impulse_random__random20.json: /outputs/rows/value/3"
-  Value(std::string place, Content content) : place_(std::move(place)), content_(std::move(content)) {}
+  Value(std::string place, Content content)
+      : place_(std::move(place)), content_(std::move(content)) {}
 
   const std::string& place() const { return place_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(content_); }
@@ -36,13 +37,13 @@ class Value {
   // Each throws UserError with the position when the value is of another kind.
   bool boolean() const;
   const std::string& text() const;
-  double number() const;                   // decimal string, correctly rounded; finite
+  double number() const;  // decimal string, correctly rounded; finite
   int integer() const;
   const List& list() const;
   const Members& members() const;
-  VectorXd vector() const;                 // (n) from a list of numbers
+  VectorXd vector() const;  // (n) from a list of numbers
   Vector3d vector3() const;
-  Matrix3d matrix3() const;                // rows
+  Matrix3d matrix3() const;  // rows
 
   /// Item of a list. @throws UserError when there is none
   const Value& at(std::size_t index) const;
@@ -57,17 +58,19 @@ class Value {
 };
 
 struct Case {
-  std::string id;       // "free_top_needle/needle_1e-6"
-  std::string family;   // "free_top_needle"
+  std::string id;      // "free_top_needle/needle_1e-6"
+  std::string family;  // "free_top_needle"
   std::string title;
-  Value inputs;         // members NAME = {value, unit, ...}
-  Value outputs;        // members NAME = {value, unit, tolerance_floor, ...}
+  Value inputs;   // members NAME = {value, unit, ...}
+  Value outputs;  // members NAME = {value, unit, tolerance_floor, ...}
 
   const Value& input(const std::string& name) const { return inputs.at(name).at("value"); }
   const Value& output(const std::string& name) const { return outputs.at(name).at("value"); }
   bool has_output(const std::string& name) const { return outputs.find(name) != nullptr; }
   /// Floor of a whole output. @throws UserError when the file gives it per row
-  double floor(const std::string& name) const { return outputs.at(name).at("tolerance_floor").number(); }
+  double floor(const std::string& name) const {
+    return outputs.at(name).at("tolerance_floor").number();
+  }
 };
 
 }  // namespace tumble::truths

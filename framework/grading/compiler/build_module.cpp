@@ -5,14 +5,21 @@
 namespace tumble::grading {
 namespace fs = std::filesystem;
 
-fs::path header_in(const std::string& folder) { return fs::path("assignments") / folder / (folder + ".h"); }
+fs::path header_in(const std::string& folder) {
+  return fs::path("assignments") / folder / (folder + ".h");
+}
 
-BuiltSubmission build_module(const fs::path& root, const fs::path& build, const std::string& id, const std::string& folder, const fs::path& source, const fs::path& object) {
-  const Compiled compiled = compile_submission({root, header_in(folder), source, object, {}, id, build});
+BuiltSubmission build_module(const fs::path& root, const fs::path& build, const std::string& id,
+                             const std::string& folder, const fs::path& source,
+                             const fs::path& object) {
+  const Compiled compiled =
+      compile_submission({root, header_in(folder), source, object, {}, id, build});
   switch (compiled.outcome) {
     case Compiled::Outcome::kBuilt: return {BuiltSubmission::Outcome::kBuilt, compiled.said};
     case Compiled::Outcome::kRefused: return {BuiltSubmission::Outcome::kRefused, compiled.said};
-    case Compiled::Outcome::kOutOfResources: return {BuiltSubmission::Outcome::kRefused, "out of time or memory while compiling: " + compiled.said};
+    case Compiled::Outcome::kOutOfResources:
+      return {BuiltSubmission::Outcome::kRefused,
+              "out of time or memory while compiling: " + compiled.said};
     case Compiled::Outcome::kGraderFault: break;
   }
   return {BuiltSubmission::Outcome::kGraderFault, compiled.said};

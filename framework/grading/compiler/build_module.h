@@ -9,15 +9,17 @@ namespace tumble::grading {
 struct BuiltSubmission {
   enum class Outcome { kBuilt, kRefused, kGraderFault };
   Outcome outcome = Outcome::kGraderFault;
-  std::string said;   // the compiler's words, cut short; or why it could not be asked
+  std::string said;  // the compiler's words, cut short; or why it could not be asked
 };
 
 /// Compiles in the sandbox, where nothing of the project but headers can be seen.
 /// @param root, build   of the source tree and of the build tree
 /// @param id, folder    of the assignment, e.g. "a1", "a1_impulse"
 /// @param object        written where the outcome is kBuilt
-BuiltSubmission build_module(const std::filesystem::path& root, const std::filesystem::path& build, const std::string& id, const std::string& folder,
-                             const std::filesystem::path& source, const std::filesystem::path& object);
+BuiltSubmission build_module(const std::filesystem::path& root, const std::filesystem::path& build,
+                             const std::string& id, const std::string& folder,
+                             const std::filesystem::path& source,
+                             const std::filesystem::path& object);
 
 /// The header that says what the module of an assignment is, from the root.
 std::filesystem::path header_in(const std::string& folder);

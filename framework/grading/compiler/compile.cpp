@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using Ending = SandboxOutcome::Ending;
 using Outcome = Compiled::Outcome;
 
-constexpr std::size_t kObjectBytes = 32u << 20;    // a module is 200 kB
+constexpr std::size_t kObjectBytes = 32u << 20;  // a module is 200 kB
 constexpr const char* kHeadersInside = "/headers";
 constexpr const char* kSourceInside = "/submission";
 constexpr const char* kPrecompiled = "precompiled.h";
@@ -33,19 +33,22 @@ constexpr const char* kWorkerInside = "/worker.o";
 
 // The compiler may fork its passes, and links to a temporary folder. The object leaves the sandbox
 // through descriptor 3, not through a shared folder. Arguments: the file's name, then what
-// kHeadersInside, kSourceInside, kTmpInside and kWorkerInside are called in the sandbox that runs it,
-// and the name that the module exports.
-#define TUMBLE_COMPILE                                                                                  \
-  "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS                                                  \
-  " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" "          \
-  "-ffile-prefix-map=\"$2\"=/headers -isystem " TUMBLE_EIGEN_INCLUDE                                    \
+// kHeadersInside, kSourceInside, kTmpInside and kWorkerInside are called in the sandbox that runs
+// it, and the name that the module exports.
+#define TUMBLE_COMPILE                                                                        \
+  "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS                                        \
+  " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" " \
+  "-ffile-prefix-map=\"$2\"=/headers -isystem " TUMBLE_EIGEN_INCLUDE                          \
   " -include \"$2/precompiled.h\" -x c++ \"$1\" -x none "
-constexpr const char* kToSharedObject = TUMBLE_COMPILE "-shared -Wl,-z,defs -o \"$4/module\" && exec cat \"$4/module\" >&3";
-// Only the module's table stays visible to the worker: a main() or an operator new of the submission
-// replaces nothing in it.
+constexpr const char* kToSharedObject =
+    TUMBLE_COMPILE "-shared -Wl,-z,defs -o \"$4/module\" && exec cat \"$4/module\" >&3";
+// Only the module's table stays visible to the worker: a main() or an operator new of the
+// submission replaces nothing in it.
 constexpr const char* kToWorker = TUMBLE_COMPILE
-    "-c -o \"$4/own.o\" && ld -r --force-group-allocation \"$4/own.o\" -o \"$4/module.o\" && objcopy --keep-global-symbol=\"$6\" \"$4/module.o\""
-    " && /usr/bin/g++ -static-pie \"$5\" \"$4/module.o\" -o \"$4/module\" && exec cat \"$4/module\" >&3";
+    "-c -o \"$4/own.o\" && ld -r --force-group-allocation \"$4/own.o\" -o \"$4/module.o\" && "
+    "objcopy --keep-global-symbol=\"$6\" \"$4/module.o\""
+    " && /usr/bin/g++ -static-pie \"$5\" \"$4/module.o\" -o \"$4/module\" && exec cat "
+    "\"$4/module\" >&3";
 #undef TUMBLE_COMPILE
 
 // Headers of the tree that a text includes, directly or indirectly, restricted to those that
@@ -56,7 +59,8 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
     const auto first = line.find_first_not_of(" \t");
     if (first == std::string::npos || line[first] != '#') continue;
     const auto open = line.find('"'), close = line.rfind('"');
-    if (line.find("include") == std::string::npos || open == std::string::npos || close <= open) continue;
+    if (line.find("include") == std::string::npos || open == std::string::npos || close <= open)
+      continue;
     const std::string name = line.substr(open + 1, close - open - 1);
     const bool students = name.starts_with("framework/") || name.starts_with("assignments/");
     if (!students || !name.ends_with(".h") || name.find("..") != std::string::npos) continue;
@@ -67,7 +71,8 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
 
 // The precompiled header of this build; without it compilation takes longer.
 void stage_precompiled(Stage& headers, const fs::path& build) {
-  const fs::path folder = build.empty() ? fs::path(TUMBLE_SUBMISSION_SDK) : build / fs::path(TUMBLE_SUBMISSION_SDK).filename();
+  const fs::path folder = build.empty() ? fs::path(TUMBLE_SUBMISSION_SDK)
+                                        : build / fs::path(TUMBLE_SUBMISSION_SDK).filename();
   headers.add_text(text_of(folder / kPrecompiled), kPrecompiled);
   const std::string binary = std::string(kPrecompiled) + ".gch";
   if (fs::exists(folder / binary)) headers.add_file(folder / binary, binary);
@@ -75,8 +80,11 @@ void stage_precompiled(Stage& headers, const fs::path& build) {
 
 // One of bin/ of the build tree.
 fs::path program(const fs::path& build, const std::string& name) {
-  const fs::path file = (build.empty() ? fs::canonical("/proc/self/exe").parent_path() : build / "bin") / name;
-  if (!fs::exists(file)) throw UserError(file.string(), "is not built", "Build the target " + file.stem().string() + ".");
+  const fs::path file =
+      (build.empty() ? fs::canonical("/proc/self/exe").parent_path() : build / "bin") / name;
+  if (!fs::exists(file))
+    throw UserError(file.string(), "is not built",
+                    "Build the target " + file.stem().string() + ".");
   return file;
 }
 
@@ -97,8 +105,12 @@ std::string drain(int fd) {
 // Editors on Windows may write two bytes per letter. Empty where a compiler can read the text.
 std::string why_no_text(const std::string& text) {
   const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
-  if (is_utf16) return "is written in UTF-16, which no C++ compiler reads. Save it as UTF-8 (in Visual Studio: Save As, Save with Encoding; in Notepad: Encoding UTF-8)";
-  if (text.find('\0') != std::string::npos) return "contains bytes that are not text (a NUL at byte " + std::to_string(text.find('\0')) + "). Save it as UTF-8 text; a compiled file or an archive is not source code";
+  if (is_utf16)
+    return "is written in UTF-16, which no C++ compiler reads. Save it as UTF-8 (in Visual Studio: "
+           "Save As, Save with Encoding; in Notepad: Encoding UTF-8)";
+  if (text.find('\0') != std::string::npos)
+    return "contains bytes that are not text (a NUL at byte " + std::to_string(text.find('\0')) +
+           "). Save it as UTF-8 text; a compiled file or an archive is not source code";
   return "";
 }
 
@@ -108,23 +120,40 @@ bool says(const std::string& text, std::initializer_list<const char*> words) {
   return false;
 }
 
-Compiled judge(const SandboxOutcome& outcome, const std::string& object, const CompileLimits& limits) {
+Compiled judge(const SandboxOutcome& outcome, const std::string& object,
+               const CompileLimits& limits) {
   const std::string& said = outcome.printed;
   switch (outcome.ending) {
     case Ending::kNotStarted:
     case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
-    case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler had not finished after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when the machine is less busy"};
-    case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler made no progress: it waits for something, such as an #include of something that is not a file"};
-    case Ending::kDiskLimit: return {Outcome::kOutOfResources, "the compiler ran out of room for files\n" + said};
-    case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages exceeded their limit; the first were:\n" + said.substr(0, 2000)};
+    case Ending::kWallLimit:
+      return {Outcome::kGraderFault,
+              "the machine was too busy: the compiler had not finished after " +
+                  std::to_string(static_cast<int>(limits.wall_s)) +
+                  " s, and had computed for less than " + std::to_string(limits.cpu_s) +
+                  " s. Run it again when the machine is less busy"};
+    case Ending::kStalled:
+      return {Outcome::kOutOfResources,
+              "the compiler made no progress: it waits for something, such as an #include of "
+              "something that is not a file"};
+    case Ending::kDiskLimit:
+      return {Outcome::kOutOfResources, "the compiler ran out of room for files\n" + said};
+    case Ending::kOutputLimit:
+      return {
+          Outcome::kOutOfResources,
+          "the compiler's messages exceeded their limit; the first were:\n" + said.substr(0, 2000)};
     case Ending::kSignal: return {Outcome::kOutOfResources, "a limit ended the compiler\n" + said};
     case Ending::kExited: break;
   }
-  if (outcome.code == 0 && object.size() > kObjectBytes) return {Outcome::kOutOfResources, "the compiled module is larger than 32 MiB"};
+  if (outcome.code == 0 && object.size() > kObjectBytes)
+    return {Outcome::kOutOfResources, "the compiled module is larger than 32 MiB"};
   if (outcome.code == 0 && !object.empty()) return {Outcome::kBuilt, said};
-  if (says(said, {"out of memory", "virtual memory exhausted", "CPU time limit", "File size limit", "No space left", "file too large", "Killed"}))
-    return {Outcome::kOutOfResources, "the compiler ran out of time, memory or room for files\n" + said};
-  if (outcome.code == 127) return {Outcome::kGraderFault, "the compiler cannot be started: " + said};
+  if (says(said, {"out of memory", "virtual memory exhausted", "CPU time limit", "File size limit",
+                  "No space left", "file too large", "Killed"}))
+    return {Outcome::kOutOfResources,
+            "the compiler ran out of time, memory or room for files\n" + said};
+  if (outcome.code == 127)
+    return {Outcome::kGraderFault, "the compiler cannot be started: " + said};
   return {Outcome::kRefused, said};
 }
 
@@ -145,12 +174,15 @@ SandboxJob sandbox_job(const CompileLimits& limits) {
 Compiled compile_submission(const CompileJob& job) {
   std::error_code ignored;
   fs::remove(job.object, ignored);
-  if (!fs::exists(job.root / job.header)) throw UserError((job.root / job.header).string(), "there is no such header", "It declares the functions of the module.");
+  if (!fs::exists(job.root / job.header))
+    throw UserError((job.root / job.header).string(), "there is no such header",
+                    "It declares the functions of the module.");
   const std::string name = job.source.filename().string();
   std::string why;
   const auto source = read_plain_file(job.source, job.limits.source_bytes, why);
   if (!source) return {Outcome::kRefused, name + ": " + why};
-  if (const std::string no_text = why_no_text(*source); !no_text.empty()) return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
+  if (const std::string no_text = why_no_text(*source); !no_text.empty())
+    return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
 
   const SandboxUser user = SandboxUser::lease();
   Stage headers(&user), submission(&user), tools(&user);
@@ -162,16 +194,28 @@ Compiled compile_submission(const CompileJob& job) {
   submission.add_text(*source, name);
 
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    return {Outcome::kGraderFault, "no descriptor left for a compiler"};
   SandboxJob inside = sandbox_job(job.limits);
-  if (traits_of(inside.kind).needs_init) inside.init = tools.add_file(program(job.build, "sandbox_init"), "init", true);
+  if (traits_of(inside.kind).needs_init)
+    inside.init = tools.add_file(program(job.build, "sandbox_init"), "init", true);
   inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
   // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
   const bool links_worker = traits_of(inside.kind).links_worker;
-  if (links_worker) inside.binds.push_back({tools.add_file(program(job.build, "worker_" + job.id + ".o"), "worker.o"), kWorkerInside});
-  inside.command = {"/usr/bin/sh", "-c", links_worker ? kToWorker : kToSharedObject, "compile", plain_name ? name : "./" + name,
-                    kHeadersInside, kSourceInside, kTmpInside, kWorkerInside, "tumble_module_" + job.id};
+  if (links_worker)
+    inside.binds.push_back(
+        {tools.add_file(program(job.build, "worker_" + job.id + ".o"), "worker.o"), kWorkerInside});
+  inside.command = {"/usr/bin/sh",
+                    "-c",
+                    links_worker ? kToWorker : kToSharedObject,
+                    "compile",
+                    plain_name ? name : "./" + name,
+                    kHeadersInside,
+                    kSourceInside,
+                    kTmpInside,
+                    kWorkerInside,
+                    "tumble_module_" + job.id};
   inside.uid = user.uid();
   inside.channel = ends[1];
   Sandbox sandbox = Sandbox::start(inside);

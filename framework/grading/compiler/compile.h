@@ -1,7 +1,7 @@
-/// Compiles a submission's source inside the sandbox: to a shared object, or, in a kind of sandbox in
-/// which no worker can load one, to the whole program of a worker. The compiler sees this
-/// one file, the headers that a student has, and the system's headers; nothing of a solution, a
-/// test or another submission.
+/// Compiles a submission's source inside the sandbox: to a shared object, or, in a kind of sandbox
+/// in which no worker can load one, to the whole program of a worker. The compiler sees this one
+/// file, the headers that a student has, and the system's headers; nothing of a solution, a test or
+/// another submission.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,39 @@
 namespace tumble::grading {
 
 struct CompileLimits {
-  double wall_s = 900.0;                          // a module takes 2 s on an idle core; after this time the machine is too busy
+  // a module takes 2 s on an idle core; after this time the machine is too busy
+  double wall_s = 900.0;
   std::uint64_t cpu_s = 30;
-  double stall_s = 30.0;                          // without computing or waiting for a core: the compiler waits for input that never comes
-  std::uint64_t memory_bytes = 1536ull << 20;     // of address space: Eigen's templates take 300 MB
-  std::uint64_t source_bytes = 1u << 20;          // of the file handed in
+  // without computing or waiting for a core: the compiler waits for input that never comes
+  double stall_s = 30.0;
+  std::uint64_t memory_bytes = 1536ull << 20;  // of address space: Eigen's templates take 300 MB
+  std::uint64_t source_bytes = 1u << 20;       // of the file handed in
 };
 
 struct CompileJob {
-  std::filesystem::path root;       // of the source tree
-  std::filesystem::path header;     // of the module, from root: "assignments/a1_impulse/a1_impulse.h"
-  std::filesystem::path source;     // the file handed in
-  std::filesystem::path object;     // written where the outcome is kBuilt
+  std::filesystem::path root;  // of the source tree
+  // of the module, from root: "assignments/a1_impulse/a1_impulse.h"
+  std::filesystem::path header;
+  std::filesystem::path source;  // the file handed in
+  std::filesystem::path object;  // written where the outcome is kBuilt
   CompileLimits limits;
-  std::string id = {};              // of the module, "a1": where a sandbox links the worker, bin/worker_ID.o of the build tree
-  std::filesystem::path build = {};   // build tree with bin/sandbox_init and the precompiled header in submission_sdk/; empty: that of this program
+  // of the module, "a1": where a sandbox links the worker, bin/worker_ID.o of the build tree
+  std::string id = {};
+  // build tree with bin/sandbox_init and the precompiled header in submission_sdk/; empty: that of
+  // this program
+  std::filesystem::path build = {};
 };
 
 struct Compiled {
   enum class Outcome {
     kBuilt,
-    kRefused,          // compiler errors, or not a source file
-    kOutOfResources,   // time, memory, file size or output
-    kGraderFault,      // of this program, or the machine was too busy
+    kRefused,         // compiler errors, or not a source file
+    kOutOfResources,  // time, memory, file size or output
+    kGraderFault,     // of this program, or the machine was too busy
   };
   Outcome outcome = Outcome::kGraderFault;
-  std::string said;    // the compiler's output, with the student's name of the file; or what went wrong
+  // the compiler's output, with the student's name of the file; or what went wrong
+  std::string said;
 };
 
 /// Never throws because of the source. Removes an earlier `object` in every case.

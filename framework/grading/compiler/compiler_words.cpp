@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kShownErrors = 8;     // the first ones matter most
+constexpr std::size_t kShownErrors = 8;  // the first ones matter most
 constexpr std::size_t kShownWarnings = 10;
-constexpr std::size_t kShownExcerpt = 4;    // lines of code and markers below a message
-constexpr std::size_t kShownWhole = 4000;   // bytes, of output without a known error
+constexpr std::size_t kShownExcerpt = 4;   // lines of code and markers below a message
+constexpr std::size_t kShownWhole = 4000;  // bytes, of output without a known error
 // Bytes of a line that are read: a hostile file has lines of a megabyte, and std::regex recurses
 // once per letter.
 constexpr std::size_t kReadOfLine = 600;
@@ -38,7 +38,8 @@ struct Diagnostic {
   Place place;
   std::string message;
   std::vector<std::string> excerpt;
-  std::optional<Place> required_from;   // the student's line, where the message is for a line of a library
+  // the student's line, where the message is for a line of a library
+  std::optional<Place> required_from;
 };
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -72,23 +73,29 @@ class Reader {
   }
 
   void take(const std::string& line) {
-    static const std::regex head(R"(^(.+?):(\d+):(?:(\d+):)? (fatal error|error|warning|note): (.*)$)");
-    static const std::regex required(R"(^(.+?):(\d+):(\d+):   (?:recursively )?required (?:from|by) .*$)");
+    static const std::regex head(
+        R"(^(.+?):(\d+):(?:(\d+):)? (fatal error|error|warning|note): (.*)$)");
+    static const std::regex required(
+        R"(^(.+?):(\d+):(\d+):   (?:recursively )?required (?:from|by) .*$)");
     static const std::regex inlined(R"(^\s+inlined from .* at (.+?):(\d+):(\d+)[,:]?$)");
     std::smatch m;
     if (std::regex_match(line, m, required) || std::regex_match(line, m, inlined)) {
       const Place place{shortened(m[1]), std::stoi(m[2]), std::stoi(m[3])};
-      if (place.file == name_) context_ = place;   // the last one is the nearest to the student's code
+      // the last one is the nearest to the student's code
+      if (place.file == name_) context_ = place;
     } else if (std::regex_match(line, m, head)) {
       Diagnostic d;
-      d.kind = m[4] == "warning" ? Diagnostic::Kind::kWarning : m[4] == "note" ? Diagnostic::Kind::kNote : Diagnostic::Kind::kError;
+      d.kind = m[4] == "warning" ? Diagnostic::Kind::kWarning
+               : m[4] == "note"  ? Diagnostic::Kind::kNote
+                                 : Diagnostic::Kind::kError;
       d.place = {shortened(m[1]), std::stoi(m[2]), m[3].matched ? std::stoi(m[3]) : 1};
       d.message = m[5];
       if (d.place.file != name_) d.required_from = context_;
       found_.push_back(d);
       if (d.kind != Diagnostic::Kind::kNote) context_.reset();
     } else if (is_excerpt(line)) {
-      if (!found_.empty() && found_.back().excerpt.size() < kShownExcerpt) found_.back().excerpt.push_back(line);
+      if (!found_.empty() && found_.back().excerpt.size() < kShownExcerpt)
+        found_.back().excerpt.push_back(line);
     }
   }
 
@@ -117,7 +124,7 @@ std::string errors_text(const std::vector<Diagnostic>& all, const fs::path& sour
   const std::string name = source.filename().string();
   const std::vector<std::string> code = lines_of(text_of(source));
   std::string story;
-  std::set<std::string> shown;   // places: one line may break several checks of a library
+  std::set<std::string> shown;  // places: one line may break several checks of a library
   for (const Diagnostic& d : all) {
     if (d.kind != Diagnostic::Kind::kError || shown.size() >= kShownErrors) continue;
     const std::string place = d.required_from ? d.required_from->text() : d.place.text();
@@ -125,7 +132,8 @@ std::string errors_text(const std::vector<Diagnostic>& all, const fs::path& sour
     if (!d.required_from) {
       story += own_text(d, "error");
     } else {
-      story += fmt::format("{}: error: required from here\n{}", place, source_line(code, *d.required_from));
+      story += fmt::format("{}: error: required from here\n{}", place,
+                           source_line(code, *d.required_from));
       story += fmt::format("      {}: {}\n", d.place.text(), d.message);
     }
   }
@@ -152,8 +160,12 @@ std::optional<Declaration> declared(const std::string& text, const std::string& 
   for (int number = 1; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string line = text.substr(begin, std::min(end - begin, kReadOfLine));
-    if (line.find(name) != std::string::npos && !line.starts_with("return ") && std::regex_match(line, begins))
-      return Declaration{one_line(text.substr(begin, std::min(text.find_first_of(";{", begin) - begin, kReadOfLine))), number};
+    if (line.find(name) != std::string::npos && !line.starts_with("return ") &&
+        std::regex_match(line, begins))
+      return Declaration{
+          one_line(
+              text.substr(begin, std::min(text.find_first_of(";{", begin) - begin, kReadOfLine))),
+          number};
     begin = end + 1;
   }
   return std::nullopt;
@@ -161,24 +173,36 @@ std::optional<Declaration> declared(const std::string& text, const std::string& 
 
 /// Functions of the project that the linker did not find.
 std::vector<std::string> undefined_functions(const std::string& said) {
-  static const std::regex undefined(R"((?:undefined symbol: |undefined reference to [`'‘])(?:tumble::\w+::)(\w+)\()");
+  static const std::regex undefined(
+      R"((?:undefined symbol: |undefined reference to [`'‘])(?:tumble::\w+::)(\w+)\()");
   std::vector<std::string> names;
   for (const std::string& line : lines_of(said)) {
     std::smatch m;
-    if (std::regex_search(line, m, undefined) && std::find(names.begin(), names.end(), m[1]) == names.end()) names.push_back(m[1]);
+    if (std::regex_search(line, m, undefined) &&
+        std::find(names.begin(), names.end(), m[1]) == names.end())
+      names.push_back(m[1]);
   }
   return names;
 }
 
 std::string missing_text(const std::string& said, const fs::path& source, const fs::path& header) {
-  const std::string own = text_of(source), wanted = text_of(header), name = source.filename().string();
+  const std::string own = text_of(source), wanted = text_of(header),
+                    name = source.filename().string();
   std::string story;
   for (const std::string& function : undefined_functions(said)) {
     const auto expected = declared(wanted, function), found = declared(own, function);
-    if (found) story += fmt::format("{}:{}: error: {} is written here, but not as the header declares it\n  here:     {}\n", name, found->line, function, found->text);
-    else story += fmt::format("{}: error: {} is missing: the file does not define it\n", name, function);
-    if (expected) story += fmt::format("  expected: {}\n  declared in {}:{}\n", expected->text, header.filename().string(), expected->line);
-    if (found && expected && one_line(found->text) == expected->text) story += "  The text is the same: is it inside the header's namespace, and not static?\n";
+    if (found)
+      story += fmt::format(
+          "{}:{}: error: {} is written here, but not as the header declares it\n  here:     {}\n",
+          name, found->line, function, found->text);
+    else
+      story +=
+          fmt::format("{}: error: {} is missing: the file does not define it\n", name, function);
+    if (expected)
+      story += fmt::format("  expected: {}\n  declared in {}:{}\n", expected->text,
+                           header.filename().string(), expected->line);
+    if (found && expected && one_line(found->text) == expected->text)
+      story += "  The text is the same: is it inside the header's namespace, and not static?\n";
   }
   return story;
 }
@@ -187,16 +211,20 @@ std::string missing_text(const std::string& said, const fs::path& source, const 
 std::string advice_on(const std::string& said) {
   const auto has = [&](const char* words) { return said.find(words) != std::string::npos; };
   if (has("internal compiler error"))
-    return "The compiler itself failed at that line: your code may be right. Write the line in another way (shorter expressions, a variable for a part); "
+    return "The compiler itself failed at that line: your code may be right. Write the line in "
+           "another way (shorter expressions, a variable for a part); "
            "if that does not help, show it to your instructor.\n";
   if (has("No such file or directory"))
-    return "Only this one file is compiled, with the course's own headers. Include those as the starter does (\"assignments/...\"), and put into the file what you have in headers of your own.\n";
+    return "Only this one file is compiled, with the course's own headers. Include those as the "
+           "starter does (\"assignments/...\"), and put into the file what you have in headers of "
+           "your own.\n";
   return "";
 }
 
 }  // namespace
 
-std::string compiler_story(const std::string& said, const fs::path& source, const fs::path& header) {
+std::string compiler_story(const std::string& said, const fs::path& source,
+                           const fs::path& header) {
   std::string story = errors_text(Reader(source).read(said), source);
   if (story.empty()) story = missing_text(said, source, header);
   return (story.empty() ? said.substr(0, kShownWhole) : story) + advice_on(said);
@@ -209,13 +237,16 @@ std::string compiler_warnings(const std::string& said, const fs::path& source) {
   std::set<std::string> shown;
   for (const Diagnostic& d : Reader(source).read(said)) {
     const bool own = d.place.file == source.filename().string();
-    if (d.kind != Diagnostic::Kind::kWarning || (!own && !d.required_from) || d.message.ends_with(kUnusedParameter)) continue;
+    if (d.kind != Diagnostic::Kind::kWarning || (!own && !d.required_from) ||
+        d.message.ends_with(kUnusedParameter))
+      continue;
     Diagnostic at_home = d;
     if (!own) {
       at_home.place = *d.required_from;
       at_home.excerpt.clear();
     }
-    if (shown.size() < kShownWarnings && shown.insert(at_home.place.text()).second) story += own_text(at_home, "warning");
+    if (shown.size() < kShownWarnings && shown.insert(at_home.place.text()).second)
+      story += own_text(at_home, "warning");
   }
   return story;
 }

@@ -15,7 +15,8 @@ namespace tumble::grading {
 /// @param source  the student's file, for the lines that are shown
 /// @param header  of the module; empty: missing functions are named without their declaration
 /// @return the output itself, cut short, where no known error is in it
-std::string compiler_story(const std::string& said, const std::filesystem::path& source, const std::filesystem::path& header = {});
+std::string compiler_story(const std::string& said, const std::filesystem::path& source,
+                           const std::filesystem::path& header = {});
 
 /// The warnings in the student's file, at most ten; empty where there is none.
 std::string compiler_warnings(const std::string& said, const std::filesystem::path& source);

@@ -10,7 +10,9 @@
 namespace tumble::grading {
 
 /// See build_module.
-BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
+BuiltSubmission build_submission(const Course& course, const std::string& id,
+                                 const std::filesystem::path& source,
+                                 const std::filesystem::path& object);
 
 /// The header of an assignment's module.
 std::filesystem::path module_header(const Course& course, const std::string& id);

@@ -12,11 +12,15 @@ std::string code_of(std::string text) {
         if (text[i] != '\n') text[i] = ' ';
     };
     const char c = text[i];
-    if (line_begins && c == '#') blank_until(text.find('\n', i));
-    else if (text.compare(i, 2, "//") == 0) blank_until(text.find('\n', i));
-    else if (text.compare(i, 2, "/*") == 0) blank_until(std::min(text.find("*/", i + 2), text.size() - 2) + 2);
+    if (line_begins && c == '#')
+      blank_until(text.find('\n', i));
+    else if (text.compare(i, 2, "//") == 0)
+      blank_until(text.find('\n', i));
+    else if (text.compare(i, 2, "/*") == 0)
+      blank_until(std::min(text.find("*/", i + 2), text.size() - 2) + 2);
     else if (c == '"') {
-      for (++i; i < text.size() && text[i] != '"' && text[i] != '\n'; ++i) i += text[i] == '\\' ? 1 : 0;
+      for (++i; i < text.size() && text[i] != '"' && text[i] != '\n'; ++i)
+        i += text[i] == '\\' ? 1 : 0;
       ++i, line_begins = false;
     } else {
       line_begins = c == '\n' || (line_begins && (c == ' ' || c == '\t'));

@@ -5,7 +5,8 @@
 
 namespace tumble::grading {
 
-/// The same text with comments and preprocessor lines blanked: places stay. Text between quotes is kept.
+/// The same text with comments and preprocessor lines blanked: places stay. Text between quotes is
+/// kept.
 std::string code_of(std::string text);
 
 }  // namespace tumble::grading

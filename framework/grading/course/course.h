@@ -12,17 +12,18 @@
 namespace tumble::grading {
 
 struct Course {
-  std::filesystem::path root;    // of the source tree
-  std::filesystem::path build;   // of the build tree: programs in bin/, shared objects in modules/
+  std::filesystem::path root;   // of the source tree
+  std::filesystem::path build;  // of the build tree: programs in bin/, shared objects in modules/
   const modules::Registry* registry = nullptr;
-  std::string command;           // as typed, for records
+  std::string command;  // as typed, for records
 };
 
 /// build/bin/judge_a1.
 /// @throws UserError when it is missing: a student's tree has no judge
 std::filesystem::path judge_of(const Course& course, const std::string& id);
 /// build/modules/a1_WORD.so, which may not exist.
-std::filesystem::path built_module(const Course& course, const std::string& id, const std::string& word);
+std::filesystem::path built_module(const Course& course, const std::string& id,
+                                   const std::string& word);
 /// Public and hidden items, together 100 points.
 /// @throws UserError as read_rubric and joined
 Rubric rubric_of(const Course& course, const std::string& id);

@@ -13,7 +13,9 @@ namespace fs = std::filesystem;
 using modules::AnyModule;
 using modules::ModuleKind;
 
-bool needs(const scene::Scene& scene, const std::string& id) { return std::find(scene.needs.begin(), scene.needs.end(), id) != scene.needs.end(); }
+bool needs(const scene::Scene& scene, const std::string& id) {
+  return std::find(scene.needs.begin(), scene.needs.end(), id) != scene.needs.end();
+}
 
 }  // namespace
 
@@ -22,17 +24,20 @@ AnyModule reference_of(const Course& course, const ModuleKind& kind) {
   return fs::exists(file) ? modules::load_module(kind, file) : nullptr;
 }
 
-Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& module, const std::string& source, const scene::Scene& scene) {
+Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& module,
+                 const std::string& source, const scene::Scene& scene) {
   Laws laws;
   const auto add_neighbours = [&](bool needed) {
     for (const ModuleKind* other : course.registry->all())
       if (other->id != kind.id && needs(scene, other->id) == needed)
-        if (const AnyModule reference = reference_of(course, *other)) modules::bind_laws(*other, reference, "reference", laws);
+        if (const AnyModule reference = reference_of(course, *other))
+          modules::bind_laws(*other, reference, "reference", laws);
   };
   add_neighbours(false);
   modules::set_library_motion(laws);
   add_neighbours(true);
-  if (!needs(scene, kind.id)) laws.scheduling = {};   // the reference's scheduler, which the scene does not need
+  // the reference's scheduler, which the scene does not need
+  if (!needs(scene, kind.id)) laws.scheduling = {};
   if (module) modules::bind_laws(kind, module, source, laws);
   return laws;
 }

@@ -17,6 +17,8 @@ modules::AnyModule reference_of(const Course& course, const modules::ModuleKind&
 /// one, else from the library.
 /// @param module  may be empty: then the others only
 /// @param source  of the module, for pictures and records
-Laws laws_around(const Course& course, const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& source, const scene::Scene& scene);
+Laws laws_around(const Course& course, const modules::ModuleKind& kind,
+                 const modules::AnyModule& module, const std::string& source,
+                 const scene::Scene& scene);
 
 }  // namespace tumble::grading

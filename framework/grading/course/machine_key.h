@@ -12,9 +12,11 @@
 namespace tumble::grading {
 
 struct MachineKey {
-  std::string bytes;             // 32
-  std::filesystem::path file;    // empty: the key could not be stored, and is lost with this process
-  std::string notice;            // for the user: why the key is new, or is not stored; empty: it existed
+  std::string bytes;  // 32
+  // empty: the key could not be stored, and is lost with this process
+  std::filesystem::path file;
+  // for the user: why the key is new, or is not stored; empty: it existed
+  std::string notice;
 };
 
 /// Path of the key, which may not exist.

@@ -30,13 +30,14 @@ class SignalRecorder {
   SignalRecorder() {
     ended_by = 0;
     struct sigaction note {};
-    note.sa_handler = [](int signal) { ended_by = signal; };   // no SA_RESTART: waiting must end
+    note.sa_handler = [](int signal) { ended_by = signal; };  // no SA_RESTART: waiting must end
     for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &note, &before_[i]);
     ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   }
   ~SignalRecorder() { restore(); }
   void restore() const {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+      ::sigaction(kSignals[i], &before_[i], nullptr);
     ::prctl(PR_SET_CHILD_SUBREAPER, 0);
   }
   static void set_defaults() {
@@ -51,7 +52,7 @@ class SignalRecorder {
 // Kills processes and their descendants: each dies with its parent, and is then reaped here.
 void end_all(const std::map<pid_t, std::pair<std::size_t, Clock::time_point>>& running) {
   for (const auto& [child, about] : running) ::kill(child, SIGKILL);
-  const auto deadline = Clock::now() + std::chrono::seconds(10);   // for sandboxes to be torn down
+  const auto deadline = Clock::now() + std::chrono::seconds(10);  // for sandboxes to be torn down
   while (Clock::now() < deadline) {
     const pid_t child = ::waitpid(-1, nullptr, WNOHANG);
     if (child < 0 && errno != EINTR) return;
@@ -79,7 +80,8 @@ pid_t start(const std::function<void(std::size_t)>& work, std::size_t index) {
 }  // namespace
 
 void run_in_processes(std::size_t count, int jobs, const std::function<void(std::size_t)>& work,
-                      const std::function<void(std::size_t, int, double)>& done, const std::function<void()>& cleared) {
+                      const std::function<void(std::size_t, int, double)>& done,
+                      const std::function<void()>& cleared) {
   const SignalRecorder recorder;
   std::map<pid_t, std::pair<std::size_t, Clock::time_point>> running;
   std::size_t next = 0;
@@ -98,7 +100,8 @@ void run_in_processes(std::size_t count, int jobs, const std::function<void(std:
     }
     int status = 0;
     const pid_t child = ::waitpid(-1, &status, WNOHANG);
-    if (child == 0) ::usleep(5000);   // polling: a signal just before a blocking wait would be noticed much later
+    // polling: a signal just before a blocking wait would be noticed much later
+    if (child == 0) ::usleep(5000);
     if (child == 0 || (child < 0 && errno == EINTR)) continue;
     if (child < 0) throw std::runtime_error("a process was lost");
     const auto it = running.find(child);

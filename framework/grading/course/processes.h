@@ -14,7 +14,9 @@ namespace tumble::grading {
 /// @param done  called in this process as each ends, in that order: index, wait status, duration
 ///   [s]
 /// @pre  this process has no threads and no other children. The children die with it.
-void run_in_processes(std::size_t count, int jobs, const std::function<void(std::size_t)>& work,
-                      const std::function<void(std::size_t index, int status, double seconds)>& done, const std::function<void()>& cleared = {});
+void run_in_processes(
+    std::size_t count, int jobs, const std::function<void(std::size_t)>& work,
+    const std::function<void(std::size_t index, int status, double seconds)>& done,
+    const std::function<void()>& cleared = {});
 
 }  // namespace tumble::grading

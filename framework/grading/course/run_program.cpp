@@ -36,7 +36,8 @@ bool drain(int fd, Clock::time_point deadline, std::string& text) {
   constexpr std::size_t kKept = 4u << 20;  // bytes: more than any of these programs prints
   char buffer[1 << 14];
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) return false;
     pollfd waiting{fd, POLLIN, 0};
     if (::poll(&waiting, 1, static_cast<int>(std::min<long long>(left, 1000))) <= 0) continue;
@@ -53,7 +54,8 @@ ProgramOutcome run_program(const std::vector<std::string>& words, Output output,
   // A pipe even where nothing is captured: its closing shows that the program has ended, without a
   // race or a signal.
   int ends[2], alive[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0 || ::pipe2(alive, 0) != 0) throw std::runtime_error("no descriptor left");
+  if (::pipe2(ends, O_CLOEXEC) != 0 || ::pipe2(alive, 0) != 0)
+    throw std::runtime_error("no descriptor left");
   ::fcntl(alive[0], F_SETFD, FD_CLOEXEC);
   const pid_t child = ::fork();
   if (child == 0) become(words, output, ends[1]);
@@ -61,12 +63,15 @@ ProgramOutcome run_program(const std::vector<std::string>& words, Output output,
   ::close(alive[1]);
   if (child < 0) throw std::runtime_error("no process can be created");
   ProgramOutcome outcome;
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s));
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(wall_s));
   std::string unused;
-  outcome.in_time = output == Output::kCaptured ? drain(ends[0], deadline, outcome.printed) : drain(alive[0], deadline, unused);
+  outcome.in_time = output == Output::kCaptured ? drain(ends[0], deadline, outcome.printed)
+                                                : drain(alive[0], deadline, unused);
   if (!outcome.in_time) ::kill(child, SIGKILL);
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
   outcome.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   ::close(ends[0]);
   ::close(alive[0]);

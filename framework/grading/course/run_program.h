@@ -7,9 +7,9 @@
 namespace tumble::grading {
 
 struct ProgramOutcome {
-  int code = -1;          // exit code; 128 + signal where a signal ended it, as in a shell
+  int code = -1;  // exit code; 128 + signal where a signal ended it, as in a shell
   bool in_time = true;
-  std::string printed;    // stdout and stderr, interleaved; empty unless kCaptured
+  std::string printed;  // stdout and stderr, interleaved; empty unless kCaptured
 };
 
 enum class Output { kCaptured, kDropped, kOurs };
@@ -18,6 +18,7 @@ enum class Output { kCaptured, kDropped, kOurs };
 /// @param wall_s  time after which it is killed
 /// The program dies with this process.
 /// @throws std::runtime_error when no process can be created
-ProgramOutcome run_program(const std::vector<std::string>& words, Output output, double wall_s = 3600.0);
+ProgramOutcome run_program(const std::vector<std::string>& words, Output output,
+                           double wall_s = 3600.0);
 
 }  // namespace tumble::grading

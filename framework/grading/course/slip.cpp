@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMutant = "// mutant: ", kCaughtBy = "// caught-by: ", kBase = "// base: ";
+constexpr std::string_view kMutant = "// mutant: ", kCaughtBy = "// caught-by: ",
+                           kBase = "// base: ";
 constexpr std::string_view kBlock = "@@";
 constexpr const char* kReference = "reference";
 constexpr std::size_t kShownOfLine = 100;  // bytes of a line of code that a message quotes
@@ -80,9 +81,11 @@ class BlockReader {
 
  private:
   void take_before_first(const std::string& line, int number) const {
-    const bool is_remark = line.find_first_not_of(" \t") == std::string::npos || line.starts_with("//");
+    const bool is_remark =
+        line.find_first_not_of(" \t") == std::string::npos || line.starts_with("//");
     if (!is_remark)
-      throw UserError(place_in(file_, number), "stands before the first block: " + quoted_code(line),
+      throw UserError(place_in(file_, number),
+                      "stands before the first block: " + quoted_code(line),
                       "A block begins with a line @@.");
   }
 
@@ -110,10 +113,12 @@ class BlockReader {
     const auto is_put_in = [](const SlipLine& line) { return line.kind == Kind::kPutIn; };
     const std::string where = place_in(file_, blocks_.back().line);
     if (std::all_of(lines.begin(), lines.end(), is_kept))
-      throw UserError(where, "a block that changes nothing", "Mark what the slip takes out with '-', and what it puts in with '+'.");
+      throw UserError(where, "a block that changes nothing",
+                      "Mark what the slip takes out with '-', and what it puts in with '+'.");
     if (std::all_of(lines.begin(), lines.end(), is_put_in))
-      throw UserError(where, "a block that does not say where its lines belong",
-                      "Put the line of the base before or after them into it, marked with a space.");
+      throw UserError(
+          where, "a block that does not say where its lines belong",
+          "Put the line of the base before or after them into it, marked with a space.");
   }
 
   fs::path file_;
@@ -147,14 +152,15 @@ class BlockFinder {
   static int number(std::size_t index) { return static_cast<int>(index) + 1; }
 
   [[noreturn]] void refuse_missing(const SlipBlock& block) const {
-    const std::string remedy = "The base has changed since the slip was written, or the slip is "
-                               "not copied from it to the letter: write the slip again.";
+    const std::string remedy =
+        "The base has changed since the slip was written, or the slip is "
+        "not copied from it to the letter: write the slip again.";
     for (const SlipLine& line : block.lines) {
       if (line.kind == SlipLine::Kind::kPutIn) continue;
       if (std::find(lines_.begin(), lines_.end(), line.text) != lines_.end()) continue;
       throw UserError(place_in(slip_.file, line.line),
-                      "this line stands nowhere in " + base_.string() + ": " + quoted_code(line.text) +
-                          nearest(line.text),
+                      "this line stands nowhere in " + base_.string() + ": " +
+                          quoted_code(line.text) + nearest(line.text),
                       remedy);
     }
     throw UserError(place_in(slip_.file, block.line),
@@ -181,7 +187,7 @@ struct PlacedBlock {
 };
 
 std::vector<PlacedBlock> placed_blocks(const Slip& slip, const fs::path& base,
-                                const std::vector<std::string>& lines) {
+                                       const std::vector<std::string>& lines) {
   const BlockFinder finder(slip, base, lines);
   std::vector<PlacedBlock> all;
   for (const SlipBlock& block : slip.blocks) {
@@ -246,10 +252,10 @@ fs::path base_of(const Slip& slip, const fs::path& solutions) {
   if (std::find(known.begin(), known.end(), slip.base) != known.end()) return file_of(slip.base);
   std::string names;
   for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-  throw UserError(place_in(slip.file, 3),
-                  "there is no right solution '" + slip.base + "'." +
-                      did_you_mean(slip.base, known),
-                  "Known: " + names + ".");
+  throw UserError(
+      place_in(slip.file, 3),
+      "there is no right solution '" + slip.base + "'." + did_you_mean(slip.base, known),
+      "Known: " + names + ".");
 }
 
 MadeSolution make_solution(const Slip& slip, const fs::path& base_file,
@@ -267,9 +273,12 @@ MadeSolution make_solution(const Slip& slip, const fs::path& base_file,
   for (const PlacedBlock& here : placed_blocks(slip, base_file, lines)) {
     keep_until(here.begin);
     for (const SlipLine& line : here.block->lines) {
-      if (line.kind == SlipLine::Kind::kPutIn) add(line.text, true, line.line);
-      else if (line.kind == SlipLine::Kind::kKept) keep_until(at + 1);
-      else made.taken_out.insert(static_cast<int>(++at));
+      if (line.kind == SlipLine::Kind::kPutIn)
+        add(line.text, true, line.line);
+      else if (line.kind == SlipLine::Kind::kKept)
+        keep_until(at + 1);
+      else
+        made.taken_out.insert(static_cast<int>(++at));
     }
   }
   keep_until(lines.size());
@@ -305,7 +314,8 @@ std::string in_places_of_slip(const std::string& story, const std::string& compi
     } else if (std::regex_match(line, m, gutter)) {
       const auto origin = is_of_made ? origin_of(m[2]) : std::nullopt;
       if (origin) line = m[1].str() + std::to_string(origin->line) + m[3].str();
-    } else if (line.find(": error: ") != std::string::npos || line.find(": note: ") != std::string::npos ||
+    } else if (line.find(": error: ") != std::string::npos ||
+               line.find(": note: ") != std::string::npos ||
                line.find(": warning: ") != std::string::npos) {
       is_of_made = false;
     }

@@ -8,10 +8,12 @@
 ///   -  return 0.5 * normal.norm();
 ///   +  return normal.norm();
 ///
-/// The third line names the right solution: `reference`, or a file in alternatives/ without its `.cpp`. A line that begins
-/// with `@@` begins a block; what follows on that line is for the reader. Below it, the first column says what becomes of a
-/// line, as in `diff -u`: a space keeps it, `-` takes it out, `+` puts it in. The lines kept and taken out must stand in the
-/// base one below the other, and nowhere else. `diff -U1 BASE COPY | tail -n +3` prints the blocks of a changed copy.
+/// The third line names the right solution: `reference`, or a file in alternatives/ without its
+/// `.cpp`. A line that begins with `@@` begins a block; what follows on that line is for the
+/// reader. Below it, the first column says what becomes of a line, as in `diff -u`: a space keeps
+/// it, `-` takes it out, `+` puts it in. The lines kept and taken out must stand in the base one
+/// below the other, and nowhere else. `diff -U1 BASE COPY | tail -n +3` prints the blocks of a
+/// changed copy.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +30,8 @@ struct SlipTitle {
   std::string keyword;  // words that the story of a test that catches it must hold
 };
 
-/// @throws UserError when the first two lines are not `// mutant: NAME - slip` and `// caught-by: words`
+/// @throws UserError when the first two lines are not `// mutant: NAME - slip` and `// caught-by:
+///         words`
 SlipTitle read_slip_title(const std::filesystem::path& file);
 
 struct SlipLine {
@@ -76,8 +79,8 @@ struct MadeSolution {
 };
 
 /// @param base_file  for people: its text is `base_text`
-/// @throws UserError with file and line for a block whose text the base does not hold, or holds twice, and for two blocks
-///         that share a line of the base
+/// @throws UserError with file and line for a block whose text the base does not hold, or holds
+///         twice, and for two blocks that share a line of the base
 MadeSolution make_solution(const Slip& slip, const std::filesystem::path& base_file,
                            const std::string& base_text);
 
@@ -86,7 +89,8 @@ MadeSolution make_solution(const Slip& slip, const std::filesystem::path& base_f
 MadeSolution make_solution(const std::filesystem::path& slip_file,
                            const std::filesystem::path& solutions);
 
-/// A compiler's story about the made text, with places in the slip or in its base: whoever mends the slip finds them there.
+/// A compiler's story about the made text, with places in the slip or in its base: whoever mends
+/// the slip finds them there.
 /// @param compiled  the name of the file that the compiler read
 std::string in_places_of_slip(const std::string& story, const std::string& compiled,
                               const MadeSolution& made);

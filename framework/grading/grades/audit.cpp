@@ -25,7 +25,9 @@ std::vector<fs::path> files_in(const fs::path& folder, const std::vector<std::st
   std::vector<fs::path> files;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (std::find(extensions.begin(), extensions.end(), entry.path().extension()) != extensions.end()) files.push_back(entry.path());
+    if (std::find(extensions.begin(), extensions.end(), entry.path().extension()) !=
+        extensions.end())
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -36,10 +38,12 @@ Candidate read_mutant(const fs::path& file, const fs::path& solutions) {
     return {title.name, file, false, title.slip, title.keyword};
   }
   const Slip slip = read_slip(file);
-  return {slip.title.name, file, false, slip.title.slip, slip.title.keyword, base_of(slip, solutions)};
+  return {slip.title.name,         file, false, slip.title.slip, slip.title.keyword,
+          base_of(slip, solutions)};
 }
 
-// Does `work` for all, and then says what stands in the way of each that it could not do: a changed base concerns many slips.
+// Does `work` for all, and then says what stands in the way of each that it could not do: a changed
+// base concerns many slips.
 template <class Item, class Work>
 void for_each_or_refuse(const std::vector<Item>& items, const Work& work) {
   std::vector<UserError> errors;
@@ -53,46 +57,63 @@ void for_each_or_refuse(const std::vector<Item>& items, const Work& work) {
   if (errors.size() == 1) throw errors.front();
   std::string all;
   for (const UserError& error : errors) all += std::string("\n  ") + error.what();
-  if (!errors.empty()) throw UserError("", std::to_string(errors.size()) + " known-wrong solutions cannot be judged:" + all);
+  if (!errors.empty())
+    throw UserError(
+        "", std::to_string(errors.size()) + " known-wrong solutions cannot be judged:" + all);
 }
 
 bool is_caught(const TestResult& result) {
-  return result.verdict == Verdict::kWrong || result.verdict == Verdict::kCrashed || result.verdict == Verdict::kOutOfResources;
+  return result.verdict == Verdict::kWrong || result.verdict == Verdict::kCrashed ||
+         result.verdict == Verdict::kOutOfResources;
 }
 
-constexpr std::size_t kNameDigits = 32;   // of a digest, in a file's name: 128 bits
+constexpr std::size_t kNameDigits = 32;  // of a digest, in a file's name: 128 bits
 
-std::string whole_name(const Candidate& candidate) { return candidate.file.stem().string() + ".cpp"; }
+std::string whole_name(const Candidate& candidate) {
+  return candidate.file.stem().string() + ".cpp";
+}
 
 // Where the results of an audit lie that need not be run again.
 struct Kept {
   fs::path results, refused;
 };
 
-Kept kept_for(const Course& course, const std::string& id, const std::string& grader, const Candidate& candidate, const JudgedSource& source) {
-  const fs::path base = course.build / "audit" / id / (candidate.file.stem().string() + "-" + digest(grader + digest(source.text)).substr(0, kNameDigits));
+Kept kept_for(const Course& course, const std::string& id, const std::string& grader,
+              const Candidate& candidate, const JudgedSource& source) {
+  const fs::path base = course.build / "audit" / id /
+                        (candidate.file.stem().string() + "-" +
+                         digest(grader + digest(source.text)).substr(0, kNameDigits));
   return {base.string() + ".json", base.string() + ".refused.txt"};
 }
 
 // In a process of its own: leaves either the judge's results or why there are none.
-void run_one(const Course& course, const std::string& id, const Candidate& candidate, const JudgedSource& source, const Kept& kept) {
+void run_one(const Course& course, const std::string& id, const Candidate& candidate,
+             const JudgedSource& source, const Kept& kept) {
   fs::create_directories(kept.results.parent_path());
   const fs::path object = kept.results.string() + ".so";
-  const PrivateFolder folder;   // what is compiled is what the digest was taken of, whatever is saved meanwhile
+  // what is compiled is what the digest was taken of, whatever is saved meanwhile
+  const PrivateFolder folder;
   const fs::path file = folder.path() / whole_name(candidate);
   write_whole(file, source.text);
   const BuiltSubmission built = build_submission(course, id, file, object);
   if (built.outcome != BuiltSubmission::Outcome::kBuilt) {
     const std::string story = compiler_story(built.said, file, module_header(course, id));
-    write_whole(kept.refused, "does not compile: " + (source.made ? in_places_of_slip(story, file.filename().string(), *source.made) : story));
+    write_whole(kept.refused,
+                "does not compile: " +
+                    (source.made ? in_places_of_slip(story, file.filename().string(), *source.made)
+                                 : story));
     return;
   }
   Judgement judgement = judge_module(course, id, object);
   fs::remove(object);
-  for (const TestResult& test : judgement.results)  // a fault of ours is not kept: the next audit tries again
+  // a fault of ours is not kept: the next audit tries again
+  for (const TestResult& test : judgement.results)
     if (!is_final_verdict(test.verdict)) judgement.fault = test.test + ": " + test.story;
-  if (!judgement.fault.empty()) write_whole(kept.refused, judgement.fault);
-  else make_whole(kept.results, [&](const fs::path& draft) { write_results(draft.string(), judgement.results); });
+  if (!judgement.fault.empty())
+    write_whole(kept.refused, judgement.fault);
+  else
+    make_whole(kept.results,
+               [&](const fs::path& draft) { write_results(draft.string(), judgement.results); });
 }
 
 AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const Kept& kept) {
@@ -110,7 +131,8 @@ AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const 
   for (const ScoredTest& test : score_tests(rubric, {tests, ""})) {
     result.score += test.score;
     result.possible += test.item.points;
-    if (!is_final_verdict(test.result.verdict)) result.fault = test.item.test + ": " + test.result.story;
+    if (!is_final_verdict(test.result.verdict))
+      result.fault = test.item.test + ": " + test.result.story;
   }
   const std::string keyword = lowercase(candidate.keyword);
   for (const TestResult& test : tests) {
@@ -136,14 +158,19 @@ fs::path reference_of(const Course& course, const std::string& id) {
   return course.root / "solutions_private" / folder / (folder + ".cpp");
 }
 
-std::vector<Candidate> find_candidates(const Course& course, const std::string& id, const fs::path& mutants) {
+std::vector<Candidate> find_candidates(const Course& course, const std::string& id,
+                                       const fs::path& mutants) {
   const fs::path reference = reference_of(course, id), own = reference.parent_path();
   std::vector<Candidate> all;
   const fs::path wrong = mutants.empty() ? own / "mutants" : mutants;
-  for_each_or_refuse(files_in(wrong, {".cpp", kSlipExtension}), [&](const fs::path& file) { all.push_back(read_mutant(file, own)); });
-  if (all.empty()) throw UserError(wrong.string(), "holds no known-wrong solution", "Put one .slip or .cpp a slip there.");
+  for_each_or_refuse(files_in(wrong, {".cpp", kSlipExtension}),
+                     [&](const fs::path& file) { all.push_back(read_mutant(file, own)); });
+  if (all.empty())
+    throw UserError(wrong.string(), "holds no known-wrong solution",
+                    "Put one .slip or .cpp a slip there.");
   if (fs::exists(reference)) all.push_back({"reference", reference, true, "", ""});
-  for (const fs::path& file : files_in(own / "alternatives", {".cpp"})) all.push_back({file.stem().string(), file, true, "", ""});
+  for (const fs::path& file : files_in(own / "alternatives", {".cpp"}))
+    all.push_back({file.stem().string(), file, true, "", ""});
   return all;
 }
 
@@ -154,21 +181,29 @@ std::vector<JudgedSource> sources_of(const std::vector<Candidate>& candidates) {
       sources.push_back({text_of(candidate.file), std::nullopt});
       return;
     }
-    MadeSolution made = make_solution(read_slip(candidate.file), candidate.base, text_of(candidate.base));
+    MadeSolution made =
+        make_solution(read_slip(candidate.file), candidate.base, text_of(candidate.base));
     std::string text = made.text;
     sources.push_back({std::move(text), std::move(made)});
   });
   return sources;
 }
 
-std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names) {
+std::vector<Candidate> only(const std::vector<Candidate>& candidates,
+                            const std::vector<std::string>& names) {
   if (names.empty()) return candidates;
   std::vector<std::string> known;
-  for (const Candidate& candidate : candidates) known.insert(known.end(), {candidate.file.stem().string(), candidate.name});
+  for (const Candidate& candidate : candidates)
+    known.insert(known.end(), {candidate.file.stem().string(), candidate.name});
   std::vector<Candidate> chosen;
   for (const std::string& name : names) {
-    const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.name == name || c.file.stem() == name; });
-    if (found == candidates.end()) throw UserError("--only " + name, "no solution of this audit has such a name." + did_you_mean(name, known), "The first column of the whole audit has the names.");
+    const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+      return c.name == name || c.file.stem() == name;
+    });
+    if (found == candidates.end())
+      throw UserError("--only " + name,
+                      "no solution of this audit has such a name." + did_you_mean(name, known),
+                      "The first column of the whole audit has the names.");
     chosen.push_back(*found);
   }
   return chosen;
@@ -179,12 +214,14 @@ std::map<std::string, Catches> catches_of(const std::vector<AuditResult>& result
   for (const AuditResult& result : results) {
     if (result.candidate.is_right) continue;
     for (const TestResult& test : result.caught_by) ++all[test.test].count;
-    if (result.caught_by.size() == 1) all[result.caught_by.front().test].alone.push_back(result.candidate.name);
+    if (result.caught_by.size() == 1)
+      all[result.caught_by.front().test].alone.push_back(result.candidate.name);
   }
   return all;
 }
 
-std::vector<AuditResult> audit(const Course& course, const std::string& id, const std::vector<Candidate>& candidates, int jobs,
+std::vector<AuditResult> audit(const Course& course, const std::string& id,
+                               const std::vector<Candidate>& candidates, int jobs,
                                const std::function<void(std::size_t, std::size_t)>& told) {
   const Rubric rubric = rubric_of(course, id);
   const std::string grader = judging_digest(course, id);
@@ -192,19 +229,26 @@ std::vector<AuditResult> audit(const Course& course, const std::string& id, cons
   std::vector<Kept> kept;
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (sources[i].made) write_whole(course.build / "audit" / id / "slips" / whole_name(candidates[i]), sources[i].text);
+    if (sources[i].made)
+      write_whole(course.build / "audit" / id / "slips" / whole_name(candidates[i]),
+                  sources[i].text);
     kept.push_back(kept_for(course, id, grader, candidates[i], sources[i]));
     if (!fs::exists(kept[i].results)) open.push_back(i);
   }
   std::size_t done = candidates.size() - open.size();
   if (told) told(done, candidates.size());
-  run_in_processes(open.size(), jobs, [&](std::size_t i) { run_one(course, id, candidates[open[i]], sources[open[i]], kept[open[i]]); },
-                   [&](std::size_t, int, double) {
-                     ++done;
-                     if (told) told(done, candidates.size());
-                   });
+  run_in_processes(
+      open.size(), jobs,
+      [&](std::size_t i) {
+        run_one(course, id, candidates[open[i]], sources[open[i]], kept[open[i]]);
+      },
+      [&](std::size_t, int, double) {
+        ++done;
+        if (told) told(done, candidates.size());
+      });
   std::vector<AuditResult> results;
-  for (std::size_t i = 0; i < candidates.size(); ++i) results.push_back(read_result(rubric, candidates[i], kept[i]));
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    results.push_back(read_result(rubric, candidates[i], kept[i]));
   return results;
 }
 

@@ -13,23 +13,24 @@
 namespace tumble::grading {
 
 struct CostLine {
-  std::string reading;                  // the sentence
-  bool is_right = false;                // the method has its nominal order and accuracy
+  std::string reading;    // the sentence
+  bool is_right = false;  // the method has its nominal order and accuracy
   bool is_attempted = true;
-  bool is_wasteful = false;             // right, but costlier than necessary
+  bool is_wasteful = false;  // right, but costlier than necessary
 };
 
 struct CostSection {
-  std::string scene;                    // its title; empty: this module is not measured
-  std::string truth;                    // the reference solution, and the definition of the error
-  std::vector<CostLine> lines;          // of the submission
+  std::string scene;            // its title; empty: this module is not measured
+  std::string truth;            // the reference solution, and the definition of the error
+  std::vector<CostLine> lines;  // of the submission
   std::vector<report::Plot> plots;
   std::vector<report::Table> tables;
 };
 
 struct CostSectionOptions {
-  double call_wall_s = 3.0;             // a longer call counts as hung: it ends its own curve
-  double session_wall_s = 60.0;         // of all calls of one curve; right calls take at most seconds on an idle machine
+  double call_wall_s = 3.0;  // a longer call counts as hung: it ends its own curve
+  // of all calls of one curve; right calls take at most seconds on an idle machine
+  double session_wall_s = 60.0;
 };
 
 }  // namespace tumble::grading

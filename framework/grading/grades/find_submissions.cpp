@@ -17,18 +17,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestSource = 1u << 20;  // bytes: 50x a long solution; more is data or an attack
-constexpr int kDeepest = 6;                          // folders: archives add only a few levels
-constexpr std::size_t kMostFiles = 5000;             // examined: even a whole build tree has fewer
+// bytes: 50x a long solution; more is data or an attack
+constexpr std::uintmax_t kLargestSource = 1u << 20;
+constexpr int kDeepest = 6;               // folders: archives add only a few levels
+constexpr std::size_t kMostFiles = 5000;  // examined: even a whole build tree has fewer
 
 struct Found {
-  std::vector<fs::path> named, sources, archives, headers;   // with the right name; other sources; .zip etc.
-  std::vector<std::pair<fs::path, std::string>> locked;   // folders that cannot be read, and why
+  // with the right name; other sources; .zip etc.
+  std::vector<fs::path> named, sources, archives, headers;
+  std::vector<std::pair<fs::path, std::string>> locked;  // folders that cannot be read, and why
   bool cut = false, is_deep = false;
 };
 
-bool ends_in(const fs::path& file, const std::set<std::string>& endings) { return endings.contains(lowercase(file.extension().string())); }
-bool is_archive(const fs::path& file) { return ends_in(file, {".zip", ".gz", ".tgz", ".xz", ".bz2", ".7z", ".rar", ".tar"}); }
+bool ends_in(const fs::path& file, const std::set<std::string>& endings) {
+  return endings.contains(lowercase(file.extension().string()));
+}
+bool is_archive(const fs::path& file) {
+  return ends_in(file, {".zip", ".gz", ".tgz", ".xz", ".bz2", ".7z", ".rar", ".tar"});
+}
 bool is_source(const fs::path& file) { return ends_in(file, {".cpp", ".cc", ".cxx", ".c++"}); }
 bool is_header(const fs::path& file) { return ends_in(file, {".h", ".hh", ".hpp", ".hxx"}); }
 
@@ -38,20 +44,27 @@ bool is_litter(const std::string& name) {
   return litter.contains(name) || name.starts_with("._");
 }
 bool is_tools_folder(const std::string& name) {
-  static const std::set<std::string> tools = {".git", ".svn", ".hg", ".vscode", ".idea", ".vs", ".cache"};
+  static const std::set<std::string> tools = {".git",  ".svn", ".hg",   ".vscode",
+                                              ".idea", ".vs",  ".cache"};
   return tools.contains(name);
 }
 
 // Classifies a file by its name. Canvas and browsers number copies, "a1_impulse-1.cpp", "a1_impulse
 // (1).cpp"; `name` is without the number.
-void sort_in(const fs::path& path, const std::string& name, const std::string& wanted, Found& found) {
-  if (lowercase(name) == lowercase(wanted)) found.named.push_back(path);
-  else if (is_source(name)) found.sources.push_back(path);
-  else if (is_archive(name)) found.archives.push_back(path);
-  else if (is_header(name)) found.headers.push_back(path);
+void sort_in(const fs::path& path, const std::string& name, const std::string& wanted,
+             Found& found) {
+  if (lowercase(name) == lowercase(wanted))
+    found.named.push_back(path);
+  else if (is_source(name))
+    found.sources.push_back(path);
+  else if (is_archive(name))
+    found.archives.push_back(path);
+  else if (is_header(name))
+    found.headers.push_back(path);
 }
 
-void search(const fs::path& folder, const std::string& wanted, int depth, std::size_t& seen, Found& found) {
+void search(const fs::path& folder, const std::string& wanted, int depth, std::size_t& seen,
+            Found& found) {
   std::error_code failed;
   std::vector<fs::directory_entry> entries;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
@@ -63,16 +76,21 @@ void search(const fs::path& folder, const std::string& wanted, int depth, std::s
   for (const auto& entry : entries) {
     const std::string name = entry.path().filename().string();
     if (is_litter(name)) continue;
-    if (!fs::is_directory(entry.symlink_status(failed))) sort_in(entry.path(), name, wanted, found);
-    else if (is_tools_folder(name)) continue;
-    else if (depth < kDeepest) search(entry.path(), wanted, depth + 1, seen, found);
-    else found.is_deep = true;
+    if (!fs::is_directory(entry.symlink_status(failed)))
+      sort_in(entry.path(), name, wanted, found);
+    else if (is_tools_folder(name))
+      continue;
+    else if (depth < kDeepest)
+      search(entry.path(), wanted, depth + 1, seen, found);
+    else
+      found.is_deep = true;
   }
 }
 
 std::string listed(const std::vector<fs::path>& files, const fs::path& folder) {
   std::string text;
-  for (std::size_t i = 0; i < files.size() && i < 5; ++i) text += (i > 0 ? ", " : "") + files[i].lexically_relative(folder).string();
+  for (std::size_t i = 0; i < files.size() && i < 5; ++i)
+    text += (i > 0 ? ", " : "") + files[i].lexically_relative(folder).string();
   return text + (files.size() > 5 ? ", ..." : "");
 }
 
@@ -81,48 +99,77 @@ std::string why_not(const fs::path& file) {
   std::error_code failed;
   const auto status = fs::symlink_status(file, failed);
   const std::string name = file.filename().string();
-  if (fs::is_symlink(status)) return name + " is a symbolic link, which is not followed. Hand in the file itself.";
-  if (!fs::is_regular_file(status)) return name + " is not an ordinary file. Hand in a source file.";
+  if (fs::is_symlink(status))
+    return name + " is a symbolic link, which is not followed. Hand in the file itself.";
+  if (!fs::is_regular_file(status))
+    return name + " is not an ordinary file. Hand in a source file.";
   const auto size = fs::file_size(file, failed);
   if (failed) return name + " cannot be read: " + failed.message();
   if (size == 0) return name + " is empty.";
-  if (size > kLargestSource) return name + " has " + std::to_string(size) + " bytes; a source may have " + std::to_string(kLargestSource) + ".";
+  if (size > kLargestSource)
+    return name + " has " + std::to_string(size) + " bytes; a source may have " +
+           std::to_string(kLargestSource) + ".";
   if (!std::ifstream(file)) return name + " cannot be read. Check its permissions.";
   return "";
 }
 
 // Whether all files are readable and have the same bytes: then any of them may be taken.
 bool are_equal(const std::vector<fs::path>& files) {
-  return std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return why_not(file).empty() && digest_of_file(file) == digest_of_file(files[0]); });
+  return std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
+    return why_not(file).empty() && digest_of_file(file) == digest_of_file(files[0]);
+  });
 }
 
-void choose_source(Found found, const std::string& wanted, const fs::path& folder, Submission& submission) {
+void choose_source(Found found, const std::string& wanted, const fs::path& folder,
+                   Submission& submission) {
   const auto note = [&](const std::string& text) { submission.notes.push_back(text); };
-  if (found.cut) note("more than " + std::to_string(kMostFiles) + " files: only the first were examined");
-  if (found.is_deep) note("folders more than " + std::to_string(kDeepest) + " deep were not examined");
+  if (found.cut)
+    note("more than " + std::to_string(kMostFiles) + " files: only the first were examined");
+  if (found.is_deep)
+    note("folders more than " + std::to_string(kDeepest) + " deep were not examined");
   for (std::vector<fs::path>* files : {&found.named, &found.sources}) {
-    if (files->size() < 2 || (files == &found.sources && !found.named.empty()) || !are_equal(*files)) continue;
+    if (files->size() < 2 || (files == &found.sources && !found.named.empty()) ||
+        !are_equal(*files))
+      continue;
     note("copies of one file, byte for byte: " + listed(*files, folder) + "; the first was taken");
     files->resize(1);
   }
   if (!found.locked.empty()) {
     const auto& [locked, why] = found.locked.front();
-    submission.problem = "The folder " + (locked == folder ? folder.filename() : locked.lexically_relative(folder.parent_path())).string() + " cannot be read (" + why +
-                         "), so it is not known what was handed in. Give the grader's user access, for example: chmod -R u+rX " + shell_word(folder.string());
+    submission.problem =
+        "The folder " +
+        (locked == folder ? folder.filename() : locked.lexically_relative(folder.parent_path()))
+            .string() +
+        " cannot be read (" + why +
+        "), so it is not known what was handed in. Give the grader's user access, for example: "
+        "chmod -R u+rX " +
+        shell_word(folder.string());
   } else if (found.named.size() > 1) {
-    submission.problem = "Holds " + wanted + " " + std::to_string(found.named.size()) + " times: " + listed(found.named, folder) + ". Leave only the one that counts.";
+    submission.problem = "Holds " + wanted + " " + std::to_string(found.named.size()) +
+                         " times: " + listed(found.named, folder) +
+                         ". Leave only the one that counts.";
   } else if (found.named.empty() && found.sources.size() > 1) {
-    submission.problem = "Holds no " + wanted + " but several other sources: " + listed(found.sources, folder) + ". Name the one that counts " + wanted + ".";
+    submission.problem = "Holds no " + wanted +
+                         " but several other sources: " + listed(found.sources, folder) +
+                         ". Name the one that counts " + wanted + ".";
   } else if (found.named.empty() && found.sources.empty()) {
     submission.problem = "Holds no " + wanted;
-    submission.problem += found.archives.empty() ? "." : ", only an archive: " + listed(found.archives, folder) + ". Unpack it first.";
+    submission.problem +=
+        found.archives.empty()
+            ? "."
+            : ", only an archive: " + listed(found.archives, folder) + ". Unpack it first.";
   } else {
     submission.source = found.named.empty() ? found.sources[0] : found.named[0];
     const std::string name = submission.source.filename().string();
-    if (found.named.empty()) note("its only source is named " + name + ", not " + wanted + "; it was taken");
-    else if (lowercase(name) == lowercase(wanted) && name != wanted) note("its file is named " + name + ", not " + wanted + "; it was taken");
-    if (!found.named.empty() && !found.sources.empty()) note("other sources were not compiled: " + listed(found.sources, folder));
-    if (!found.headers.empty()) note("headers beside it were not used: " + listed(found.headers, folder) + ". Only the one file is compiled, with the course's own headers");
+    if (found.named.empty())
+      note("its only source is named " + name + ", not " + wanted + "; it was taken");
+    else if (lowercase(name) == lowercase(wanted) && name != wanted)
+      note("its file is named " + name + ", not " + wanted + "; it was taken");
+    if (!found.named.empty() && !found.sources.empty())
+      note("other sources were not compiled: " + listed(found.sources, folder));
+    if (!found.headers.empty())
+      note("headers beside it were not used: " + listed(found.headers, folder) +
+           ". Only the one file is compiled, with the course's own headers");
     submission.problem = why_not(submission.source);
     if (!submission.problem.empty()) submission.source.clear();
   }
@@ -133,12 +180,14 @@ struct CanvasName {
   std::string student, id, file;
 };
 std::optional<CanvasName> canvas_name(const std::string& name) {
-  static const std::regex pattern(R"(^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$)"), numbered(R"(^(.+?)(?:-\d+| \(\d+\))(\.[^.]*)$)");
-  constexpr std::size_t kLongest = 255;   // bytes of a name; std::regex recurses by its length
+  static const std::regex pattern(R"(^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$)"),
+      numbered(R"(^(.+?)(?:-\d+| \(\d+\))(\.[^.]*)$)");
+  constexpr std::size_t kLongest = 255;  // bytes of a name; std::regex recurses by its length
   std::smatch parts, number;
   if (name.size() > kLongest || !std::regex_match(name, parts, pattern)) return std::nullopt;
   CanvasName canvas{parts[1], parts[2], parts[3]};
-  if (std::regex_match(canvas.file, number, numbered)) canvas.file = number[1].str() + number[2].str();
+  if (std::regex_match(canvas.file, number, numbered))
+    canvas.file = number[1].str() + number[2].str();
   return canvas;
 }
 
@@ -146,15 +195,19 @@ std::optional<CanvasName> canvas_name(const std::string& name) {
 
 FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleKind& kind) {
   std::error_code failed;
-  if (!fs::is_directory(folder, failed)) throw UserError(folder.string(), "is not a folder", "Give the folder that holds one sub-folder per submission.");
+  if (!fs::is_directory(folder, failed))
+    throw UserError(folder.string(), "is not a folder",
+                    "Give the folder that holds one sub-folder per submission.");
   std::vector<fs::path> entries;
-  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) entries.push_back(it->path());
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
+    entries.push_back(it->path());
   if (failed) throw UserError(folder.string(), "cannot be read: " + failed.message());
   std::sort(entries.begin(), entries.end());
 
   const std::string wanted = kind.folder + ".cpp";
   FoundSubmissions all{folder, {}, {}};
-  std::map<std::pair<std::string, std::string>, Found> flat;   // files from Canvas, by student and number
+  // files from Canvas, by student and number
+  std::map<std::pair<std::string, std::string>, Found> flat;
   const auto add = [&](Submission submission, const Found& found, const fs::path& within) {
     choose_source(found, wanted, within, submission);
     all.all.push_back(std::move(submission));
@@ -194,10 +247,14 @@ FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleK
     submission.student_id = student.second;
     add(std::move(submission), found, folder);
   }
-  std::sort(all.all.begin(), all.all.end(), [](const Submission& a, const Submission& b) { return a.name < b.name; });
+  std::sort(all.all.begin(), all.all.end(),
+            [](const Submission& a, const Submission& b) { return a.name < b.name; });
   if (all.all.empty())
-    throw UserError(folder.string(), "holds no submission: no sub-folder, and no file with a name as Canvas gives it",
-                    "One submission is one sub-folder that holds " + wanted + ", for example " + (folder / "alice" / wanted).string() + ".");
+    throw UserError(
+        folder.string(),
+        "holds no submission: no sub-folder, and no file with a name as Canvas gives it",
+        "One submission is one sub-folder that holds " + wanted + ", for example " +
+            (folder / "alice" / wanted).string() + ".");
   return all;
 }
 

@@ -12,6 +12,7 @@ namespace tumble::grading {
 /// (STUDENT_ID_ID_FILE.cpp). Symbolic links are not followed. The content of a submission never
 /// causes an exception.
 /// @throws UserError when `folder` is not a folder or holds no submission
-FoundSubmissions find_submissions(const std::filesystem::path& folder, const modules::ModuleKind& kind);
+FoundSubmissions find_submissions(const std::filesystem::path& folder,
+                                  const modules::ModuleKind& kind);
 
 }  // namespace tumble::grading

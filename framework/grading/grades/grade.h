@@ -16,18 +16,22 @@ namespace tumble::grading {
 
 /// A submission to be graded.
 struct Submission {
-  std::string name;                    // for display; may contain any bytes
-  std::filesystem::path source;        // the file that implements the module's header; empty where `problem` says why
-  std::string problem;                 // for the grader: why there is nothing to compile; empty: there is a source
-  std::vector<std::string> notes;      // unusual, but no obstacle
-  std::string student_id = {};         // Canvas's number of the student, if the file's name has one
+  std::string name;  // for display; may contain any bytes
+  // the file that implements the module's header; empty where `problem` says why
+  std::filesystem::path source;
+  // for the grader: why there is nothing to compile; empty: there is a source
+  std::string problem;
+  std::vector<std::string> notes;  // unusual, but no obstacle
+  std::string student_id = {};     // Canvas's number of the student, if the file's name has one
 };
 
 /// The content of a folder of submissions.
 struct FoundSubmissions {
   std::filesystem::path folder;
-  std::vector<Submission> all;         // by name
-  std::vector<std::string> passed_over;   // entries that are not submissions, each with the reason; files that systems leave in every folder are left out
+  std::vector<Submission> all;  // by name
+  // entries that are not submissions, each with the reason; files that systems leave in every
+  // folder are left out
+  std::vector<std::string> passed_over;
 };
 
 /// A test of the rubric with its result.
@@ -39,38 +43,42 @@ struct ScoredTest {
 
 enum class GradeState {
   kJudged,
-  kNothingToCompile,   // Submission::problem
+  kNothingToCompile,  // Submission::problem
   kDoesNotCompile,
-  kGraderFault,        // the score is meaningless
+  kGraderFault,  // the score is meaningless
 };
 
 /// The inputs of a grade, as digests, so that an unchanged submission need not be graded again.
 struct GradeKey {
-  std::string submission;   // source, problem and notes
-  std::string judging;      // everything that decides a verdict: judge, worker, tests, headers, compiler, time limit
-  std::string rubric;       // points, levels and titles
-  std::string pictures;     // scenes and options; empty: without pictures
+  std::string submission;  // source, problem and notes
+  // everything that decides a verdict: judge, worker, tests, headers, compiler, time limit
+  std::string judging;
+  std::string rubric;    // points, levels and titles
+  std::string pictures;  // scenes and options; empty: without pictures
 };
 
 /// A test with another result than in the earlier run of the same submission's folder.
 struct TestChange {
   std::string test, title;
-  std::string before, after;         // "wrong, 0 of 5"
-  std::string reason;                // "the submission changed"
+  std::string before, after;  // "wrong, 0 of 5"
+  std::string reason;         // "the submission changed"
 };
 
 struct Grade {
-  std::string name;                  // of the submission
-  std::string folder;                // below OUT: the name, safe for a path
+  std::string name;    // of the submission
+  std::string folder;  // below OUT: the name, safe for a path
   GradeState state = GradeState::kGraderFault;
-  std::string story;                 // the compiler's errors, or another obstacle; empty when judged
+  // the compiler's errors, or another obstacle; empty when judged
+  std::string story;
   std::vector<std::string> notes;
-  std::vector<ScoredTest> tests;     // in the rubric's order
+  std::vector<ScoredTest> tests;  // in the rubric's order
   std::vector<SceneMedia> media;
-  CostSection cost;                  // only on the page, not in the record
+  CostSection cost;  // only on the page, not in the record
   double score = 0.0, possible = 0.0;
-  bool taken_over = false;           // nothing has changed since an earlier run, whose results are kept
-  std::string change;                // "80 -> 85: the tests changed"; empty without an earlier, different result
+  // nothing has changed since an earlier run, whose results are kept
+  bool taken_over = false;
+  // "80 -> 85: the tests changed"; empty without an earlier, different result
+  std::string change;
   std::vector<TestChange> changes;   // test by test
   std::vector<std::string> remarks;  // for the grader only, because they name other submissions
   std::string student_id;            // of the submission
@@ -85,19 +93,22 @@ struct Grade {
 
 struct GradeProgress {
   std::size_t done = 0, total = 0;
-  std::string finished;              // name of the submission just finished; may be empty
-  double left_s = 0.0;               // estimated time left; negative: unknown
+  std::string finished;  // name of the submission just finished; may be empty
+  double left_s = 0.0;   // estimated time left; negative: unknown
 };
 
 struct GradeOptions {
-  double budget_s = 60.0;            // for all tests of a submission together: TimeBudget
-  int jobs = 1;                      // submissions graded at the same time, each in a separate process
+  double budget_s = 60.0;  // for all tests of a submission together: TimeBudget
+  // submissions graded at the same time, each in a separate process
+  int jobs = 1;
   bool media = true;
   MediaOptions media_options;
-  std::string accepted_sandbox;      // a kind of sandbox that is used although the policy refuses it; results are marked
-  std::vector<std::filesystem::path> scenes;   // empty: the assignment's demo scenes
+  // a kind of sandbox that is used although the policy refuses it; results are marked
+  std::string accepted_sandbox;
+  std::vector<std::filesystem::path> scenes;  // empty: the assignment's demo scenes
   std::function<void(const GradeProgress&)> progress;
-  std::function<void(const std::string&)> notice;   // called with a sentence for the user; may be empty
+  // called with a sentence for the user; may be empty
+  std::function<void(const std::string&)> notice;
 };
 
 }  // namespace tumble::grading

@@ -26,10 +26,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kRecord = "record.json";
 
-constexpr std::array kStates = {"judged", "nothing to compile", "does not compile", "fault of the grader"};
+constexpr std::array kStates = {"judged", "nothing to compile", "does not compile",
+                                "fault of the grader"};
 
 // Names and stories may contain any bytes: invalid UTF-8 is replaced, not refused.
-std::string dumped(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n'; }
+std::string dumped(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
 
 std::string output_of(const ScoredTest& test) {
   std::string text = words(test.result.verdict);
@@ -42,7 +45,8 @@ std::string output_of(const ScoredTest& test) {
 bool starts_a_formula(const std::string& text) {
   const auto first = text.find_first_not_of(' ');
   if (first == std::string::npos) return false;
-  for (const std::string_view sign : {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\u2212"})
+  for (const std::string_view sign :
+       {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\u2212"})
     if (std::string_view(text).substr(first).starts_with(sign)) return true;
   return false;
 }
@@ -51,7 +55,8 @@ bool starts_a_formula(const std::string& text) {
 std::string csv_cell(const std::string& raw) {
   std::string text = plain_name(raw);
   if (starts_a_formula(text)) text.insert(0, "'");
-  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' ');
+  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') &&
+                        !text.ends_with(' ');
   if (is_plain) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
@@ -61,14 +66,26 @@ std::string csv_cell(const std::string& raw) {
 Json media_json(const SceneMedia& media) {
   Json checks = Json::array();
   for (const auto& c : media.checks)
-    checks.push_back({{"kind", c.kind}, {"subject", c.subject}, {"value", c.value}, {"threshold", c.threshold}, {"unit", c.unit}, {"passed", c.passed},
-                      {"why", c.why}, {"at_least", c.at_least}, {"detail", c.detail}});
-  return {{"scene", media.scene}, {"title", media.title}, {"about", media.about}, {"picture", media.picture.string()}, {"video", media.video.string()},
-          {"story", media.story}, {"attempted", media.attempted}, {"checks", checks}, {"page", media.page.string()}};
+    checks.push_back({{"kind", c.kind},
+                      {"subject", c.subject},
+                      {"value", c.value},
+                      {"threshold", c.threshold},
+                      {"unit", c.unit},
+                      {"passed", c.passed},
+                      {"why", c.why},
+                      {"at_least", c.at_least},
+                      {"detail", c.detail}});
+  return {{"scene", media.scene},          {"title", media.title},
+          {"about", media.about},          {"picture", media.picture.string()},
+          {"video", media.video.string()}, {"story", media.story},
+          {"attempted", media.attempted},  {"checks", checks},
+          {"page", media.page.string()}};
 }
 
 // JSON has no infinity, so it is stored as null.
-double number_or_infinity(const Json& json) { return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>(); }
+double number_or_infinity(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
 
 SceneMedia media_of(const Json& json) {
   SceneMedia media;
@@ -81,20 +98,30 @@ SceneMedia media_of(const Json& json) {
   media.attempted = json.at("attempted");
   media.page = json.value("page", std::string());
   for (const Json& c : json.at("checks"))
-    media.checks.push_back({c.at("kind"), c.at("subject"), number_or_infinity(c.at("value")), number_or_infinity(c.at("threshold")), c.at("unit"), c.at("passed"), c.at("why"),
-                            c.at("at_least"), c.at("detail")});
+    media.checks.push_back({c.at("kind"), c.at("subject"), number_or_infinity(c.at("value")),
+                            number_or_infinity(c.at("threshold")), c.at("unit"), c.at("passed"),
+                            c.at("why"), c.at("at_least"), c.at("detail")});
   return media;
 }
 
 Json test_json(const ScoredTest& test) {
-  return {{"test", test.item.test}, {"title", test.item.title}, {"level", test.item.level}, {"hidden", test.item.hidden}, {"points", test.item.points},
-          {"score", test.score}, {"verdict", words(test.result.verdict)}, {"story", test.result.story}, {"last_call", test.result.last_call},
-          {"calls", test.result.calls}, {"not_run", test.result.not_run}};
+  return {{"test", test.item.test},
+          {"title", test.item.title},
+          {"level", test.item.level},
+          {"hidden", test.item.hidden},
+          {"points", test.item.points},
+          {"score", test.score},
+          {"verdict", words(test.result.verdict)},
+          {"story", test.result.story},
+          {"last_call", test.result.last_call},
+          {"calls", test.result.calls},
+          {"not_run", test.result.not_run}};
 }
 
 ScoredTest test_of(const Json& json) {
   ScoredTest test;
-  test.item = {json.at("test"), json.at("points"), json.at("level"), json.at("title"), json.at("hidden")};
+  test.item = {json.at("test"), json.at("points"), json.at("level"), json.at("title"),
+               json.at("hidden")};
   test.score = json.at("score");
   test.result.test = test.item.test;
   test.result.verdict = verdict_from_words(json.at("verdict")).value_or(Verdict::kGraderFault);
@@ -107,11 +134,18 @@ ScoredTest test_of(const Json& json) {
 
 Json changes_json(const std::vector<TestChange>& changes) {
   Json list = Json::array();
-  for (const TestChange& c : changes) list.push_back({{"test", c.test}, {"title", c.title}, {"before", c.before}, {"after", c.after}, {"reason", c.reason}});
+  for (const TestChange& c : changes)
+    list.push_back({{"test", c.test},
+                    {"title", c.title},
+                    {"before", c.before},
+                    {"after", c.after},
+                    {"reason", c.reason}});
   return list;
 }
 
-std::string code_of(const Json& json, const std::string& machine_key) { return authentication_code(machine_key, "tumble record 1\n" + dumped(json)); }
+std::string code_of(const Json& json, const std::string& machine_key) {
+  return authentication_code(machine_key, "tumble record 1\n" + dumped(json));
+}
 
 GradeRecord record_of(const Json& json) {
   GradeRecord record;
@@ -127,7 +161,9 @@ GradeRecord record_of(const Json& json) {
   grade.score = json.at("score");
   grade.possible = json.at("possible");
   grade.change = json.at("change");
-  for (const Json& c : json.at("changes")) grade.changes.push_back({c.at("test"), c.at("title"), c.at("before"), c.at("after"), c.at("reason")});
+  for (const Json& c : json.at("changes"))
+    grade.changes.push_back(
+        {c.at("test"), c.at("title"), c.at("before"), c.at("after"), c.at("reason")});
   grade.story = json.at("story");
   grade.notes = json.at("notes").get<std::vector<std::string>>();
   grade.sandbox = json.at("sandbox");
@@ -142,7 +178,8 @@ GradeRecord record_of(const Json& json) {
 std::string graded_from(const Grade& grade, const GradeKey& key) {
   constexpr std::size_t kShown = 16;
   const auto head = [](const std::string& digits) { return digits.substr(0, kShown); };
-  std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) + " · rubric " + head(key.rubric);
+  std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) +
+                     " · rubric " + head(key.rubric);
   if (!key.pictures.empty()) text += " · pictures " + head(key.pictures);
   return text + " · sandbox " + grade.sandbox + " · " + version_in_words(kProgramVersion);
 }
@@ -155,14 +192,19 @@ std::string gradescope_json(const Grade& grade) {
   // points.
   if (grade.has_score()) page["score"] = grade.score;
   std::string said = grade.story;
-  for (const std::string& note : grade.notes) said += (said.empty() ? "" : "\n") + ("note: " + note);
+  for (const std::string& note : grade.notes)
+    said += (said.empty() ? "" : "\n") + ("note: " + note);
   page["output"] = plain_text(said);
   page["output_format"] = "text";
   page["test_output_format"] = "text";
   page["test_name_format"] = "text";
   page["visibility"] = "visible";
   page["stdout_visibility"] = "hidden";
-  page["extra_data"] = {{"version", kProgramVersion}, {"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}, {"sandbox", grade.sandbox}, {"official", grade.is_official}};
+  page["extra_data"] = {{"version", kProgramVersion},
+                        {"state", kStates.at(static_cast<std::size_t>(grade.state))},
+                        {"final", grade.is_final()},
+                        {"sandbox", grade.sandbox},
+                        {"official", grade.is_official}};
   page["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) {
     Json entry;
@@ -185,7 +227,8 @@ bool is_points_row(std::string name) {
   const auto first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
   if (first == std::string::npos) return false;
   name = name.substr(first, last - first + 1);
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name == "points possible";
 }
 
@@ -193,15 +236,20 @@ bool is_points_row(std::string name) {
 
 std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades) {
   // Another column than that of the official grades: Canvas would enter these there.
-  const bool is_official = std::all_of(grades.begin(), grades.end(), [](const Grade& grade) { return grade.is_official; });
-  std::string text = "Student,ID,SIS Login ID,Section," + csv_cell(assignment_title + (is_official ? "" : " - not official; see the notes")) + "\n";
+  const bool is_official = std::all_of(grades.begin(), grades.end(),
+                                       [](const Grade& grade) { return grade.is_official; });
+  std::string text =
+      "Student,ID,SIS Login ID,Section," +
+      csv_cell(assignment_title + (is_official ? "" : " - not official; see the notes")) + "\n";
   double possible = 0.0;
   for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
   text += "    Points Possible,,,," + points_text(possible) + "\n";
   for (const Grade& grade : grades) {
     // The name of such a student would be read as the row of points.
-    const std::string name = csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
-    text += name + "," + grade.student_id + "," + name + ",," + (grade.has_score() ? points_text(grade.score) : "") + "\n";
+    const std::string name =
+        csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
+    text += name + "," + grade.student_id + "," + name + ",," +
+            (grade.has_score() ? points_text(grade.score) : "") + "\n";
   }
   return text;
 }
@@ -209,10 +257,12 @@ std::string gradebook_csv(const std::string& assignment_title, const std::vector
 std::map<std::string, std::string> digests_below(const fs::path& folder) {
   std::map<std::string, std::string> digests;
   std::error_code failed;
-  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
+       it.increment(failed)) {
     const std::string name = it->path().lexically_relative(folder).string();
     if (fs::is_directory(it->symlink_status()) || name == kRecord) continue;
-    digests[name] = fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "not a file";
+    digests[name] =
+        fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "not a file";
   }
   return digests;
 }
@@ -249,7 +299,8 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   return dumped(json);
 }
 
-EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignment, const std::string& machine_key) {
+EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignment,
+                            const std::string& machine_key) {
   std::error_code failed;
   if (!fs::exists(fs::symlink_status(folder, failed))) return {};
   std::ifstream in(folder / kRecord);
@@ -259,20 +310,24 @@ EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignmen
     Json json = Json::parse(in);
     const std::string code = json.at("mac");
     json.erase("mac");
-    if (!is_same_code(code, code_of(json, machine_key))) return {{}, "its record is not signed by this machine's key"};
+    if (!is_same_code(code, code_of(json, machine_key)))
+      return {{}, "its record is not signed by this machine's key"};
     record = record_of(json);
   } catch (const Json::exception&) {
     return {{}, "its record cannot be read"};
   }
-  if (record.assignment != assignment || record.grade.folder != folder.filename().string()) return {{}, "its record belongs to another folder"};
+  if (record.assignment != assignment || record.grade.folder != folder.filename().string())
+    return {{}, "its record belongs to another folder"};
   if (record.files != digests_below(folder)) return {{}, "its files have changed"};
   return {std::move(record), ""};
 }
 
-void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key, const fs::path& folder, const std::string& machine_key) {
+void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
+                 const fs::path& folder, const std::string& machine_key) {
   write_whole(folder / "results.json", gradescope_json(grade));
   submission_page(kind, grade, graded_from(grade, key)).write(folder / "index.html");
-  write_whole(folder / kRecord, record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
+  write_whole(folder / kRecord,
+              record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
 }
 
 std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
@@ -282,12 +337,20 @@ std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& r
   ledger["submissions"] = Json::array();
   for (const GradeRecord& record : records) {
     const auto results = record.files.find("results.json");
-    ledger["submissions"].push_back({{"name", plain_name(record.grade.name)}, {"folder", record.grade.folder}, {"submission", record.key.submission},
-                                     {"judging", record.key.judging}, {"rubric", record.key.rubric},
-                                     {"results", results == record.files.end() ? "missing" : results->second},
-                                     {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)}, {"final", record.grade.is_final()},
-                                     {"sandbox", record.grade.sandbox}, {"official", record.grade.is_official},
-                                     {"remarks", record.grade.remarks}, {"change", record.grade.change}, {"changes", changes_json(record.grade.changes)}});
+    ledger["submissions"].push_back(
+        {{"name", plain_name(record.grade.name)},
+         {"folder", record.grade.folder},
+         {"submission", record.key.submission},
+         {"judging", record.key.judging},
+         {"rubric", record.key.rubric},
+         {"results", results == record.files.end() ? "missing" : results->second},
+         {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)},
+         {"final", record.grade.is_final()},
+         {"sandbox", record.grade.sandbox},
+         {"official", record.grade.is_official},
+         {"remarks", record.grade.remarks},
+         {"change", record.grade.change},
+         {"changes", changes_json(record.grade.changes)}});
   }
   return dumped(ledger);
 }

@@ -25,8 +25,8 @@ std::string gradebook_csv(const std::string& assignment_title, const std::vector
 struct GradeRecord {
   Grade grade;
   GradeKey key;
-  std::string assignment;                       // "a1"
-  std::map<std::string, std::string> files;     // path in the folder -> digest
+  std::string assignment;                    // "a1"
+  std::map<std::string, std::string> files;  // path in the folder -> digest
 };
 
 /// @param machine_key  signs the record: its field "mac" is the HMAC-SHA-256 of all other fields
@@ -34,17 +34,20 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
 
 /// Results of an earlier run in a submission's folder.
 struct EarlierRun {
-  std::optional<GradeRecord> record;   // only if it is signed by this key, for this assignment and folder, and no file has changed
-  std::string problem;                 // why it is not trusted; empty if it is, or if there is none
+  // only if it is signed by this key, for this assignment and folder, and no file has changed
+  std::optional<GradeRecord> record;
+  std::string problem;  // why it is not trusted; empty if it is, or if there is none
 };
-EarlierRun read_earlier_run(const std::filesystem::path& folder, const std::string& assignment, const std::string& machine_key);
+EarlierRun read_earlier_run(const std::filesystem::path& folder, const std::string& assignment,
+                            const std::string& machine_key);
 
 /// Digests of all files of a folder but record.json, by path.
 std::map<std::string, std::string> digests_below(const std::filesystem::path& folder);
 
 /// Writes results.json, index.html and record.json of a grade into its folder, which already has
 /// its pictures.
-void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key, const std::filesystem::path& folder, const std::string& machine_key);
+void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
+                 const std::filesystem::path& folder, const std::string& machine_key);
 
 /// ledger.json over all submissions.
 std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records);

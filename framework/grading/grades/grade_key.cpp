@@ -28,27 +28,34 @@ std::string judging_digest(const Course& course, const std::string& id) {
     if (entry.path().extension() == ".h") headers.push_back(entry.path());
   std::sort(headers.begin(), headers.end());
   const fs::path bin = course.build / "bin";
-  std::vector<fs::path> files = {bin / ("judge_" + id), bin / ("worker_" + id), bin / "sandbox_init", "/usr/bin/g++"};
+  std::vector<fs::path> files = {bin / ("judge_" + id), bin / ("worker_" + id),
+                                 bin / "sandbox_init", "/usr/bin/g++"};
   if (traits_of(chosen_sandbox()).links_worker) files.push_back(bin / ("worker_" + id + ".o"));
   files.insert(files.end(), headers.begin(), headers.end());
   return digest_of_files(files);
 }
 
 std::string grader_digest(const Course& course, const std::string& id, double budget_s) {
-  return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) + digest_of_file("/proc/self/exe"));
+  return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) +
+                digest_of_file("/proc/self/exe"));
 }
 
 std::string rubric_digest(const Rubric& rubric) {
   std::string text;
-  for (const RubricItem& item : rubric.items) text += fmt::format("{}\n{}\n{}\n{}\n{}\n", item.test, item.points, item.level, item.title, item.hidden);
+  for (const RubricItem& item : rubric.items)
+    text += fmt::format("{}\n{}\n{}\n{}\n{}\n", item.test, item.points, item.level, item.title,
+                        item.hidden);
   return digest(text);
 }
 
-std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options) {
+std::string pictures_digest(const Course& course, const std::string& id,
+                            const GradeOptions& options) {
   if (!options.media) return "";
   const MediaOptions& m = options.media_options;
-  std::string text = fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
-  for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes) text += scene.filename().string() + digest_of_file(scene) + ' ';
+  std::string text =
+      fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
+  for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes)
+    text += scene.filename().string() + digest_of_file(scene) + ' ';
   return digest(text + digest_of_file(built_module(course, id, "reference")));
 }
 
@@ -59,16 +66,21 @@ std::string submission_digest(const Submission& submission) {
 }
 
 std::string folder_of(const std::string& name) {
-  constexpr std::size_t kLongest = 80;  // bytes: file systems allow 255, and names of drafts are longer
+  // bytes: file systems allow 255, and names of drafts are longer
+  constexpr std::size_t kLongest = 80;
   std::string plain;
   for (const char c : name) {
-    const bool keep = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+    const bool keep = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '_' || c == '-' || c == '.';
     plain += keep ? c : '_';
   }
   if (plain.size() > kLongest) plain.resize(kLongest);
   // Names that begin with "_" are reserved for names that are made here.
-  const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain[0] == '_' || plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" || plain == "times.json";
-  constexpr std::size_t kDigits = 16;   // 64 bits of SHA-256: enough that no two names of a course collide by chance
+  const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain[0] == '_' ||
+                     plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" ||
+                     plain == "times.json";
+  // 64 bits of SHA-256: enough that no two names of a course collide by chance
+  constexpr std::size_t kDigits = 16;
   return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, kDigits);
 }
 

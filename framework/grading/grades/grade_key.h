@@ -14,7 +14,8 @@ std::string grader_digest(const Course& course, const std::string& id, double bu
 /// Digest of the points and titles of the tests.
 std::string rubric_digest(const Rubric& rubric);
 /// Digest of the scenes and of the options of their pictures; empty without pictures.
-std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options);
+std::string pictures_digest(const Course& course, const std::string& id,
+                            const GradeOptions& options);
 std::string submission_digest(const Submission& submission);
 
 /// Name of a submission's folder below OUT: its own name if that is plain, else a plain form with a

@@ -39,15 +39,21 @@ struct Work {
   std::string folder;
   GradeKey key;
   EarlierRun earlier;
-  GradeRecord record;       // the final one
+  GradeRecord record;  // the final one
   std::vector<std::string> remarks;
   double seconds = 0.0;
 };
 
 class Batch {
  public:
-  Batch(const Course& course, const std::string& id, const fs::path& submissions, const fs::path& out, const GradeOptions& options)
-      : protection_(protection_of_grades(options.accepted_sandbox)), snapshot_(course, id), course_(snapshot_.course()), id_(id), kind_(course.registry->find(id)), options_(options) {
+  Batch(const Course& course, const std::string& id, const fs::path& submissions,
+        const fs::path& out, const GradeOptions& options)
+      : protection_(protection_of_grades(options.accepted_sandbox)),
+        snapshot_(course, id),
+        course_(snapshot_.course()),
+        id_(id),
+        kind_(course.registry->find(id)),
+        options_(options) {
     require_rubric_of_judge(course_, id);
     rubric_ = rubric_of(course_, id);
     refuse_key_in(out);
@@ -67,9 +73,14 @@ class Batch {
   // Results are published; the key that signs them must not be.
   static void refuse_key_in(const fs::path& out) {
     std::error_code failed;
-    const fs::path key = fs::weakly_canonical(machine_key_file(), failed), folder = fs::weakly_canonical(fs::absolute(out), failed);
+    const fs::path key = fs::weakly_canonical(machine_key_file(), failed),
+                   folder = fs::weakly_canonical(fs::absolute(out), failed);
     const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), key.begin(), key.end());
-    if (!key.empty() && end == folder.end()) throw UserError(key.string(), "is the key of this machine, and is inside the folder of results " + folder.string(), "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
+    if (!key.empty() && end == folder.end())
+      throw UserError(
+          key.string(),
+          "is the key of this machine, and is inside the folder of results " + folder.string(),
+          "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
   }
 
   void notice(const std::string& sentence) const {
@@ -84,23 +95,35 @@ class Batch {
       if (submission.source.empty()) continue;
       std::string why;
       const auto text = read_plain_file(submission.source, CompileLimits{}.source_bytes, why);
-      const fs::path copy = sources_.path() / std::to_string(number++) / submission.source.filename();
-      if (text) write_whole(copy, *text);
-      else submission.problem = plain_name(submission.source.filename().string()) + ' ' + why;
+      const fs::path copy =
+          sources_.path() / std::to_string(number++) / submission.source.filename();
+      if (text)
+        write_whole(copy, *text);
+      else
+        submission.problem = plain_name(submission.source.filename().string()) + ' ' + why;
       submission.source = text ? copy : fs::path();
     }
   }
 
   // Reuses earlier results that are complete, signed and unchanged.
   void plan(const std::vector<Submission>& submissions) {
-    const std::string judging = digest(grader_digest(course_, id_, options_.budget_s) + protection_.words), pictures = pictures_digest(course_, id_, options_);
+    const std::string judging = digest(grader_digest(course_, id_, options_.budget_s) +
+                                       protection_.words),
+                      pictures = pictures_digest(course_, id_, options_);
     std::set<std::string> folders;
     for (const Submission& submission : submissions) {
       // Names of folders are unique, but a student may have two flat files: each gets its own
       // folder.
       std::string folder = folder_of(submission.name);
-      for (int again = 2; !folders.insert(folder).second; ++again) folder = folder_of(submission.name + '\0' + std::to_string(again));
-      Work work{&submission, folder, {submission_digest(submission), judging, rubric_digest(rubric_), pictures}, {}, {}, {}, 0.0};
+      for (int again = 2; !folders.insert(folder).second; ++again)
+        folder = folder_of(submission.name + '\0' + std::to_string(again));
+      Work work{&submission,
+                folder,
+                {submission_digest(submission), judging, rubric_digest(rubric_), pictures},
+                {},
+                {},
+                {},
+                0.0};
       if (output_->owns(folder)) work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
       work_.push_back(std::move(work));
     }
@@ -124,22 +147,30 @@ class Batch {
   void remark_equal_files() {
     std::map<std::string, std::vector<Work*>> by_digest;
     for (Work& work : work_)
-      if (!work.submission->source.empty()) by_digest[digest_of_file(work.submission->source)].push_back(&work);
+      if (!work.submission->source.empty())
+        by_digest[digest_of_file(work.submission->source)].push_back(&work);
     for (const auto& [bytes, equal] : by_digest)
       for (Work* work : equal)
         for (const Work* other : equal)
-          if (other != work) work->remarks.push_back("the same file, byte for byte, as that of " + plain_name(other->submission->name));
+          if (other != work)
+            work->remarks.push_back("the same file, byte for byte, as that of " +
+                                    plain_name(other->submission->name));
   }
 
   // For example a folder and a flat file of one name: two rows of one student, of which a gradebook
   // keeps the last.
   void report_doubles() {
     std::map<std::pair<std::string, std::string>, std::vector<Work*>> by_student;
-    for (Work& work : work_) by_student[{work.submission->name, work.submission->student_id}].push_back(&work);
+    for (Work& work : work_)
+      by_student[{work.submission->name, work.submission->student_id}].push_back(&work);
     for (const auto& [student, works] : by_student) {
       if (works.size() < 2) continue;
-      notice(fmt::format("{}: {} submissions of that name: the gradebook has a row for each, and a system that reads it may keep the last. Leave only one.", plain_name(student.first), works.size()));
-      for (Work* work : works) work->remarks.push_back(fmt::format("one of {} submissions of this name", works.size()));
+      notice(
+          fmt::format("{}: {} submissions of that name: the gradebook has a row for each, and a "
+                      "system that reads it may keep the last. Leave only one.",
+                      plain_name(student.first), works.size()));
+      for (Work* work : works)
+        work->remarks.push_back(fmt::format("one of {} submissions of this name", works.size()));
     }
   }
 
@@ -148,38 +179,51 @@ class Batch {
     std::size_t count = 0;
     for (const Work& work : work_) {
       if (work.earlier.problem.empty()) continue;
-      if (++count <= kNamed) notice(plain_name(work.submission->name) + ": the earlier result is not reused, because " + work.earlier.problem + "; graded again");
+      if (++count <= kNamed)
+        notice(plain_name(work.submission->name) + ": the earlier result is not reused, because " +
+               work.earlier.problem + "; graded again");
     }
     if (count > kNamed) notice(fmt::format("... and {} more", count - kNamed));
   }
 
-  bool pictures_do(const Work& work) const { return !options_.media || work.earlier.record->key.pictures == work.key.pictures; }
+  bool pictures_do(const Work& work) const {
+    return !options_.media || work.earlier.record->key.pictures == work.key.pictures;
+  }
   bool verdicts_stand(const Work& work) const {
     if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
     const GradeKey& old = work.earlier.record->key;
-    return old.submission == work.key.submission && old.judging == work.key.judging && pictures_do(work);
+    return old.submission == work.key.submission && old.judging == work.key.judging &&
+           pictures_do(work);
   }
-  bool is_current(const Work& work) const { return verdicts_stand(work) && work.earlier.record->key.rubric == work.key.rubric; }
+  bool is_current(const Work& work) const {
+    return verdicts_stand(work) && work.earlier.record->key.rubric == work.key.rubric;
+  }
 
   void grade_open_ones() {
     start_ = Clock::now();
     report_progress("");
     const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
-    run_in_processes(open_.size(), options_.jobs, work, [&](std::size_t i, int status, double seconds) {
-      open_[i]->seconds = seconds;
-      settle(*open_[i], status);
-      ++done_;
-      ++fresh_;
-      report_progress(open_[i]->submission->name);
-    }, [this] { clear_drafts(); });
+    run_in_processes(
+        open_.size(), options_.jobs, work,
+        [&](std::size_t i, int status, double seconds) {
+          open_[i]->seconds = seconds;
+          settle(*open_[i], status);
+          ++done_;
+          ++fresh_;
+          report_progress(open_[i]->submission->name);
+        },
+        [this] { clear_drafts(); });
   }
 
   // Removes unfinished results; finished ones stay, and are reused by the next run.
   void clear_drafts() const {
     std::error_code ignored;
     for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
-    for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);   // this process ends by a signal, without running destructors
-    fmt::print(stderr, "stopped: {} of {} submissions are graded; the same command continues from here\n", done_, work_.size());
+    // this process ends by a signal, without running destructors
+    for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);
+    fmt::print(stderr,
+               "stopped: {} of {} submissions are graded; the same command continues from here\n",
+               done_, work_.size());
   }
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
@@ -195,7 +239,8 @@ class Batch {
       GradeOptions own = options_;
       own.progress = {};
       std::optional<Grade> grade;
-      if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);   // only points have changed: added up again, not run again
+      // only points have changed: added up again, not run again
+      if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);
       GradeKey key = work.key;
       const bool is_rerun = !grade;
       if (is_rerun) {
@@ -236,9 +281,11 @@ class Batch {
     grade.media = earlier.grade.media;
     const bool is_same = earlier.key.submission == work.key.submission;
     key.pictures = is_same ? earlier.key.pictures : "";
-    const std::string note = "the pictures are of an earlier version of the file (no new ones were made)";
+    const std::string note =
+        "the pictures are of an earlier version of the file (no new ones were made)";
     std::erase(grade.notes, note);
-    const bool were_old = std::find(earlier.grade.notes.begin(), earlier.grade.notes.end(), note) != earlier.grade.notes.end();
+    const bool were_old = std::find(earlier.grade.notes.begin(), earlier.grade.notes.end(), note) !=
+                          earlier.grade.notes.end();
     if (!is_same || were_old) grade.notes.push_back(note);
   }
 
@@ -248,20 +295,28 @@ class Batch {
                          : old.key.judging != key.judging     ? "the tests or the grader changed"
                          : old.key.rubric != key.rubric       ? "the rubric changed"
                                                               : "run again";
-    const auto said = [](const ScoredTest& test) { return fmt::format("{}, {} of {}", words(test.result.verdict), points_text(test.score), points_text(test.item.points)); };
+    const auto said = [](const ScoredTest& test) {
+      return fmt::format("{}, {} of {}", words(test.result.verdict), points_text(test.score),
+                         points_text(test.item.points));
+    };
     std::map<std::string, std::string> before;
     for (const ScoredTest& test : old.grade.tests) before[test.item.test] = said(test);
     for (const ScoredTest& test : now.tests) {
       const auto it = before.find(test.item.test);
       const std::string was = it == before.end() ? "absent" : it->second;
-      if (was != said(test)) now.changes.push_back({test.item.test, test.item.title, was, said(test), reason});
+      if (was != said(test))
+        now.changes.push_back({test.item.test, test.item.title, was, said(test), reason});
       if (it != before.end()) before.erase(it);
     }
-    for (const auto& [test, was] : before) now.changes.push_back({test, test, was, "absent", reason});
+    for (const auto& [test, was] : before)
+      now.changes.push_back({test, test, was, "absent", reason});
     if (old.grade.score != now.score && old.grade.has_score() && now.has_score())
-      now.change = fmt::format("{} -> {}: {}", points_text(old.grade.score), points_text(now.score), reason);
+      now.change =
+          fmt::format("{} -> {}: {}", points_text(old.grade.score), points_text(now.score), reason);
     else if (old.grade.has_score() != now.has_score())
-      now.change = fmt::format("{} -> {}: {}", old.grade.has_score() ? points_text(old.grade.score) : "none", now.has_score() ? points_text(now.score) : "none", reason);
+      now.change =
+          fmt::format("{} -> {}: {}", old.grade.has_score() ? points_text(old.grade.score) : "none",
+                      now.has_score() ? points_text(now.score) : "none", reason);
   }
 
   // Puts a finished submission in place. After a fault of the grader an old result stays.
@@ -271,10 +326,13 @@ class Batch {
     if (status == 0) record = read_earlier_run(made, id_, key_.bytes).record;
     if (!record) record = write_fault(work, status);
     const std::optional<GradeRecord>& earlier = work.earlier.record;
-    const bool old_stands = earlier && earlier->grade.is_final() && earlier->key.submission == work.key.submission && !record->grade.is_final();
+    const bool old_stands = earlier && earlier->grade.is_final() &&
+                            earlier->key.submission == work.key.submission &&
+                            !record->grade.is_final();
     if (old_stands) {
       work.record = *earlier;
-      work.record.grade.change = "the grader failed on a new run; this is the result of the earlier one";
+      work.record.grade.change =
+          "the grader failed on a new run; this is the result of the earlier one";
     } else {
       put_in_place(made, place, draft / "old");
       work.record = *record;
@@ -297,7 +355,10 @@ class Batch {
     std::string why;
     std::ifstream said(draft_of(work) / "fault.txt");
     why.assign(std::istreambuf_iterator<char>(said), {});
-    if (why.empty()) why = WIFSIGNALED(status) ? fmt::format("the grading process ended with signal {}", WTERMSIG(status)) : "the grading process left no result";
+    if (why.empty())
+      why = WIFSIGNALED(status)
+                ? fmt::format("the grading process ended with signal {}", WTERMSIG(status))
+                : "the grading process left no result";
     GradeRecord record;
     record.key = work.key;
     record.key.pictures.clear();
@@ -323,7 +384,8 @@ class Batch {
     GradeProgress progress{done_, work_.size(), finished, -1.0};
     if (fresh_ > 0) {
       const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-      progress.left_s = spent / static_cast<double>(fresh_) * static_cast<double>(work_.size() - done_);
+      progress.left_s =
+          spent / static_cast<double>(fresh_) * static_cast<double>(work_.size() - done_);
     }
     options_.progress(progress);
   }
@@ -331,7 +393,8 @@ class Batch {
   std::vector<Grade> write_overview() {
     std::vector<Grade> grades;
     std::vector<GradeRecord> records;
-    nlohmann::ordered_json times = {{"command", course_.command}, {"seconds", nlohmann::ordered_json::object()}};
+    nlohmann::ordered_json times = {{"command", course_.command},
+                                    {"seconds", nlohmann::ordered_json::object()}};
     for (Work& work : work_) {
       work.record.grade.name = work.submission->name;
       work.record.grade.remarks = work.remarks;
@@ -344,11 +407,13 @@ class Batch {
     write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
     write_whole(out / "ledger.json", ledger_json(id_, records));
     index_page(kind_, grades).write(out / "index.html");
-    write_whole(out / "times.json", times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+    write_whole(out / "times.json",
+                times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
     return grades;
   }
 
-  const GradeProtection protection_;   // before anything else: where it is too weak, nothing is copied or written
+  // before anything else: where it is too weak, nothing is copied or written
+  const GradeProtection protection_;
   const CourseSnapshot snapshot_;
   const PrivateFolder sources_;
   const Course& course_;
@@ -366,7 +431,8 @@ class Batch {
 
 }  // namespace
 
-std::vector<Grade> grade_submissions(const Course& course, const std::string& id, const FoundSubmissions& submissions, const fs::path& out,
+std::vector<Grade> grade_submissions(const Course& course, const std::string& id,
+                                     const FoundSubmissions& submissions, const fs::path& out,
                                      const GradeOptions& options) {
   return Batch(course, id, submissions.folder, out, options).run(submissions.all);
 }

@@ -28,7 +28,9 @@ namespace tumble::grading {
 /// @return in the order of the submissions
 /// @throws UserError as OutputFolder, CourseSnapshot and require_rubric_of_judge, before anything
 ///   is written
-std::vector<Grade> grade_submissions(const Course& course, const std::string& id, const FoundSubmissions& submissions,
-                                     const std::filesystem::path& out, const GradeOptions& options = {});
+std::vector<Grade> grade_submissions(const Course& course, const std::string& id,
+                                     const FoundSubmissions& submissions,
+                                     const std::filesystem::path& out,
+                                     const GradeOptions& options = {});
 
 }  // namespace tumble::grading

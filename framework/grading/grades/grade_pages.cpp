@@ -31,7 +31,9 @@ Look look_of(Verdict verdict) {
 }
 
 std::size_t count(const Grade& grade, Verdict verdict) {
-  return static_cast<std::size_t>(std::count_if(grade.tests.begin(), grade.tests.end(), [&](const ScoredTest& t) { return t.result.verdict == verdict; }));
+  return static_cast<std::size_t>(
+      std::count_if(grade.tests.begin(), grade.tests.end(),
+                    [&](const ScoredTest& t) { return t.result.verdict == verdict; }));
 }
 
 std::string anchor_of(const std::string& test) {
@@ -40,25 +42,34 @@ std::string anchor_of(const std::string& test) {
   return id;
 }
 
-bool has_story(const ScoredTest& test) { return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted; }
+bool has_story(const ScoredTest& test) {
+  return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted;
+}
 
 // Stories are indented for a terminal; a page has its own indentation.
 std::string flush_left(const std::string& story) {
   std::string text;
   std::istringstream in(story);
   for (std::string line; std::getline(in, line);)
-    if (!text.empty() || !line.empty()) text += (line.starts_with("  ") ? line.substr(2) : line) + "\n";
+    if (!text.empty() || !line.empty())
+      text += (line.starts_with("  ") ? line.substr(2) : line) + "\n";
   return text;
 }
 
 void add_tiles(report::Page& page, const Grade& grade) {
   std::vector<std::pair<std::string, Cell>> tiles;
-  const Look look = !grade.is_final() ? Look::kWarning : grade.score == grade.possible ? Look::kGood : Look::kPlain;
-  tiles.push_back({"of " + points_text(grade.possible) + " points", {grade.has_score() ? points_text(grade.score) : "none", "", look}});
+  const Look look = !grade.is_final()               ? Look::kWarning
+                    : grade.score == grade.possible ? Look::kGood
+                                                    : Look::kPlain;
+  tiles.push_back({"of " + points_text(grade.possible) + " points",
+                   {grade.has_score() ? points_text(grade.score) : "none", "", look}});
   if (grade.state != GradeState::kJudged) return page.tiles(tiles);
-  constexpr std::array kShown = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
+  constexpr std::array kShown = {
+      Verdict::kRight,          Verdict::kWrong,       Verdict::kNotAttempted, Verdict::kCrashed,
+      Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
   for (const Verdict verdict : kShown)
-    if (const std::size_t n = count(grade, verdict); n > 0) tiles.push_back({words(verdict), {std::to_string(n), "", look_of(verdict)}});
+    if (const std::size_t n = count(grade, verdict); n > 0)
+      tiles.push_back({words(verdict), {std::to_string(n), "", look_of(verdict)}});
   page.tiles(tiles);
 }
 
@@ -71,8 +82,14 @@ void add_level(report::Page& page, const Grade& grade, const std::string& level)
     score += test.score;
     possible += test.item.points;
     const Verdict verdict = test.result.verdict;
-    const std::string link = has_story(test) && grade.state == GradeState::kJudged ? "#" + anchor_of(test.item.test) : "";
-    table.rows.push_back({{test.item.title, link}, {grade.state == GradeState::kJudged ? words(verdict) : "not run", "", grade.state == GradeState::kJudged ? look_of(verdict) : Look::kMuted}, {points_text(test.score)}, {points_text(test.item.points), "", Look::kMuted},
+    const std::string link = has_story(test) && grade.state == GradeState::kJudged
+                                 ? "#" + anchor_of(test.item.test)
+                                 : "";
+    table.rows.push_back({{test.item.title, link},
+                          {grade.state == GradeState::kJudged ? words(verdict) : "not run", "",
+                           grade.state == GradeState::kJudged ? look_of(verdict) : Look::kMuted},
+                          {points_text(test.score)},
+                          {points_text(test.item.points), "", Look::kMuted},
                           {test.item.hidden ? "hidden" : "", "", Look::kMuted}});
   }
   if (table.rows.empty()) return;
@@ -83,19 +100,24 @@ void add_level(report::Page& page, const Grade& grade, const std::string& level)
 }
 
 // The verdict that keeps a grade from being final.
-Verdict unfinished_verdict(const Grade& grade) { return count(grade, Verdict::kGraderFault) > 0 ? Verdict::kGraderFault : Verdict::kMachineBusy; }
+Verdict unfinished_verdict(const Grade& grade) {
+  return count(grade, Verdict::kGraderFault) > 0 ? Verdict::kGraderFault : Verdict::kMachineBusy;
+}
 
 void add_changes(report::Page& page, const Grade& grade) {
   if (grade.changes.empty()) return;
   report::Table table;
   table.columns = {{"Test"}, {"Before"}, {"Now"}, {"Because"}};
-  for (const TestChange& c : grade.changes) table.rows.push_back({{c.title}, {c.before, "", Look::kMuted}, {c.after}, {c.reason, "", Look::kMuted}});
+  for (const TestChange& c : grade.changes)
+    table.rows.push_back(
+        {{c.title}, {c.before, "", Look::kMuted}, {c.after}, {c.reason, "", Look::kMuted}});
   page.heading("What the last regrade changed", 2, "changes");
   page.table(table);
 }
 
 std::string numbers_of(const engines::CheckResult& c) {
-  return fmt::format("{:.3g} {} {:.3g}{}{}", c.value == 0.0 ? 0.0 : c.value, c.at_least ? ">=" : "<=", c.threshold, c.unit.empty() ? "" : " ", c.unit);
+  return fmt::format("{:.3g} {} {:.3g}{}{}", c.value == 0.0 ? 0.0 : c.value,
+                     c.at_least ? ">=" : "<=", c.threshold, c.unit.empty() ? "" : " ", c.unit);
 }
 
 }  // namespace
@@ -107,17 +129,24 @@ std::string summary_of(const Grade& grade) {
     case GradeState::kGraderFault: return "fault of the grader";
     case GradeState::kJudged: break;
   }
-  return points_text(grade.score) + " of " + points_text(grade.possible) + (grade.is_final() ? "" : ", not final: " + std::string(words(unfinished_verdict(grade))) + "; run the same command again");
+  return points_text(grade.score) + " of " + points_text(grade.possible) +
+         (grade.is_final() ? ""
+                           : ", not final: " + std::string(words(unfinished_verdict(grade))) +
+                                 "; run the same command again");
 }
 
 void add_stories(report::Page& page, const Grade& grade) {
   std::map<std::string, std::string> missing;  // story -> titles of its tests
   for (const ScoredTest& test : grade.tests) {
-    if (test.result.verdict == Verdict::kNotAttempted) missing[test.result.story] += "\n    " + test.item.title;
+    if (test.result.verdict == Verdict::kNotAttempted)
+      missing[test.result.story] += "\n    " + test.item.title;
     if (!has_story(test)) continue;
-    page.heading(fmt::format("{}: {}", words(test.result.verdict), test.item.title), 3, anchor_of(test.item.test));
+    page.heading(fmt::format("{}: {}", words(test.result.verdict), test.item.title), 3,
+                 anchor_of(test.item.test));
     std::string facts = test.item.test + (test.item.hidden ? " (hidden)" : "");
-    if (test.result.calls > 0) facts += fmt::format(", {} call{}, the last to {}", test.result.calls, test.result.calls == 1 ? "" : "s", test.result.last_call);
+    if (test.result.calls > 0)
+      facts += fmt::format(", {} call{}, the last to {}", test.result.calls,
+                           test.result.calls == 1 ? "" : "s", test.result.last_call);
     page.paragraph(facts, Look::kMuted);
     page.preformatted(plain_text(flush_left(test.result.story)));
   }
@@ -128,13 +157,24 @@ void add_stories(report::Page& page, const Grade& grade) {
   page.preformatted(text);
 }
 
-void add_media(report::Page& page, const std::vector<SceneMedia>& media, const std::filesystem::path& folder) {
+void add_media(report::Page& page, const std::vector<SceneMedia>& media,
+               const std::filesystem::path& folder) {
   for (const SceneMedia& scene : media) {
     page.heading(scene.title, 3, "s-" + anchor_of(scene.scene));
-    const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(), [](const auto& c) { return !c.passed; });
-    if (!scene.story.empty()) page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") + plain_text(scene.story), scene.attempted ? Look::kBad : Look::kMuted);
-    else if (wrong > 0) page.paragraph(fmt::format("{} of its {} numbers are wrong.", wrong, scene.checks.size()), Look::kBad);
-    else if (!scene.checks.empty()) page.paragraph(scene.checks.size() == 1 ? "Its number is right." : fmt::format("All of its {} numbers are right.", scene.checks.size()), Look::kGood);
+    const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(),
+                                     [](const auto& c) { return !c.passed; });
+    if (!scene.story.empty())
+      page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") +
+                         plain_text(scene.story),
+                     scene.attempted ? Look::kBad : Look::kMuted);
+    else if (wrong > 0)
+      page.paragraph(fmt::format("{} of its {} numbers are wrong.", wrong, scene.checks.size()),
+                     Look::kBad);
+    else if (!scene.checks.empty())
+      page.paragraph(scene.checks.size() == 1
+                         ? "Its number is right."
+                         : fmt::format("All of its {} numbers are right.", scene.checks.size()),
+                     Look::kGood);
     if (!scene.picture.empty() || !scene.video.empty()) {
       report::Figure figure;
       if (!scene.picture.empty()) figure.picture = folder / scene.picture;
@@ -142,12 +182,18 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
       figure.caption = scene.about;
       page.figures({figure});
     }
-    if (!scene.page.empty()) page.links({{"Play the run: rotate it, step through it, see its curves and the first difference", report::link_to(folder / scene.page)}});
+    if (!scene.page.empty())
+      page.links(
+          {{"Play the run: rotate it, step through it, see its curves and the first difference",
+            report::link_to(folder / scene.page)}});
     if (scene.checks.empty()) continue;
     report::Table table;
     table.columns = {{"Judged by"}, {"Of"}, {"Verdict"}, {"Reached and allowed", true}, {"Where"}};
     for (const auto& c : scene.checks)
-      table.rows.push_back({{c.kind}, {c.subject}, {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad}, {numbers_of(c)},
+      table.rows.push_back({{c.kind},
+                            {c.subject},
+                            {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad},
+                            {numbers_of(c)},
                             {c.passed ? "" : c.detail, "", Look::kMuted}});
     page.table(table);
   }
@@ -156,19 +202,34 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
 void add_cost(report::Page& page, const CostSection& cost) {
   if (cost.scene.empty()) return;
   page.heading("What accuracy costs", 2, "cost");
-  for (const CostLine& line : cost.lines) page.paragraph(line.reading, line.is_wasteful ? Look::kWarning : line.is_right ? Look::kGood : line.is_attempted ? Look::kBad : Look::kMuted);
-  if (std::none_of(cost.lines.begin(), cost.lines.end(), [](const CostLine& line) { return line.is_attempted; })) return;
+  for (const CostLine& line : cost.lines)
+    page.paragraph(line.reading, line.is_wasteful    ? Look::kWarning
+                                 : line.is_right     ? Look::kGood
+                                 : line.is_attempted ? Look::kBad
+                                                     : Look::kMuted);
+  if (std::none_of(cost.lines.begin(), cost.lines.end(),
+                   [](const CostLine& line) { return line.is_attempted; }))
+    return;
   for (const report::Plot& plot : cost.plots) page.plot(plot);
   for (const report::Table& table : cost.tables) page.table(table);
-  page.paragraph(fmt::format("Measured on: {}. {} This part is for information and earns no points.", cost.scene, cost.truth), Look::kMuted);
+  page.paragraph(
+      fmt::format("Measured on: {}. {} This part is for information and earns no points.",
+                  cost.scene, cost.truth),
+      Look::kMuted);
 }
 
-report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record) {
-  report::Page page(plain_name(grade.name), fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
-  page.links({{"All submissions", "../index.html"}, {"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
+report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
+                             const std::string& record) {
+  report::Page page(plain_name(grade.name),
+                    fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
+  page.links({{"All submissions", "../index.html"},
+              {"Tests", "#tests"},
+              {"Stories", "#stories"},
+              {"Scenes", "#scenes"}});
   if (!grade.cost.scene.empty()) page.links({{"What accuracy costs", "#cost"}});
   add_tiles(page, grade);
-  for (const std::string& note : grade.notes) page.paragraph("Note: " + plain_text(note), Look::kWarning);
+  for (const std::string& note : grade.notes)
+    page.paragraph("Note: " + plain_text(note), Look::kWarning);
   if (!grade.story.empty()) {
     page.heading(summary_of(grade));
     page.preformatted(plain_text(grade.story));
@@ -178,8 +239,10 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
   page.heading("Stories", 2, "stories");
   if (grade.state == GradeState::kJudged) add_stories(page, grade);
-  if (grade.state != GradeState::kJudged) page.paragraph("No test ran.", Look::kMuted);
-  else if (count(grade, Verdict::kRight) == grade.tests.size()) page.paragraph("Every test is right.", Look::kGood);
+  if (grade.state != GradeState::kJudged)
+    page.paragraph("No test ran.", Look::kMuted);
+  else if (count(grade, Verdict::kRight) == grade.tests.size())
+    page.paragraph("Every test is right.", Look::kGood);
   add_cost(page, grade.cost);
   page.heading("Scenes", 2, "scenes");
   if (grade.media.empty()) page.paragraph("No scene was run.", Look::kMuted);
@@ -189,41 +252,81 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
 }
 
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades) {
-  report::Page page(kind.title + ": all submissions", fmt::format("{}, {} submission{}", kind.id, grades.size(), grades.size() == 1 ? "" : "s"));
+  report::Page page(
+      kind.title + ": all submissions",
+      fmt::format("{}, {} submission{}", kind.id, grades.size(), grades.size() == 1 ? "" : "s"));
   page.links({{"gradebook.csv", "gradebook.csv"}, {"ledger.json", "ledger.json"}});
   std::vector<double> scores;
   std::size_t faults = 0, not_found = 0;
   for (const Grade& grade : grades) {
-    if (grade.has_score()) scores.push_back(grade.score);
-    else if (grade.is_final()) ++not_found;
-    else ++faults;
+    if (grade.has_score())
+      scores.push_back(grade.score);
+    else if (grade.is_final())
+      ++not_found;
+    else
+      ++faults;
   }
   std::sort(scores.begin(), scores.end());
   if (!scores.empty()) {
     const double median = (scores[(scores.size() - 1) / 2] + scores[scores.size() / 2]) / 2.0;
-    page.tiles({{"submissions", {std::to_string(grades.size())}}, {"lowest", {points_text(scores.front())}}, {"median", {points_text(median)}}, {"highest", {points_text(scores.back())}}});
+    page.tiles({{"submissions", {std::to_string(grades.size())}},
+                {"lowest", {points_text(scores.front())}},
+                {"median", {points_text(median)}},
+                {"highest", {points_text(scores.back())}}});
   }
-  if (faults > 0) page.paragraph(fmt::format("{} without a final score: the grader failed, or the machine was too busy. Run the same command again; their scores in the gradebook are blank.", faults), Look::kWarning);
-  if (not_found > 0) page.paragraph(fmt::format("{} without a file to grade: the table gives the reasons; their scores in the gradebook are blank.", not_found), Look::kWarning);
-  if (std::any_of(grades.begin(), grades.end(), [](const Grade& grade) { return !grade.is_official; }))
-    page.paragraph("These are not official grades: the sandbox gave less protection than the policy asks for. Each row's remarks name it.", Look::kWarning);
+  if (faults > 0)
+    page.paragraph(
+        fmt::format("{} without a final score: the grader failed, or the machine was too busy. Run "
+                    "the same command again; their scores in the gradebook are blank.",
+                    faults),
+        Look::kWarning);
+  if (not_found > 0)
+    page.paragraph(fmt::format("{} without a file to grade: the table gives the reasons; their "
+                               "scores in the gradebook are blank.",
+                               not_found),
+                   Look::kWarning);
+  if (std::any_of(grades.begin(), grades.end(),
+                  [](const Grade& grade) { return !grade.is_official; }))
+    page.paragraph(
+        "These are not official grades: the sandbox gave less protection than the policy asks for. "
+        "Each row's remarks name it.",
+        Look::kWarning);
   report::Table table;
-  table.columns = {{"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}, {"Remarks"}};
+  table.columns = {
+      {"Submission"},  {"Score", true},         {"of", true},      {"Right", true},
+      {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true},
+      {"Remarks"}};
   for (const Grade& grade : grades) {
     std::string remarks = grade.state == GradeState::kJudged ? "" : summary_of(grade);
-    for (const std::string& note : grade.notes) remarks += (remarks.empty() ? "" : "; ") + plain_text(note);
+    for (const std::string& note : grade.notes)
+      remarks += (remarks.empty() ? "" : "; ") + plain_text(note);
     if (grade.state == GradeState::kNothingToCompile) remarks += ": " + plain_text(grade.story);
-    for (const std::string& remark : grade.remarks) remarks += (remarks.empty() ? "" : "; ") + remark;
+    for (const std::string& remark : grade.remarks)
+      remarks += (remarks.empty() ? "" : "; ") + remark;
     if (!grade.change.empty()) remarks += (remarks.empty() ? "" : "; ") + grade.change;
-    const auto number = [&](Verdict v) { const auto n = grade.state == GradeState::kJudged ? count(grade, v) : 0; return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)}; };
-    table.rows.push_back({{plain_name(grade.name), report::link_to(std::filesystem::path(grade.folder) / "index.html")}, {grade.has_score() ? points_text(grade.score) : "none", "", grade.has_score() ? Look::kPlain : Look::kWarning},
-                          {points_text(grade.possible), "", Look::kMuted}, number(Verdict::kRight), number(Verdict::kWrong), number(Verdict::kNotAttempted), number(Verdict::kCrashed),
-                          number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});
+    const auto number = [&](Verdict v) {
+      const auto n = grade.state == GradeState::kJudged ? count(grade, v) : 0;
+      return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)};
+    };
+    table.rows.push_back({{plain_name(grade.name),
+                           report::link_to(std::filesystem::path(grade.folder) / "index.html")},
+                          {grade.has_score() ? points_text(grade.score) : "none", "",
+                           grade.has_score() ? Look::kPlain : Look::kWarning},
+                          {points_text(grade.possible), "", Look::kMuted},
+                          number(Verdict::kRight),
+                          number(Verdict::kWrong),
+                          number(Verdict::kNotAttempted),
+                          number(Verdict::kCrashed),
+                          number(Verdict::kOutOfResources),
+                          {remarks, "", Look::kMuted}});
   }
   page.table(table);
-  std::set<std::string> sandboxes;   // one, unless results of an earlier run in another one still count
+  // one, unless results of an earlier run in another one still count
+  std::set<std::string> sandboxes;
   for (const Grade& grade : grades) sandboxes.insert(grade.sandbox);
-  page.record(fmt::format("sandbox {} · {}", fmt::join(sandboxes, ", "), version_in_words(kProgramVersion)));   // without the command, which may name the number of jobs: pages are the same for any number
+  // without the command, which may name the number of jobs: pages are the same for any number
+  page.record(fmt::format("sandbox {} · {}", fmt::join(sandboxes, ", "),
+                          version_in_words(kProgramVersion)));
   return page;
 }
 

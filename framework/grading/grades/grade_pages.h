@@ -10,7 +10,8 @@
 namespace tumble::grading {
 
 /// The page of one submission, for OUT/NAME/index.html. Its media are in media/ beside it.
-report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record);
+report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
+                             const std::string& record);
 
 /// The page over all submissions, for OUT/index.html.
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);
@@ -18,7 +19,8 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
 /// Parts of a page, for other reports.
 void add_stories(report::Page& page, const Grade& grade);
 /// @param folder  of the media, relative to the page
-void add_media(report::Page& page, const std::vector<SceneMedia>& media, const std::filesystem::path& folder);
+void add_media(report::Page& page, const std::vector<SceneMedia>& media,
+               const std::filesystem::path& folder);
 
 /// Adds nothing if nothing was measured.
 void add_cost(report::Page& page, const CostSection& cost);

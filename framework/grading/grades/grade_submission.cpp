@@ -29,10 +29,13 @@ struct ObjectFile {
 };
 
 std::ptrdiff_t not_run(const Grade& grade) {
-  return std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& t) { return t.result.not_run && t.result.verdict == Verdict::kOutOfResources; });
+  return std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& t) {
+    return t.result.not_run && t.result.verdict == Verdict::kOutOfResources;
+  });
 }
 
-void judge(const Course& course, const std::string& id, const Submission& submission, const Rubric& rubric, const ObjectFile& object, double budget_s, Grade& grade) {
+void judge(const Course& course, const std::string& id, const Submission& submission,
+           const Rubric& rubric, const ObjectFile& object, double budget_s, Grade& grade) {
   if (!submission.problem.empty()) {
     grade.state = GradeState::kNothingToCompile;
     grade.story = submission.problem;
@@ -46,18 +49,23 @@ void judge(const Course& course, const std::string& id, const Submission& submis
   } else if (built.outcome == BuiltSubmission::Outcome::kRefused) {
     grade.state = GradeState::kDoesNotCompile;
     grade.story = compiler_story(built.said, submission.source, module_header(course, id));
-    grade.tests = score_nothing(rubric, Verdict::kWrong, "the file does not compile, so no test ran");
+    grade.tests =
+        score_nothing(rubric, Verdict::kWrong, "the file does not compile, so no test ran");
   } else {
     grade.tests = score_tests(rubric, judge_module(course, id, object.path, false, budget_s));
     if (const auto n = not_run(grade); n > 0)
-      grade.notes.push_back(fmt::format("the time budget of {:g} s was used up by tests that ran out of time; {} of {} tests were not run", budget_s, n, grade.tests.size()));
+      grade.notes.push_back(
+          fmt::format("the time budget of {:g} s was used up by tests that ran out of time; {} of "
+                      "{} tests were not run",
+                      budget_s, n, grade.tests.size()));
     grade.state = GradeState::kJudged;
   }
 }
 
 }  // namespace
 
-Grade grade_submission(const Course& course, const std::string& id, const Submission& submission, const fs::path& folder, const GradeOptions& options) {
+Grade grade_submission(const Course& course, const std::string& id, const Submission& submission,
+                       const fs::path& folder, const GradeOptions& options) {
   const Rubric rubric = rubric_of(course, id);
   fs::create_directories(folder);
 
@@ -69,7 +77,9 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   judge(course, id, submission, rubric, object, options.budget_s, grade);
   add_up(grade);
   if (options.media && grade.state == GradeState::kJudged)
-    grade.media = make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes, object.path, folder / "media", options.media_options);
+    grade.media =
+        make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes,
+                   object.path, folder / "media", options.media_options);
 
   if (grade.state == GradeState::kJudged) grade.cost = measure_cost(course, id, object.path);
   return grade;
@@ -80,11 +90,13 @@ std::optional<Grade> graded_by(const Rubric& rubric, Grade earlier) {
     Judgement judgement;
     for (const ScoredTest& test : earlier.tests) judgement.results.push_back(test.result);
     for (const RubricItem& item : rubric.items)
-      if (std::none_of(judgement.results.begin(), judgement.results.end(), [&](const TestResult& r) { return r.test == item.test; })) return std::nullopt;
+      if (std::none_of(judgement.results.begin(), judgement.results.end(),
+                       [&](const TestResult& r) { return r.test == item.test; }))
+        return std::nullopt;
     earlier.tests = score_tests(rubric, judgement);
   } else {
     if (earlier.tests.empty()) return std::nullopt;
-    const TestResult all = earlier.tests.front().result;   // all have the same reason
+    const TestResult all = earlier.tests.front().result;  // all have the same reason
     earlier.tests = score_nothing(rubric, all.verdict, all.story);
   }
   add_up(earlier);

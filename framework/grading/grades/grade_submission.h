@@ -13,8 +13,8 @@ namespace tumble::grading {
 /// Grades one submission in this process; writes its pictures, and nothing else, into `folder`.
 /// @return never a partial grade: if judging fails, its state is kGraderFault
 /// @throws UserError when the pictures cannot be written
-Grade grade_submission(const Course& course, const std::string& id, const Submission& submission, const std::filesystem::path& folder,
-                       const GradeOptions& options = {});
+Grade grade_submission(const Course& course, const std::string& id, const Submission& submission,
+                       const std::filesystem::path& folder, const GradeOptions& options = {});
 
 /// The points of an earlier run's verdicts under another rubric.
 /// @return empty if the rubric has a test without a verdict in the earlier run: then it must be run

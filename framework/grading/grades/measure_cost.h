@@ -12,6 +12,8 @@ namespace tumble::grading {
 /// Measures a module that has a showcase (engines::CostShowcase). Its calls run in the sandbox; a
 /// hang or crash there ends only its own curve.
 /// @param submission  a shared object; never loaded into this process
-CostSection measure_cost(const Course& course, const std::string& id, const std::filesystem::path& submission, const CostSectionOptions& options = {});
+CostSection measure_cost(const Course& course, const std::string& id,
+                         const std::filesystem::path& submission,
+                         const CostSectionOptions& options = {});
 
 }  // namespace tumble::grading

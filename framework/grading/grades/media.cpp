@@ -36,25 +36,30 @@ Run run(const scene::Scene& scene, const Laws& laws) {
   }
   result.trajectory = recorder.trajectory();
   if (result.story.empty()) result.story = result.trajectory.stopped_by;
-  else result.trajectory.stopped_by = plain_text(result.story);   // it may be text from a submission
+  // it may be text from a submission
+  else
+    result.trajectory.stopped_by = plain_text(result.story);
   return result;
 }
 
-Run run_submission(const Course& course, const ModuleKind& kind, const fs::path& submission, const scene::Scene& scene, const MediaOptions& options) {
+Run run_submission(const Course& course, const ModuleKind& kind, const fs::path& submission,
+                   const scene::Scene& scene, const MediaOptions& options) {
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
   worker.programs = course.build / "bin";
   worker.session_own_s = options.wall_s;
-  worker.callback_budget = 100'000'000;  // a scene has thousands of steps; above what the wall-clock limit allows
+  // a scene has thousands of steps; above what the wall-clock limit allows
+  worker.callback_budget = 100'000'000;
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   const Laws laws = laws_around(course, kind, kind.make_proxy(connection), "submission", scene);
   return run(scene, laws);
 }
 
-void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const MediaOptions& options,
-          const Course& course, SceneMedia& media) {
+void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs,
+          const fs::path& folder, const MediaOptions& options, const Course& course,
+          SceneMedia& media) {
   render::PictureOptions picture;
   picture.width = options.width;
   picture.height = options.height;
@@ -62,18 +67,21 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
   picture.video_rate_hz = options.rate_hz;
   picture.root = course.root;
   media.picture = scene.name + ".png";
-  render::write_side_by_side_picture(folder / media.picture, scene, runs, render::telling_instant(runs.back().trajectory), picture);
+  render::write_side_by_side_picture(folder / media.picture, scene, runs,
+                                     render::telling_instant(runs.back().trajectory), picture);
   if (!options.video) return;
   media.video = scene.name + ".mp4";
   render::write_side_by_side_video(folder / media.video, scene, runs, picture);
 }
 
 // A page that plays run and reference, with the first difference.
-void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const Course& course, SceneMedia& media) {
+void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs,
+                const fs::path& folder, const Course& course, SceneMedia& media) {
   report::PlayerOptions player;
   player.root = course.root;
   std::vector<report::PlayedRun> played;
-  if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty()) player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
+  if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty())
+    player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);
@@ -81,8 +89,10 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
 
 }  // namespace
 
-std::vector<SceneMedia> make_media(const Course& course, const std::string& id, const std::vector<fs::path>& scenes, const fs::path& submission,
-                                   const fs::path& folder, const MediaOptions& options, const std::function<void(const std::string&)>& on_scene) {
+std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
+                                   const std::vector<fs::path>& scenes, const fs::path& submission,
+                                   const fs::path& folder, const MediaOptions& options,
+                                   const std::function<void(const std::string&)>& on_scene) {
   const ModuleKind& kind = course.registry->find(id);
   const AnyModule reference = reference_of(course, kind);
   fs::create_directories(folder);
@@ -98,14 +108,17 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id, 
     media.story = theirs.story;
     media.attempted = theirs.attempted;
     if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
-    const Run ours = reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};
+    const Run ours =
+        reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};
     std::vector<render::LabelledRun> runs;
     if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
     if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
     MediaOptions own = options;
-    own.video = options.video && theirs.attempted;  // without an implementation nothing moves: a picture is enough
+    // without an implementation nothing moves: a picture is enough
+    own.video = options.video && theirs.attempted;
     if (!runs.empty()) draw(scene, runs, folder, own, course, media);
-    if (!runs.empty() && options.page && theirs.attempted) write_page(scene, runs, folder, course, media);
+    if (!runs.empty() && options.page && theirs.attempted)
+      write_page(scene, runs, folder, course, media);
     all.push_back(std::move(media));
   }
   return all;

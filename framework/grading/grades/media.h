@@ -13,22 +13,25 @@
 namespace tumble::grading {
 
 struct MediaOptions {
-  int width = 400, height = 300;   // pixels of one of the two views; even
-  int samples = 4;                 // per pixel
-  double rate_hz = 25.0;           // frames per second of video
-  double wall_s = 60.0;            // of all calls into the submission in one scene: right ones take seconds
-  bool video = true;               // false: only a picture
-  bool page = true;                // a page that plays the run: 0.4 MB per scene
+  int width = 400, height = 300;  // pixels of one of the two views; even
+  int samples = 4;                // per pixel
+  double rate_hz = 25.0;          // frames per second of video
+  // of all calls into the submission in one scene: right ones take seconds
+  double wall_s = 60.0;
+  bool video = true;  // false: only a picture
+  bool page = true;   // a page that plays the run: 0.4 MB per scene
 };
 
 /// One scene, run by a submission.
 struct SceneMedia {
   std::string scene, title, about;
-  std::filesystem::path picture, video;         // file names in the folder; empty if there is none
-  std::string story;                            // why there is no run of the submission, or why it ended early; empty: complete
-  bool attempted = true;                        // false: the scene needs a function that is still a stub
-  std::vector<engines::CheckResult> checks;     // the scene's checks on the submission's run
-  std::filesystem::path page{};                 // plays the run; empty if there is none
+  std::filesystem::path picture, video;  // file names in the folder; empty if there is none
+  // why there is no run of the submission, or why it ended early; empty: complete
+  std::string story;
+  // false: the scene needs a function that is still a stub
+  bool attempted = true;
+  std::vector<engines::CheckResult> checks;  // the scene's checks on the submission's run
+  std::filesystem::path page{};              // plays the run; empty if there is none
 };
 
 /// Runs each scene on the submission (in its sandbox) and on the reference (in this process;
@@ -39,8 +42,11 @@ struct SceneMedia {
 /// @param submission  a shared object; never loaded into this process
 /// @param on_scene        called with each scene's title before it runs; may be empty
 /// @throws UserError when this machine cannot draw pictures, or a file cannot be written
-std::vector<SceneMedia> make_media(const Course& course, const std::string& id, const std::vector<std::filesystem::path>& scenes,
-                                   const std::filesystem::path& submission, const std::filesystem::path& folder,
-                                   const MediaOptions& options = {}, const std::function<void(const std::string&)>& on_scene = {});
+std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
+                                   const std::vector<std::filesystem::path>& scenes,
+                                   const std::filesystem::path& submission,
+                                   const std::filesystem::path& folder,
+                                   const MediaOptions& options = {},
+                                   const std::function<void(const std::string&)>& on_scene = {});
 
 }  // namespace tumble::grading

@@ -25,8 +25,10 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = ".tumble-grade.json";
 constexpr const char* kLock = ".tumble-lock";
 constexpr const char* kDraft = ".making-";
-constexpr std::array<std::string_view, 4> kOverview = {"index.html", "gradebook.csv", "ledger.json", "times.json"};
-constexpr std::array<std::string_view, 3> kOfASubmission = {"index.html", "results.json", "record.json"};
+constexpr std::array<std::string_view, 4> kOverview = {"index.html", "gradebook.csv", "ledger.json",
+                                                       "times.json"};
+constexpr std::array<std::string_view, 3> kOfASubmission = {"index.html", "results.json",
+                                                            "record.json"};
 const char* const kElsewhere = "Give --out a folder of its own, or one that does not exist yet.";
 
 std::string shown(const fs::path& path) { return plain_name(path.string()); }
@@ -49,9 +51,12 @@ bool lies_in(const fs::path& inner, const fs::path& outer) {
 // A draft from a killed run: ".index.draft123.html" beside "index.html".
 bool is_draft_of(const std::string& name, std::string_view file) {
   const fs::path wanted(file);
-  const std::string head = '.' + wanted.stem().string() + ".draft", tail = wanted.extension().string();
-  if (!name.starts_with(head) || !name.ends_with(tail) || name.size() <= head.size() + tail.size()) return false;
-  return name.substr(head.size(), name.size() - head.size() - tail.size()).find_first_not_of("0123456789") == std::string::npos;
+  const std::string head = '.' + wanted.stem().string() + ".draft",
+                    tail = wanted.extension().string();
+  if (!name.starts_with(head) || !name.ends_with(tail) || name.size() <= head.size() + tail.size())
+    return false;
+  return name.substr(head.size(), name.size() - head.size() - tail.size())
+             .find_first_not_of("0123456789") == std::string::npos;
 }
 
 template <std::size_t N>
@@ -62,7 +67,10 @@ bool is_one_of(const std::string& name, const std::array<std::string_view, N>& f
 }
 
 [[noreturn]] void refuse_foreign(const fs::path& path) {
-  throw UserError(shown(path), "was not written by this grader, and results are written only to a folder without other files", kElsewhere);
+  throw UserError(shown(path),
+                  "was not written by this grader, and results are written only to a folder "
+                  "without other files",
+                  kElsewhere);
 }
 
 // The files of a submission's folder have known names; any other file is foreign.
@@ -74,7 +82,8 @@ void refuse_foreign_in(const fs::path& folder) {
     if (!fs::is_directory(status) || name != "media") refuse_foreign(entry.path());
     for (const auto& media : fs::directory_iterator(entry.path())) {
       const std::string ending = media.path().extension().string();
-      const bool is_ours = fs::is_regular_file(media.symlink_status()) && (ending == ".png" || ending == ".mp4" || ending == ".html");
+      const bool is_ours = fs::is_regular_file(media.symlink_status()) &&
+                           (ending == ".png" || ending == ".mp4" || ending == ".html");
       if (!is_ours) refuse_foreign(media.path());
     }
   }
@@ -83,7 +92,8 @@ void refuse_foreign_in(const fs::path& folder) {
 // Whether a name from the manifest is a single path component, as from folder_of(), and so safe to
 // join to a path and remove.
 bool is_one_component(const std::string& name) {
-  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos && name.find('\0') == std::string::npos;
+  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos &&
+         name.find('\0') == std::string::npos;
 }
 
 // Whether the process that took this lock, and wrote its id into it, is still alive.
@@ -98,19 +108,33 @@ bool holder_lives(int lock) {
 
 std::string draft_name(const std::string& folder) { return kDraft + folder; }
 
-OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id) : id_(id) {
+OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id)
+    : id_(id) {
   std::error_code failed;
   path_ = fs::weakly_canonical(fs::absolute(out), failed);
   if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
-  if (is_there(path_) && !fs::is_directory(path_)) throw UserError(shown(out), "is not a folder", kElsewhere);
+  if (is_there(path_) && !fs::is_directory(path_))
+    throw UserError(shown(out), "is not a folder", kElsewhere);
   const fs::path graded = fs::canonical(submissions);
-  const char* const kOverlaps = "Results must not be written among submissions, nor submissions read among results. Give --out a folder elsewhere.";
-  if (lies_in(path_, graded)) throw UserError(shown(out), lies_in(graded, path_) ? "is the folder of the submissions itself" : "lies in the folder of the submissions, " + shown(submissions), kOverlaps);
-  if (lies_in(graded, path_)) throw UserError(shown(out), "holds the folder of the submissions, " + shown(submissions), kOverlaps);
+  const char* const kOverlaps =
+      "Results must not be written among submissions, nor submissions read among results. Give "
+      "--out a folder elsewhere.";
+  if (lies_in(path_, graded))
+    throw UserError(shown(out),
+                    lies_in(graded, path_)
+                        ? "is the folder of the submissions itself"
+                        : "lies in the folder of the submissions, " + shown(submissions),
+                    kOverlaps);
+  if (lies_in(graded, path_))
+    throw UserError(shown(out), "holds the folder of the submissions, " + shown(submissions),
+                    kOverlaps);
   read_manifest();
-  if (!is_there(path_ / kLock)) refuse_foreign_files();   // otherwise the lock comes first: a grading that runs there creates and renames files
+  // otherwise the lock comes first: a grading that runs there creates and renames files
+  if (!is_there(path_ / kLock)) refuse_foreign_files();
   fs::create_directories(path_, failed);
-  if (failed) throw UserError(shown(out), "cannot be created: " + failed.message(), "Give --out a folder that you may write to.");
+  if (failed)
+    throw UserError(shown(out), "cannot be created: " + failed.message(),
+                    "Give --out a folder that you may write to.");
   lock();
   // Again, because another grading may have been first.
   read_manifest();
@@ -121,7 +145,9 @@ OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, con
 
 OutputFolder::~OutputFolder() {
   if (lock_ < 0) return;
-  if (::ftruncate(lock_, 0) != 0) {}   // a failure is harmless: the id that stays is of a process that has ended
+  // a failure is harmless: the id that stays is of a process that has ended
+  if (::ftruncate(lock_, 0) != 0) {
+  }
   ::close(lock_);
 }
 
@@ -134,9 +160,12 @@ void OutputFolder::read_manifest() {
     std::ifstream in(file);
     const auto manifest = nlohmann::json::parse(in);
     const std::string other = manifest.at("assignment");
-    if (other != id_) throw UserError(shown(path_), "holds results of " + plain_name(other) + ", not of " + id_, kElsewhere);
+    if (other != id_)
+      throw UserError(shown(path_), "holds results of " + plain_name(other) + ", not of " + id_,
+                      kElsewhere);
     for (const std::string folder : manifest.at("folders")) {
-      if (!is_one_component(folder)) refuse_foreign(file);   // not from this grader: it could lead out of this folder
+      // not from this grader: it could lead out of this folder
+      if (!is_one_component(folder)) refuse_foreign(file);
       folders_.insert(folder);
     }
   } catch (const nlohmann::json::exception&) {
@@ -154,8 +183,11 @@ void OutputFolder::refuse_foreign_files() const {
     // was killed at its first step.
     const bool has_manifest = is_there(path_ / kManifest);
     if (fs::is_regular_file(status) && (name == kLock || is_draft_of(name, kManifest))) continue;
-    if (has_manifest && fs::is_regular_file(status) && (name == kManifest || is_one_of(name, kOverview))) continue;
-    const bool is_drafts = name.starts_with(kDraft) && owns(name.substr(std::string_view(kDraft).size()));
+    if (has_manifest && fs::is_regular_file(status) &&
+        (name == kManifest || is_one_of(name, kOverview)))
+      continue;
+    const bool is_drafts =
+        name.starts_with(kDraft) && owns(name.substr(std::string_view(kDraft).size()));
     if (fs::is_directory(status) && is_drafts) continue;
     if (!fs::is_directory(status) || !owns(name)) refuse_foreign(it->path());
     refuse_foreign_in(it->path());
@@ -166,7 +198,8 @@ void OutputFolder::refuse_foreign_files() const {
 void OutputFolder::lock() {
   const fs::path file = path_ / kLock;
   lock_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (lock_ < 0) throw UserError(shown(file), "cannot be opened", "Give --out a folder that you may write to.");
+  if (lock_ < 0)
+    throw UserError(shown(file), "cannot be opened", "Give --out a folder that you may write to.");
   // flock: held by this process and its children, released when the last of them ends in any way.
   // The file contains the id of the process that took the lock. While that process lives, another
   // grading is running; after it was killed, its children may need seconds to die on a busy
@@ -174,11 +207,13 @@ void OutputFolder::lock() {
   constexpr int kTries = 3000, kTriesBesideALiving = 100, kPauseUs = 20'000;
   for (int i = 0; ::flock(lock_, LOCK_EX | LOCK_NB) != 0; ++i) {
     if (i == kTries || (i >= kTriesBesideALiving && holder_lives(lock_)))
-      throw UserError(shown(path_), "another grading writes there now", "Wait for its end, or give --out another folder.");
+      throw UserError(shown(path_), "another grading writes there now",
+                      "Wait for its end, or give --out another folder.");
     ::usleep(kPauseUs);
   }
   const std::string holder = std::to_string(::getpid()) + '\n';
-  if (::ftruncate(lock_, 0) != 0 || ::pwrite(lock_, holder.data(), holder.size(), 0) != static_cast<ssize_t>(holder.size()))
+  if (::ftruncate(lock_, 0) != 0 ||
+      ::pwrite(lock_, holder.data(), holder.size(), 0) != static_cast<ssize_t>(holder.size()))
     throw UserError(shown(file), "cannot be written", "Is the disk full?");
 }
 

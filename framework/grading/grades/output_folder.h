@@ -21,7 +21,8 @@ class OutputFolder {
   /// @throws UserError with the obstacle: OUT is, contains or is inside `submissions`, contains a
   ///   file that this grader did not write or the results of another assignment, or another grading
   ///   runs there
-  OutputFolder(const std::filesystem::path& out, const std::filesystem::path& submissions, const std::string& id);
+  OutputFolder(const std::filesystem::path& out, const std::filesystem::path& submissions,
+               const std::string& id);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
@@ -44,7 +45,7 @@ class OutputFolder {
 
   std::filesystem::path path_;
   std::string id_;
-  std::set<std::string> folders_;   // in the manifest
+  std::set<std::string> folders_;  // in the manifest
   int lock_ = -1;
 };
 

@@ -26,21 +26,30 @@ using modules::ModuleKind;
 
 // Scenes are small, because each decision of a submission is a call into the sandbox.
 constexpr int kSizes[] = {6, 12, 24};
-constexpr double kSizedDuration = 0.5;        // s
+constexpr double kSizedDuration = 0.5;  // s
 
 double percent(double part) { return 100.0 * part; }
 
 /// Adds a curve; the reference is last, in the submission's colours with hollow marks.
 void place(const SchedulerCurve& whose, report::Curve curve, report::Plot& plot) {
-  if (curve.x.empty()) curve.name.clear();   // keeps its place, so that colours have the same meaning in both
-  if (whose.is_reference && plot.curves.size() < report::kReferenceStyles) plot.curves.resize(report::kReferenceStyles);
+  // keeps its place, so that colours have the same meaning in both
+  if (curve.x.empty()) curve.name.clear();
+  if (whose.is_reference && plot.curves.size() < report::kReferenceStyles)
+    plot.curves.resize(report::kReferenceStyles);
   plot.curves.push_back(std::move(curve));
 }
 
 report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
-  report::Plot plot{"Error against work", {"integrations for each committed event", "-", report::Scale::kLog}, {"events of the reference not committed", "%"}, {}, {}, "At 0 % a scheduler is right; farther left is cheaper. Each mark is a run with another step, or another number of processes."};
+  report::Plot plot{"Error against work",
+                    {"integrations for each committed event", "-", report::Scale::kLog},
+                    {"events of the reference not committed", "%"},
+                    {},
+                    {},
+                    "At 0 % a scheduler is right; farther left is cheaper. Each mark is a run with "
+                    "another step, or another number of processes."};
   for (const SchedulerCurve& whose : curves)
-    for (const auto& [sequence, what] : {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
+    for (const auto& [sequence, what] :
+         {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
       report::Curve curve{fmt::format("{}, {}", whose.name, what), {}, {}, true};
       for (const SchedulerRun& run : *sequence) {
         if (run.committed == 0 || run.integrations == 0) continue;
@@ -53,11 +62,20 @@ report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
 }
 
 /// Work per event over one sequence of runs, only of right runs.
-report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* sequence, report::Axis across, const std::string& title, double (*x)(const SchedulerRun&), const std::string& caption) {
-  report::Plot plot{title, std::move(across), {"for each committed event", "-", report::Scale::kLog}, {}, {}, caption};
+report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves,
+                          std::vector<SchedulerRun> SchedulerCurve::*sequence, report::Axis across,
+                          const std::string& title, double (*x)(const SchedulerRun&),
+                          const std::string& caption) {
+  report::Plot plot{
+      title,  std::move(across), {"for each committed event", "-", report::Scale::kLog}, {}, {},
+      caption};
   for (const SchedulerCurve& whose : curves) {
     using Count = std::uint64_t SchedulerRun::*;
-    for (const auto& [count, what] : {std::pair<Count, const char*>{&SchedulerRun::integrations, "integrations"}, {&SchedulerRun::undone, "undone"}, {&SchedulerRun::rollbacks, "rollbacks"}, {&SchedulerRun::checks, "checks of pairs"}}) {
+    for (const auto& [count, what] :
+         {std::pair<Count, const char*>{&SchedulerRun::integrations, "integrations"},
+          {&SchedulerRun::undone, "undone"},
+          {&SchedulerRun::rollbacks, "rollbacks"},
+          {&SchedulerRun::checks, "checks of pairs"}}) {
       report::Curve curve{fmt::format("{}: {}", whose.name, what), {}, {}, true};
       for (const SchedulerRun& run : whose.*sequence) {
         if (!run.is_right() || run.integrations == 0) continue;
@@ -70,19 +88,25 @@ report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector
   return plot;
 }
 
-bool has(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* sequence) {
-  return std::any_of(curves.begin(), curves.end(), [sequence](const SchedulerCurve& curve) { return (curve.*sequence).size() > 1; });
+bool has(const std::vector<SchedulerCurve>& curves,
+         std::vector<SchedulerRun> SchedulerCurve::*sequence) {
+  return std::any_of(curves.begin(), curves.end(), [sequence](const SchedulerCurve& curve) {
+    return (curve.*sequence).size() > 1;
+  });
 }
 
 /// Runs one sequence; a hang or crash in the sandbox ends it.
 class RunSequence {
  public:
-  RunSequence(const Course& course, const ModuleKind& kind) : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
+  RunSequence(const Course& course, const ModuleKind& kind)
+      : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
   const AnyModule& reference() const { return reference_; }
 
   /// @param between  called before each run
-  void run(const AnyModule& module, const std::string& source, const std::function<void()>& between, SchedulerCurve& curve) const {
-    const fs::path file = course_.root / "assignments" / kind_.folder / "scenes" / (kind_.note<engines::CostShowcase>().scene + ".json");
+  void run(const AnyModule& module, const std::string& source, const std::function<void()>& between,
+           SchedulerCurve& curve) const {
+    const fs::path file = course_.root / "assignments" / kind_.folder / "scenes" /
+                          (kind_.note<engines::CostShowcase>().scene + ".json");
     const scene::Scene scene = scene::load_scene(file);
     for (const double step : engines::scheduler_steps(scene)) {
       SchedulerRunOptions trial;
@@ -97,15 +121,20 @@ class RunSequence {
       trial.n = n;
       trial.duration_s = kSizedDuration;
       between();
-      if (!one(scene::make_sized_scene(kind_.note<engines::CostShowcase>().sized_scene, n), module, source, trial, curve.by_size)) return;
+      if (!one(scene::make_sized_scene(kind_.note<engines::CostShowcase>().sized_scene, n), module,
+               source, trial, curve.by_size))
+        return;
     }
   }
 
  private:
-  bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source, const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
-    const std::size_t due = engines::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
-    runs.push_back(engines::run_scheduler(scene, laws_around(course_, kind_, module, source, scene), trial, due));
-    return !call_log().noted;   // a hang, a crash or a stub would repeat
+  bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source,
+           const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
+    const std::size_t due =
+        engines::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
+    runs.push_back(engines::run_scheduler(scene, laws_around(course_, kind_, module, source, scene),
+                                          trial, due));
+    return !call_log().noted;  // a hang, a crash or a stub would repeat
   }
 
   const Course& course_;
@@ -128,37 +157,63 @@ CostLine line_of(const SchedulerReading& reading) {
 std::vector<report::Plot> scheduler_plots(const std::vector<SchedulerCurve>& curves) {
   std::vector<report::Plot> plots{plot_of_errors(curves)};
   if (has(curves, &SchedulerCurve::by_step))
-    plots.push_back(plot_of_work(curves, &SchedulerCurve::by_step, {"step of a process", "s", report::Scale::kLog}, "Work against the step", [](const SchedulerRun& run) { return run.step_s; },
-                                 "Large steps are often rolled back, small steps are many. Wrong runs are not drawn."));
+    plots.push_back(plot_of_work(
+        curves, &SchedulerCurve::by_step, {"step of a process", "s", report::Scale::kLog},
+        "Work against the step", [](const SchedulerRun& run) { return run.step_s; },
+        "Large steps are often rolled back, small steps are many. Wrong runs are not drawn."));
   if (has(curves, &SchedulerCurve::by_size))
-    plots.push_back(plot_of_work(curves, &SchedulerCurve::by_size, {"processes", "-", report::Scale::kLog}, "Work against the number of processes", [](const SchedulerRun& run) { return static_cast<double>(run.processes); },
-                                 "Where a straggler rolls back only the processes that it concerns, the cost of an event does not depend on the number of processes."));
+    plots.push_back(plot_of_work(
+        curves, &SchedulerCurve::by_size, {"processes", "-", report::Scale::kLog},
+        "Work against the number of processes",
+        [](const SchedulerRun& run) { return static_cast<double>(run.processes); },
+        "Where a straggler rolls back only the processes that it concerns, the cost of an event "
+        "does not depend on the number of processes."));
   return plots;
 }
 
 report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
   report::Table table;
   table.caption = "Every run, in counts that are the same on any machine.";
-  table.columns = {{""}, {"processes", true}, {"step [s]", true}, {"committed", true}, {"integrations", true}, {"undone", true}, {"rollbacks", true}, {"anti-messages", true}, {"checks", true}, {"states", true}};
+  table.columns = {{""},
+                   {"processes", true},
+                   {"step [s]", true},
+                   {"committed", true},
+                   {"integrations", true},
+                   {"undone", true},
+                   {"rollbacks", true},
+                   {"anti-messages", true},
+                   {"checks", true},
+                   {"states", true}};
   for (const SchedulerCurve& curve : curves)
     for (const auto* sequence : {&curve.by_step, &curve.by_size})
       for (const SchedulerRun& run : *sequence) {
-        std::vector<report::Cell> cells{{curve.is_reference ? "reference" : "yours"}, {std::to_string(run.processes)}, {fmt::format("{:.3g}", run.step_s)}, {fmt::format("{} of {}", run.committed, run.due), "", run.is_right() ? report::Look::kGood : report::Look::kBad}};
-        for (const std::uint64_t count : {run.integrations, run.undone, run.rollbacks, run.anti_messages, run.checks, run.states_kept}) cells.push_back({std::to_string(count)});
+        std::vector<report::Cell> cells{
+            {curve.is_reference ? "reference" : "yours"},
+            {std::to_string(run.processes)},
+            {fmt::format("{:.3g}", run.step_s)},
+            {fmt::format("{} of {}", run.committed, run.due), "",
+             run.is_right() ? report::Look::kGood : report::Look::kBad}};
+        for (const std::uint64_t count : {run.integrations, run.undone, run.rollbacks,
+                                          run.anti_messages, run.checks, run.states_kept})
+          cells.push_back({std::to_string(count)});
         table.rows.push_back(std::move(cells));
       }
   return table;
 }
 
 std::string what_a_scheduler_pays() {
-  return "Errors are relative to the sequential reference, which executes the events in order: the fraction of its events that a scheduler does not commit, in order and to the last bit, before it differs or makes no progress. "
-  "Costs are counts per committed event: integrations (steps of a process), undone integrations, rollbacks of bodies, checks of pairs.";
+  return "Errors are relative to the sequential reference, which executes the events in order: the "
+         "fraction of its events that a scheduler does not commit, in order and to the last bit, "
+         "before it differs or makes no progress. "
+         "Costs are counts per committed event: integrations (steps of a process), undone "
+         "integrations, rollbacks of bodies, checks of pairs.";
 }
 
-CostSection measure_scheduler(const Course& course, const ModuleKind& kind, const fs::path& submission, const CostSectionOptions& options) {
+CostSection measure_scheduler(const Course& course, const ModuleKind& kind,
+                              const fs::path& submission, const CostSectionOptions& options) {
   if (!kind.note<engines::CostShowcase>().is_graded) return {};
   const RunSequence sequence(course, kind);
-  if (!sequence.reference()) return {};   // nor laws for the impulses
+  if (!sequence.reference()) return {};  // nor laws for the impulses
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
@@ -168,14 +223,20 @@ CostSection measure_scheduler(const Course& course, const ModuleKind& kind, cons
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   std::vector<SchedulerCurve> curves{{"your scheduler", false, {}, {}}};
-  sequence.run(kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);   // each run has its own worker and time limit
+  // each run has its own worker and time limit
+  sequence.run(
+      kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);
   call_log() = CallLog{};
   curves.push_back({"reference", true, {}, {}});
-  sequence.run(sequence.reference(), "reference", [] {}, curves[1]);
+  sequence.run(
+      sequence.reference(), "reference", [] {}, curves[1]);
   CostSection section;
-  section.scene = scene::load_scene(course.root / "assignments" / kind.folder / "scenes" / (kind.note<engines::CostShowcase>().scene + ".json")).title;
+  section.scene = scene::load_scene(course.root / "assignments" / kind.folder / "scenes" /
+                                    (kind.note<engines::CostShowcase>().scene + ".json"))
+                      .title;
   section.truth = what_a_scheduler_pays();
-  for (const SchedulerReading& reading : engines::read_scheduler(curves[0], &curves[1])) section.lines.push_back(line_of(reading));
+  for (const SchedulerReading& reading : engines::read_scheduler(curves[0], &curves[1]))
+    section.lines.push_back(line_of(reading));
   section.plots = scheduler_plots(curves);
   section.tables.push_back(scheduler_table(curves));
   return section;

@@ -15,7 +15,9 @@ namespace tumble::grading {
 /// Measures a submission beside the reference. Empty if the module has no showcase, or there is no
 /// reference.
 /// @param submission  a shared object; never loaded into this process
-CostSection measure_scheduler(const Course& course, const modules::ModuleKind& kind, const std::filesystem::path& submission, const CostSectionOptions& options);
+CostSection measure_scheduler(const Course& course, const modules::ModuleKind& kind,
+                              const std::filesystem::path& submission,
+                              const CostSectionOptions& options);
 
 /// Common parts of pages about schedulers: error against work, work against the step and against
 /// the number of processes, all runs.

@@ -18,16 +18,25 @@ constexpr double kJudgeWall = 3600.0;
 
 }  // namespace
 
-Judgement judge_module(const Course& course, const std::string& id, const fs::path& module, bool plain, double budget_s) {
+Judgement judge_module(const Course& course, const std::string& id, const fs::path& module,
+                       bool plain, double budget_s) {
   Judgement judgement;
   const PrivateFolder folder;
   const fs::path record = folder.path() / "results.json";
-  std::vector<std::string> words = {judge_of(course, id).string(), "--submission", module.string(), "--json", record.string(), "--budget-s", fmt::format("{:g}", budget_s)};
+  std::vector<std::string> words = {judge_of(course, id).string(),
+                                    "--submission",
+                                    module.string(),
+                                    "--json",
+                                    record.string(),
+                                    "--budget-s",
+                                    fmt::format("{:g}", budget_s)};
   if (plain) words.push_back("--plain");
   const ProgramOutcome outcome = run_program(words, Output::kCaptured, kJudgeWall);
   if (!fs::exists(record) || outcome.code == static_cast<int>(ExitCode::kUserError)) {
-    judgement.fault = outcome.in_time ? fmt::format("the judge ended with code {} and no results: {}", outcome.code, outcome.printed)
-                                      : fmt::format("the judge did not end in {} s", kJudgeWall);
+    judgement.fault = outcome.in_time
+                          ? fmt::format("the judge ended with code {} and no results: {}",
+                                        outcome.code, outcome.printed)
+                          : fmt::format("the judge did not end in {} s", kJudgeWall);
     return judgement;
   }
   try {
@@ -50,16 +59,19 @@ std::vector<ScoredTest> score_tests(const Rubric& rubric, const Judgement& judge
       if (test.result.verdict == Verdict::kRight) test.score = item.points;
     } else {
       test.result.verdict = Verdict::kGraderFault;
-      test.result.story = judgement.fault.empty() ? "the judge has no test of this name" : judgement.fault;
+      test.result.story =
+          judgement.fault.empty() ? "the judge has no test of this name" : judgement.fault;
     }
     scored.push_back(std::move(test));
   }
   for (const TestResult& result : judgement.results)
-    if (rubric.find(result.test) == nullptr) scored.push_back({{result.test, 0.0, "", result.test, true}, result, 0.0});
+    if (rubric.find(result.test) == nullptr)
+      scored.push_back({{result.test, 0.0, "", result.test, true}, result, 0.0});
   return scored;
 }
 
-std::vector<ScoredTest> score_nothing(const Rubric& rubric, Verdict verdict, const std::string& story) {
+std::vector<ScoredTest> score_nothing(const Rubric& rubric, Verdict verdict,
+                                      const std::string& story) {
   std::vector<ScoredTest> scored;
   for (const RubricItem& item : rubric.items) {
     ScoredTest test{item, {}, 0.0};

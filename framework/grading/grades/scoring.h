@@ -11,13 +11,14 @@ namespace tumble::grading {
 /// Results of one run of a judge on a shared object.
 struct Judgement {
   std::vector<TestResult> results;
-  std::string fault;   // why the judge has no results; empty if it has
+  std::string fault;  // why the judge has no results; empty if it has
 };
 
 /// Runs the judge of the assignment against a shared object, in a separate process.
 /// @param budget_s  time for all tests together (TimeBudget)
 /// @param plain     without a sandbox: for trusted code only
-Judgement judge_module(const Course& course, const std::string& id, const std::filesystem::path& module, bool plain = false,
+Judgement judge_module(const Course& course, const std::string& id,
+                       const std::filesystem::path& module, bool plain = false,
                        double budget_s = 60.0);
 
 /// Every item of the rubric with its result, in the rubric's order; then tests that are not in the
@@ -26,7 +27,8 @@ Judgement judge_module(const Course& course, const std::string& id, const std::f
 std::vector<ScoredTest> score_tests(const Rubric& rubric, const Judgement& judgement);
 
 /// Every item with 0 points, for one reason.
-std::vector<ScoredTest> score_nothing(const Rubric& rubric, Verdict verdict, const std::string& story);
+std::vector<ScoredTest> score_nothing(const Rubric& rubric, Verdict verdict,
+                                      const std::string& story);
 
 /// Fills score and possible from the tests.
 void add_up(Grade& grade);

@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_line_of_code(const std::string& line_without_comments) {
-  static const std::regex no_code(R"(^[^\w]*$|^\s*(inline )?namespace\b.*|^\s*(public|protected|private):\s*$)");
+  static const std::regex no_code(
+      R"(^[^\w]*$|^\s*(inline )?namespace\b.*|^\s*(public|protected|private):\s*$)");
   return !std::regex_match(line_without_comments, no_code);
 }
 
@@ -29,9 +30,12 @@ TouchedLines touched_lines(const fs::path& file, const std::string& text,
     if (!is_line_of_code(line)) continue;
     ++all.code_lines;
     const bool is_touched = taken_out.contains(number);
-    if (is_touched) ++all.touched;
-    else if (goes_on) all.untouched.back().last = number, ++all.untouched.back().code_lines;
-    else all.untouched.push_back({number, number, 1, as_written});
+    if (is_touched)
+      ++all.touched;
+    else if (goes_on)
+      all.untouched.back().last = number, ++all.untouched.back().code_lines;
+    else
+      all.untouched.push_back({number, number, 1, as_written});
     goes_on = !is_touched;
   }
   return all;

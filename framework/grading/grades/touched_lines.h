@@ -1,4 +1,5 @@
-/// Which lines of the reference do slips touch? A line that none touches may break without any test's noticing.
+/// Which lines of the reference do slips touch? A line that none touches may break without any
+/// test's noticing.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +17,9 @@ struct LineRange {
   std::string text;  // of the first
 };
 
-/// A line of code holds a word that is no comment; #include, namespace, access labels and braces alone are none.
-/// It is touched where a slip takes it out or writes it anew; a line put in between touches none.
+/// A line of code holds a word that is no comment; #include, namespace, access labels and braces
+/// alone are none. It is touched where a slip takes it out or writes it anew; a line put in between
+/// touches none.
 struct TouchedLines {
   std::filesystem::path file;
   int code_lines = 0, touched = 0;

@@ -14,7 +14,7 @@ class BubblewrapBody : public SandboxBody {
   [[noreturn]] void become() override;
 
  private:
-  std::vector<std::string> command() const;   // absolute path of bubblewrap, then its arguments
+  std::vector<std::string> command() const;  // absolute path of bubblewrap, then its arguments
   const SandboxJob& job_;
 };
 

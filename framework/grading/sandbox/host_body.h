@@ -36,9 +36,9 @@ class HostBody : public SandboxBody {
 
   const SandboxJob& job_;
   const pid_t keeper_ = ::getpid();
-  const SandboxUser user_;          // of this run alone
+  const SandboxUser user_;  // of this run alone
   std::optional<Stage> tmp_;
-  int start_[2] = {-1, -1};         // the child sends the descriptor that lets it start once
+  int start_[2] = {-1, -1};  // the child sends the descriptor that lets it start once
 };
 
 }  // namespace tumble::grading

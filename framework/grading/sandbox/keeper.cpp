@@ -36,11 +36,17 @@ void arrange_descriptors(int printed, int channel, int status, int bodys) {
   // First to high numbers, then to the agreed ones.
   constexpr int kHigh = 100;
   const int nothing = ::fcntl(::open("/dev/null", O_RDONLY), F_DUPFD, kHigh);
-  const int high[] = {nothing, ::fcntl(printed, F_DUPFD, kHigh), ::fcntl(printed, F_DUPFD, kHigh),
-                      channel >= 0 ? ::fcntl(channel, F_DUPFD, kHigh) : -1, ::fcntl(status, F_DUPFD, kHigh), bodys >= 0 ? ::fcntl(bodys, F_DUPFD, kHigh) : -1};
+  const int high[] = {nothing,
+                      ::fcntl(printed, F_DUPFD, kHigh),
+                      ::fcntl(printed, F_DUPFD, kHigh),
+                      channel >= 0 ? ::fcntl(channel, F_DUPFD, kHigh) : -1,
+                      ::fcntl(status, F_DUPFD, kHigh),
+                      bodys >= 0 ? ::fcntl(bodys, F_DUPFD, kHigh) : -1};
   for (int wanted = 0; wanted <= kBodyFd; ++wanted) {
-    if (high[wanted] >= 0) ::dup2(high[wanted], wanted);
-    else ::close(wanted);
+    if (high[wanted] >= 0)
+      ::dup2(high[wanted], wanted);
+    else
+      ::close(wanted);
   }
   ::close_range(kBodyFd + 1, ~0u, 0);
 }
@@ -54,7 +60,8 @@ void arrange_descriptors(int printed, int channel, int status, int bodys) {
   try {
     body.become();
   } catch (const std::exception& error) {
-    [[maybe_unused]] const auto told = ::write(STDERR_FILENO, error.what(), std::strlen(error.what()));
+    [[maybe_unused]] const auto told =
+        ::write(STDERR_FILENO, error.what(), std::strlen(error.what()));
   }
   ::_exit(kNotStarted);
 }
@@ -62,10 +69,12 @@ void arrange_descriptors(int printed, int channel, int status, int bodys) {
 // The keeper's view of one sandbox.
 class Keeper {
  public:
-  Keeper(const SandboxJob& job, int hang_up, int result) : job_(job), hang_up_(hang_up), result_(result) {}
+  Keeper(const SandboxJob& job, int hang_up, int result)
+      : job_(job), hang_up_(hang_up), result_(result) {}
 
   void run() {
-    ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // this process adopts orphans inside, instead of the machine's process 1
+    // this process adopts orphans inside, instead of the machine's process 1
+    ::prctl(PR_SET_CHILD_SUBREAPER, 1);
     Pipe printed, status;
     try {
       body_ = make_body(job_);
@@ -83,8 +92,10 @@ class Keeper {
       watch(printed.read_end, status.read_end);
     }
     kill_and_reap();
-    while (read_printed(printed.read_end)) {}
-    while (read_status(status.read_end)) {}
+    while (read_printed(printed.read_end)) {
+    }
+    while (read_status(status.read_end)) {
+    }
     note_end_of_child();
     conclude();
     body_.reset();
@@ -94,13 +105,17 @@ class Keeper {
  private:
   void watch(int printed, int status) {
     const int pid_fd = static_cast<int>(::syscall(SYS_pidfd_open, child_, 0));
-    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job_.limits.wall_s));
-    pollfd waiting[] = {{hang_up_, POLLIN, 0}, {pid_fd, POLLIN, 0}, {printed, POLLIN, 0}, {status, POLLIN, 0}};
+    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                             std::chrono::duration<double>(job_.limits.wall_s));
+    pollfd waiting[] = {
+        {hang_up_, POLLIN, 0}, {pid_fd, POLLIN, 0}, {printed, POLLIN, 0}, {status, POLLIN, 0}};
     for (;;) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
       if (left < 0) return void(forced_ = Ending::kWallLimit);
-      constexpr long long kPeriod = 1000;   // ms between two checks of the activity inside
-      constexpr long long kDiskPeriod = 50;   // ms between two of the disk: 30 MB where it writes 600 MB/s
+      constexpr long long kPeriod = 1000;  // ms between two checks of the activity inside
+      // ms between two of the disk: 30 MB where it writes 600 MB/s
+      constexpr long long kDiskPeriod = 50;
       const auto on_disk = body_->bytes_on_disk();
       if (on_disk && *on_disk > job_.limits.tmp_bytes) return void(forced_ = Ending::kDiskLimit);
       long long pause = left + 1;
@@ -111,14 +126,15 @@ class Keeper {
       if (waiting[0].revents != 0) return void(forced_ = Ending::kStopped);
       if (waiting[2].revents != 0 && !read_printed(printed)) waiting[2].fd = -1;
       if (waiting[3].revents != 0 && !read_status(status)) waiting[3].fd = -1;
-      if (outcome_.printed.size() > job_.limits.output_bytes) return void(forced_ = Ending::kOutputLimit);
+      if (outcome_.printed.size() > job_.limits.output_bytes)
+        return void(forced_ = Ending::kOutputLimit);
       if (waiting[1].revents != 0) return;
     }
   }
 
   bool has_stalled() {
     if (job_.limits.stall_s <= 0.0 || !shows_children()) return false;
-    constexpr double kTick = 0.01;   // s: the kernel's resolution of CPU time
+    constexpr double kTick = 0.01;  // s: the kernel's resolution of CPU time
     const double activity = activity_below(child_);
     if (std::abs(activity - activity_) > kTick) activity_ = activity, active_ = Clock::now();
     return Clock::now() - active_ > std::chrono::duration<double>(job_.limits.stall_s);
@@ -128,7 +144,9 @@ class Keeper {
     char buffer[16384];
     const ssize_t n = ::read(fd, buffer, sizeof buffer);
     // One byte above the limit is kept: it shows that the limit was exceeded.
-    const std::size_t room = job_.limits.output_bytes + 1 - std::min<std::size_t>(outcome_.printed.size(), job_.limits.output_bytes + 1);
+    const std::size_t room =
+        job_.limits.output_bytes + 1 -
+        std::min<std::size_t>(outcome_.printed.size(), job_.limits.output_bytes + 1);
     if (n > 0) outcome_.printed.append(buffer, std::min(static_cast<std::size_t>(n), room));
     return n > 0 || (n < 0 && errno == EINTR);
   }
@@ -142,9 +160,9 @@ class Keeper {
     return true;
   }
 
-  // With namespaces, when bubblewrap dies, process 1 of its namespace dies too (--die-with-parent), and with it
-  // everything inside. But if it dies during the set-up of the sandbox, it leaves a process 1 that
-  // waits forever: this process has adopted that one, and kills it.
+  // With namespaces, when bubblewrap dies, process 1 of its namespace dies too (--die-with-parent),
+  // and with it everything inside. But if it dies during the set-up of the sandbox, it leaves a
+  // process 1 that waits forever: this process has adopted that one, and kills it.
   void kill_and_reap() {
     if (child_ <= 0) return;
     ::kill(child_, SIGKILL);
@@ -164,10 +182,14 @@ class Keeper {
 
   // Where the child is the program itself, its end needs no report: unless it was killed here.
   void note_end_of_child() {
-    const bool is_killed = forced_ != Ending::kNotStarted && WIFSIGNALED(child_status_) && WTERMSIG(child_status_) == SIGKILL;
+    const bool is_killed = forced_ != Ending::kNotStarted && WIFSIGNALED(child_status_) &&
+                           WTERMSIG(child_status_) == SIGKILL;
     if (traits_of(job_.kind).generations > 1 || !started_ || is_killed) return;
-    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
-    ended_ = {InitReport::kEnded, child_status_, child_usage_.ru_maxrss, seconds(child_usage_.ru_utime) + seconds(child_usage_.ru_stime)};
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    ended_ = {InitReport::kEnded, child_status_, child_usage_.ru_maxrss,
+              seconds(child_usage_.ru_utime) + seconds(child_usage_.ru_stime)};
     has_ended_ = true;
   }
 
@@ -175,7 +197,8 @@ class Keeper {
     outcome_.printed = body_->as_inside(std::move(outcome_.printed));
     if (has_ended_) {
       outcome_.ending = WIFSIGNALED(ended_.status) ? Ending::kSignal : Ending::kExited;
-      outcome_.code = WIFSIGNALED(ended_.status) ? WTERMSIG(ended_.status) : WEXITSTATUS(ended_.status);
+      outcome_.code =
+          WIFSIGNALED(ended_.status) ? WTERMSIG(ended_.status) : WEXITSTATUS(ended_.status);
       outcome_.peak_memory_kb = ended_.peak_memory_kb;
       outcome_.cpu_s = ended_.cpu_s;
     } else if (forced_ != Ending::kNotStarted) {
@@ -185,13 +208,16 @@ class Keeper {
       outcome_.code = SIGKILL;
     }
     if (forced_ == Ending::kOutputLimit || forced_ == Ending::kDiskLimit) outcome_.ending = forced_;
-    if (outcome_.printed.size() > job_.limits.output_bytes) outcome_.printed.resize(job_.limits.output_bytes);
+    if (outcome_.printed.size() > job_.limits.output_bytes)
+      outcome_.printed.resize(job_.limits.output_bytes);
   }
 
   void send_outcome() {
     const std::string head(reinterpret_cast<const char*>(&outcome_.ending), sizeof outcome_.ending);
     std::string message = head;
-    const auto add = [&](const auto& value) { message.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto add = [&](const auto& value) {
+      message.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
     add(outcome_.code);
     add(outcome_.peak_memory_kb);
     add(outcome_.cpu_s);
@@ -212,7 +238,8 @@ class Keeper {
   int child_status_ = 0;
   rusage child_usage_{};
   bool started_ = false, has_ended_ = false;
-  double activity_ = 0.0;                     // s of CPU time and delay of all processes inside, when it last grew
+  // s of CPU time and delay of all processes inside, when it last grew
+  double activity_ = 0.0;
   Clock::time_point active_ = Clock::now();
   InitReport ended_{};
   Ending forced_ = Ending::kNotStarted;
@@ -221,6 +248,8 @@ class Keeper {
 
 }  // namespace
 
-void keep_sandbox(const SandboxJob& job, int hang_up, int result) { Keeper(job, hang_up, result).run(); }
+void keep_sandbox(const SandboxJob& job, int hang_up, int result) {
+  Keeper(job, hang_up, result).run();
+}
 
 }  // namespace tumble::grading

@@ -13,10 +13,11 @@
 namespace tumble::grading {
 namespace {
 
-// include/uapi/linux/landlock.h of Linux 6.12 (ABI 6). The numbers of the calls are equal on all architectures.
+// include/uapi/linux/landlock.h of Linux 6.12 (ABI 6). The numbers of the calls are equal on all
+// architectures.
 constexpr long kCreateRuleset = 444, kAddRule = 445, kRestrictSelf = 446;
-constexpr unsigned kVersion = 1;     // flag of kCreateRuleset: only tells the ABI
-constexpr unsigned kPathBeneath = 1;   // type of a rule
+constexpr unsigned kVersion = 1;      // flag of kCreateRuleset: only tells the ABI
+constexpr unsigned kPathBeneath = 1;  // type of a rule
 
 struct RulesetAttributes {
   std::uint64_t files, network, scopes;
@@ -28,14 +29,20 @@ struct __attribute__((packed)) PathBeneath {
 
 // Rights by the ABI that brought them: all up to this bit.
 constexpr std::uint64_t below(int bit) { return (1ull << bit) - 1; }
-std::uint64_t file_rights(int abi) { return abi >= 5 ? below(16) : abi >= 3 ? below(15) : abi >= 2 ? below(14) : below(13); }
-constexpr std::uint64_t kTcp = 3;      // bind and connect: ABI 4
-constexpr std::uint64_t kScopes = 3;   // abstract sockets and signals: ABI 6
-constexpr std::uint64_t kOfFiles = 1ull << 0 | 1ull << 1 | 1ull << 2 | 1ull << 14 | 1ull << 15;   // execute, write, read, truncate, ioctl: the rights of a rule on a file
+std::uint64_t file_rights(int abi) {
+  return abi >= 5 ? below(16) : abi >= 3 ? below(15) : abi >= 2 ? below(14) : below(13);
+}
+constexpr std::uint64_t kTcp = 3;     // bind and connect: ABI 4
+constexpr std::uint64_t kScopes = 3;  // abstract sockets and signals: ABI 6
+// execute, write, read, truncate, ioctl: the rights of a rule on a file
+constexpr std::uint64_t kOfFiles = 1ull << 0 | 1ull << 1 | 1ull << 2 | 1ull << 14 | 1ull << 15;
 // In a folder to write to: write, read, list, remove, make folders and files, rename, truncate.
-constexpr std::uint64_t kOfTemporary = 1ull << 1 | 1ull << 2 | 1ull << 3 | 1ull << 4 | 1ull << 5 | 1ull << 7 | 1ull << 8 | 1ull << 13 | 1ull << 14;
+constexpr std::uint64_t kOfTemporary = 1ull << 1 | 1ull << 2 | 1ull << 3 | 1ull << 4 | 1ull << 5 |
+                                       1ull << 7 | 1ull << 8 | 1ull << 13 | 1ull << 14;
 
-std::runtime_error failure(const std::string& what) { return std::runtime_error("Landlock: " + what + ": " + std::strerror(errno)); }
+std::runtime_error failure(const std::string& what) {
+  return std::runtime_error("Landlock: " + what + ": " + std::strerror(errno));
+}
 
 }  // namespace
 
@@ -65,13 +72,16 @@ void LandlockRules::allow(const std::filesystem::path& path, Rights rights) {
   if (place < 0) throw failure(path.string());
   struct stat about {};
   ::fstat(place, &about);
-  const PathBeneath rule{rights & handled_ & (S_ISDIR(about.st_mode) ? ~Rights{0} : kOfFiles), place};
+  const PathBeneath rule{rights & handled_ & (S_ISDIR(about.st_mode) ? ~Rights{0} : kOfFiles),
+                         place};
   const long failed = ::syscall(kAddRule, rules_, kPathBeneath, &rule, 0);
   ::close(place);
   if (failed != 0) throw failure(path.string());
 }
 
-void LandlockRules::allow_writing(const std::filesystem::path& folder) { allow(folder, kOfTemporary); }
+void LandlockRules::allow_writing(const std::filesystem::path& folder) {
+  allow(folder, kOfTemporary);
+}
 
 void LandlockRules::restrict_self() const {
   if (::syscall(kRestrictSelf, rules_, 0) != 0) throw failure("the rules cannot be put in force");

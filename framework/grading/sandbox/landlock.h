@@ -23,7 +23,9 @@ class LandlockRules {
   ~LandlockRules();
 
   /// Each on a file, or a folder and everything below it. A path that does not exist is skipped.
-  void allow_reading_and_running(const std::filesystem::path& path) { allow(path, kRead | kExecute); }
+  void allow_reading_and_running(const std::filesystem::path& path) {
+    allow(path, kRead | kExecute);
+  }
   void allow_reading(const std::filesystem::path& path) { allow(path, kRead); }
   void allow_device(const std::filesystem::path& path) { allow(path, kRead | kWriteFile); }
   /// Files and folders can be made, written, renamed and removed there; none of them can be run.
@@ -36,7 +38,9 @@ class LandlockRules {
 
  private:
   using Rights = std::uint64_t;
-  static constexpr Rights kExecute = 1ull << 0, kWriteFile = 1ull << 1, kRead = 1ull << 2 | 1ull << 3;   // of files and of folders
+  // of files and of folders
+  static constexpr Rights kExecute = 1ull << 0, kWriteFile = 1ull << 1,
+                          kRead = 1ull << 2 | 1ull << 3;
   void allow(const std::filesystem::path& path, Rights rights);
 
   int rules_ = -1;

@@ -22,7 +22,8 @@ SandboxKind strongest() {
     if (!why) return traits.kind;
     reasons += "\n    " + std::string(traits.name) + ": " + *why;
   }
-  throw UserError("sandbox", "no kind of it works on this machine:" + reasons, "tumble doctor says what each needs.");
+  throw UserError("sandbox", "no kind of it works on this machine:" + reasons,
+                  "tumble doctor says what each needs.");
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ std::optional<std::string> why_no_sandbox(SandboxKind kind) {
   job.init = stage.add_file(init_program(), "init", true);
   job.binds = {{job.init, "/probe"}};
   job.command = {"/probe", "--probe"};
-  job.is_alone = true;   // as submissions run
+  job.is_alone = true;  // as submissions run
   job.limits.tmp_bytes = 0;
   job.uid = user.uid();
   const SandboxOutcome outcome = Sandbox::start(job).wait();
@@ -54,7 +55,9 @@ SandboxKind chosen_sandbox() {
 }
 
 void choose_sandbox(const std::string& name) {
-  if (const auto why = why_no_sandbox(sandbox_from_name(name))) throw UserError("sandbox " + name, "does not work on this machine: " + *why, "tumble doctor says what it needs.");
+  if (const auto why = why_no_sandbox(sandbox_from_name(name)))
+    throw UserError("sandbox " + name, "does not work on this machine: " + *why,
+                    "tumble doctor says what it needs.");
   ::setenv(kVariable, name.c_str(), 1);
 }
 
@@ -62,7 +65,9 @@ std::string protection_in_words(SandboxKind kind) {
   const std::string name = traits_of(kind).name;
   if (kind == SandboxKind::kNamespaces) return name;
   const std::string user = can_change_user() ? "a user id of its own" : "the grader's user id";
-  return name + (kind == SandboxKind::kLandlock ? " (ABI " + std::to_string(landlock_abi()) + ", " + user + ")" : " (" + user + ")");
+  return name + (kind == SandboxKind::kLandlock
+                     ? " (ABI " + std::to_string(landlock_abi()) + ", " + user + ")"
+                     : " (" + user + ")");
 }
 
 GradeProtection protection_of_grades(const std::string& accepted) {
@@ -72,9 +77,15 @@ GradeProtection protection_of_grades(const std::string& accepted) {
   if (traits.is_official) return protection;
   const std::string name = traits.name;
   if (accepted != name)
-    throw UserError("sandbox " + name, "is less than the policy for grades asks for (namespaces or landlock): a submission can " + std::string(traits.permits),
-                    "tumble doctor says what is missing here. To grade all the same, with every result marked as not official: --accept-sandbox " + name + ".");
-  protection.note = "not an official grade: the sandbox was " + protection.words + ", and the policy asks for namespaces or landlock";
+    throw UserError(
+        "sandbox " + name,
+        "is less than the policy for grades asks for (namespaces or landlock): a submission can " +
+            std::string(traits.permits),
+        "tumble doctor says what is missing here. To grade all the same, with every result marked "
+        "as not official: --accept-sandbox " +
+            name + ".");
+  protection.note = "not an official grade: the sandbox was " + protection.words +
+                    ", and the policy asks for namespaces or landlock";
   return protection;
 }
 

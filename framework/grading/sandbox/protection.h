@@ -27,9 +27,9 @@ std::string protection_in_words(SandboxKind kind);
 
 /// What protects the grades of one run.
 struct GradeProtection {
-  std::string words;         // protection_in_words
-  bool is_official = true;   // the policy accepts it for grades that count
-  std::string note;          // for every output of an unofficial grade; else empty
+  std::string words;        // protection_in_words
+  bool is_official = true;  // the policy accepts it for grades that count
+  std::string note;         // for every output of an unofficial grade; else empty
 };
 
 /// @param accepted  the name of a kind that the policy refuses and the user accepts; may be empty

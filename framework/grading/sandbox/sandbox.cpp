@@ -31,7 +31,8 @@ void close_all_but(std::vector<int> kept) {
     from = static_cast<unsigned>(fd) + 1;
   }
   ::close_range(from, ~0u, 0);
-  while (::open("/dev/null", O_RDWR) < STDERR_FILENO) {}  // 0, 1 and 2 stay occupied
+  while (::open("/dev/null", O_RDWR) < STDERR_FILENO) {
+  }  // 0, 1 and 2 stay occupied
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ Sandbox Sandbox::start(const SandboxJob& job) {
     try {
       keep_sandbox(job, hang_up.read_end, result.write_end);
     } catch (const std::exception&) {
-      ::_exit(1);   // no message means: not started
+      ::_exit(1);  // no message means: not started
     }
     ::_exit(0);
   }
@@ -65,7 +66,11 @@ Sandbox Sandbox::start(const SandboxJob& job) {
   return sandbox;
 }
 
-Sandbox::Sandbox(Sandbox&& other) noexcept : keeper_(other.keeper_), hang_up_(other.hang_up_), result_(other.result_), generations_(other.generations_) {
+Sandbox::Sandbox(Sandbox&& other) noexcept
+    : keeper_(other.keeper_),
+      hang_up_(other.hang_up_),
+      result_(other.result_),
+      generations_(other.generations_) {
   other.keeper_ = other.hang_up_ = other.result_ = -1;
 }
 
@@ -87,7 +92,8 @@ SandboxOutcome Sandbox::wait() {
   }
   ::close(result_);
   if (hang_up_ >= 0) ::close(hang_up_);
-  while (::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {}
+  while (::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {
+  }
   keeper_ = hang_up_ = result_ = -1;
 
   SandboxOutcome outcome;

@@ -35,9 +35,9 @@ class Sandbox {
  private:
   Sandbox() = default;
   pid_t keeper_ = -1;
-  int hang_up_ = -1;   // closing it ends the sandbox
+  int hang_up_ = -1;  // closing it ends the sandbox
   int result_ = -1;
-  int generations_ = 1;   // from the keeper to the program
+  int generations_ = 1;  // from the keeper to the program
 };
 
 }  // namespace tumble::grading

@@ -20,7 +20,8 @@
 namespace {
 
 void report(const tumble::grading::InitReport& message) {
-  while (write(tumble::grading::kStatusFd, &message, sizeof message) < 0 && errno == EINTR) {}
+  while (write(tumble::grading::kStatusFd, &message, sizeof message) < 0 && errno == EINTR) {
+  }
 }
 
 }  // namespace
@@ -48,8 +49,9 @@ int main(int argc, char** argv) {
     rusage usage{};
     const pid_t ended = wait4(-1, &status, 0, &usage);
     if (ended == program) {
-      const double cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-                           1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+      const double cpu_s =
+          static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+          1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
       report({InitReport::kEnded, status, usage.ru_maxrss, cpu_s});
       return 0;  // the kernel kills every other process of the sandbox with process 1
     }

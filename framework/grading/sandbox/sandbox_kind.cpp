@@ -10,11 +10,14 @@ const std::vector<SandboxTraits>& all_sandboxes() {
        "see files, processes, the network or IPC objects outside; write anything that outlives it",
        "nothing outside its own limits of time and memory"},
       {SandboxKind::kLandlock, "landlock", 1, false, false, false, true,
-       "read or write files outside; create processes; signal, trace or read other processes; use the network or IPC objects",
+       "read or write files outside; create processes; signal, trace or read other processes; use "
+       "the network or IPC objects",
        "learn that a file exists, and its size, where the folders above it are open to its user"},
       {SandboxKind::kBare, "bare", 1, false, true, false, false,
-       "open files, start programs, create processes, signal others or use the network once it runs",
-       "embed any file that its user can read while it is compiled, such as a world-readable solution"},
+       "open files, start programs, create processes, signal others or use the network once it "
+       "runs",
+       "embed any file that its user can read while it is compiled, such as a world-readable "
+       "solution"},
   };
   return all;
 }

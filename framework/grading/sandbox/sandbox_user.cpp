@@ -22,9 +22,10 @@ namespace {
 
 // High in the range of ordinary users, where ids are usually free; an id in use is skipped.
 constexpr uid_t kFirstUid = 58100;
-constexpr uid_t kUids = 64;                        // concurrent jobs
+constexpr uid_t kUids = 64;  // concurrent jobs
 constexpr uid_t kFirstRun = kFirstUid + kUids;
-constexpr uid_t kRuns = 128;                       // concurrent runs: while one of a job ends, its next one begins
+// concurrent runs: while one of a job ends, its next one begins
+constexpr uid_t kRuns = 128;
 constexpr const char* kLockFolder = "/run/tumble";
 
 // A stage's name contains its maker's process id, so that stages of killed processes can be found
@@ -41,7 +42,8 @@ bool can_change_user() {
   __user_cap_header_struct head{_LINUX_CAPABILITY_VERSION_3, 0};
   __user_cap_data_struct sets[2] = {};
   if (::syscall(SYS_capget, &head, sets) != 0) return false;
-  for (const int needed : {CAP_CHOWN, CAP_DAC_OVERRIDE, CAP_FOWNER, CAP_KILL, CAP_SETGID, CAP_SETUID})
+  for (const int needed :
+       {CAP_CHOWN, CAP_DAC_OVERRIDE, CAP_FOWNER, CAP_KILL, CAP_SETGID, CAP_SETUID})
     if ((sets[0].effective & (1u << needed)) == 0) return false;
   return true;
 }
@@ -57,7 +59,10 @@ SandboxUser SandboxUser::lease_between(uid_t first, uid_t end) {
     if (::getpwuid(uid) != nullptr) continue;
     const std::string file = std::string(kLockFolder) + "/uid-" + std::to_string(uid);
     const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (lock < 0) throw UserError(file, "cannot be opened", "It records which sandbox uses which user id; root must be able to write it.");
+    if (lock < 0)
+      throw UserError(
+          file, "cannot be opened",
+          "It records which sandbox uses which user id; root must be able to write it.");
     if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
       user.lock_ = lock;
       user.uid_ = uid;
@@ -68,7 +73,9 @@ SandboxUser SandboxUser::lease_between(uid_t first, uid_t end) {
   throw UserError(kLockFolder, "all user ids for sandboxes are in use", "Use fewer --jobs.");
 }
 
-SandboxUser::SandboxUser(SandboxUser&& other) noexcept : uid_(other.uid_), lock_(other.lock_) { other.lock_ = -1; }
+SandboxUser::SandboxUser(SandboxUser&& other) noexcept : uid_(other.uid_), lock_(other.lock_) {
+  other.lock_ = -1;
+}
 
 SandboxUser::~SandboxUser() {
   if (lock_ >= 0) ::close(lock_);
@@ -78,8 +85,10 @@ Stage::Stage(const SandboxUser* user) {
   static const bool swept = (sweep_stages_of_the_dead(), true);
   (void)swept;
   // Not the user's TMPDIR, which may be in a folder that another uid cannot enter.
-  std::string name = std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr) throw UserError(kStageFolder, "no folder can be created in it");
+  std::string name =
+      std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr)
+    throw UserError(kStageFolder, "no folder can be created in it");
   path_ = name;
   alive_ = hold_folder(path_);
   if (user != nullptr) owner_ = user->uid();
@@ -93,13 +102,17 @@ Stage::~Stage() {
 }
 
 void Stage::hand_over(const std::filesystem::path& file, unsigned mode) const {
-  if (::chmod(file.c_str(), mode) != 0) throw UserError(file.string(), "its permissions cannot be set");
-  if (owner_ && ::lchown(file.c_str(), *owner_, *owner_) != 0) throw UserError(file.string(), "its owner cannot be set");
+  if (::chmod(file.c_str(), mode) != 0)
+    throw UserError(file.string(), "its permissions cannot be set");
+  if (owner_ && ::lchown(file.c_str(), *owner_, *owner_) != 0)
+    throw UserError(file.string(), "its owner cannot be set");
 }
 
-std::filesystem::path Stage::add_file(const std::filesystem::path& from, const std::string& name, bool executable) {
+std::filesystem::path Stage::add_file(const std::filesystem::path& from, const std::string& name,
+                                      bool executable) {
   const auto to = path_ / name;
-  for (auto folder = std::filesystem::path(name).parent_path(); !folder.empty(); folder = folder.parent_path()) {
+  for (auto folder = std::filesystem::path(name).parent_path(); !folder.empty();
+       folder = folder.parent_path()) {
     std::filesystem::create_directories(path_ / folder);
     hand_over(path_ / folder, owner_ ? 0750 : 0755);
   }

@@ -13,8 +13,8 @@ namespace tumble::grading {
 /// the capabilities for it.
 bool can_change_user();
 
-/// The user id of a sandboxed program outside its sandbox. Where the user can be changed: a separate
-/// uid for each concurrent job, leased until destruction. Else: this process's own user.
+/// The user id of a sandboxed program outside its sandbox. Where the user can be changed: a
+/// separate uid for each concurrent job, leased until destruction. Else: this process's own user.
 class SandboxUser {
  public:
   /// Of a job, whose files it may read.
@@ -49,14 +49,15 @@ class Stage {
 
   const std::filesystem::path& path() const { return path_; }
   /// @return path of the copy
-  std::filesystem::path add_file(const std::filesystem::path& from, const std::string& name, bool executable = false);
+  std::filesystem::path add_file(const std::filesystem::path& from, const std::string& name,
+                                 bool executable = false);
   std::filesystem::path add_text(const std::string& text, const std::string& name);
 
  private:
   void hand_over(const std::filesystem::path& file, unsigned mode) const;
 
   std::filesystem::path path_;
-  int alive_ = -1;   // hold_folder
+  int alive_ = -1;  // hold_folder
   std::optional<uid_t> owner_;
 };
 

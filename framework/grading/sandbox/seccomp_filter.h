@@ -9,10 +9,12 @@
 namespace tumble::grading {
 
 struct FilterRules {
-  bool is_on_host = false;    // it shares the user's processes and files with others
-  bool is_alone = false;      // SandboxJob::is_alone; only on the host, where no process 1 needs to start the program
-  bool has_no_files = false;  // a list of what is allowed, in place of one of what is refused: nothing can be opened
-  pid_t self = 0;             // of the program, which may signal itself: abort() does
+  bool is_on_host = false;  // it shares the user's processes and files with others
+  // SandboxJob::is_alone; only on the host, where no process 1 needs to start the program
+  bool is_alone = false;
+  // a list of what is allowed, in place of one of what is refused: nothing can be opened
+  bool has_no_files = false;
+  pid_t self = 0;  // of the program, which may signal itself: abort() does
 };
 
 /// A descriptor (close-on-exec, at its start) with the compiled filter, for bubblewrap's --seccomp.

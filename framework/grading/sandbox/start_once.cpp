@@ -32,7 +32,8 @@ void send_start_permit(int socket) {
       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
   };
   sock_fprog program{sizeof asks / sizeof asks[0], asks};
-  int listener = static_cast<int>(::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_NEW_LISTENER, &program));
+  int listener = static_cast<int>(
+      ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_NEW_LISTENER, &program));
   if (listener < 0) throw std::runtime_error("the kernel refuses a filter that asks about execve");
   char byte = 0;
   iovec text{&byte, 1};
@@ -68,8 +69,9 @@ void permit_one_start(int socket) {
   int listener = -1;
   std::memcpy(&listener, CMSG_DATA(head), sizeof listener);
   seccomp_notif asked{};
-  pollfd waiting{listener, POLLIN, 0};   // also ends when the child does
-  if (::poll(&waiting, 1, -1) == 1 && (waiting.revents & POLLIN) != 0 && ::ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) == 0) {
+  pollfd waiting{listener, POLLIN, 0};  // also ends when the child does
+  if (::poll(&waiting, 1, -1) == 1 && (waiting.revents & POLLIN) != 0 &&
+      ::ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) == 0) {
     seccomp_notif_resp answer{};
     answer.id = asked.id;
     answer.flags = SECCOMP_USER_NOTIF_FLAG_CONTINUE;

@@ -18,16 +18,16 @@ namespace {
 
 // An endless loop ends within seconds, because the user waits; a test of a module takes
 // milliseconds.
-constexpr double kTestOwn = 2.0;      // s of own time (own_time.h), like the others
-constexpr double kSuspectOwn = 0.2;   // s, for a call to a function that has timed out
-constexpr double kBudget = 4.0;        // s, of all tests together
+constexpr double kTestOwn = 2.0;     // s of own time (own_time.h), like the others
+constexpr double kSuspectOwn = 0.2;  // s, for a call to a function that has timed out
+constexpr double kBudget = 4.0;      // s, of all tests together
 
 struct Words {
   std::string json, rubric;
   bool debug = false;
   TestLimits limits{.own_s = kTestOwn};
   TimeRules time{.budget_s = kBudget, .full_timeouts = 1, .suspect_own_s = kSuspectOwn};
-  std::string filter;   // GoogleTest's, patterns joined by ':'
+  std::string filter;  // GoogleTest's, patterns joined by ':'
 };
 
 Words read_words(int argc, char** argv) {
@@ -38,14 +38,24 @@ Words read_words(int argc, char** argv) {
       if (i + 1 >= argc) throw UserError(word, "needs a value");
       return argv[++i];
     };
-    if (word == "--json") words.json = value();
-    else if (word == "--rubric") words.rubric = value();
-    else if (word == "--wall-s") words.limits.own_s = number_word(word, value());
-    else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
-    else if (word == "--debug") words.debug = true;
-    else if (word.starts_with("--gtest_")) continue;  // already read by GoogleTest
-    else if (word.starts_with("-")) throw UserError(word, "is not known here", "Known: --json FILE, --rubric FILE, --wall-s S, --budget-s S, --debug, and patterns of test names.");
-    else words.filter += (words.filter.empty() ? "" : ":") + word;
+    if (word == "--json")
+      words.json = value();
+    else if (word == "--rubric")
+      words.rubric = value();
+    else if (word == "--wall-s")
+      words.limits.own_s = number_word(word, value());
+    else if (word == "--budget-s")
+      words.time.budget_s = number_word(word, value());
+    else if (word == "--debug")
+      words.debug = true;
+    else if (word.starts_with("--gtest_"))
+      continue;  // already read by GoogleTest
+    else if (word.starts_with("-"))
+      throw UserError(word, "is not known here",
+                      "Known: --json FILE, --rubric FILE, --wall-s S, --budget-s S, --debug, and "
+                      "patterns of test names.");
+    else
+      words.filter += (words.filter.empty() ? "" : ":") + word;
   }
   return words;
 }
@@ -62,7 +72,8 @@ int run(int argc, char** argv) {
   std::vector<TestResult> results;
   for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
     limits.call_own_s = budget.suspects();
-    results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kStudents));
+    results.push_back(budget.is_used_up() ? budget.not_run(test)
+                                          : run_isolated(test, limits, Process::kStudents));
     if (!results.back().not_run) budget.charge(results.back());
   }
   const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);

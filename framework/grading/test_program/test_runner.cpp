@@ -24,7 +24,8 @@
 #include "framework/grading/verdicts/own_time.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TUMBLE_SANITIZED 1   // sanitizers reserve terabytes of address space, so it cannot be limited
+#define TUMBLE_SANITIZED \
+  1  // sanitizers reserve terabytes of address space, so it cannot be limited
 #else
 #define TUMBLE_SANITIZED 0
 #endif
@@ -36,11 +37,13 @@ using Clock = std::chrono::steady_clock;
 
 CallLog* shared_log = nullptr;
 
-constexpr double kFreeJudging = 10.0;   // s of CPU time: the judge's part of a test takes at most a few
+// s of CPU time: the judge's part of a test takes at most a few
+constexpr double kFreeJudging = 10.0;
 std::string fmt_seconds(double s) { return std::to_string(std::lround(s)) + " s"; }
 
-constexpr std::size_t kPrinted = 4000;     // bytes kept of a test's output
-constexpr std::size_t kStory = 16'000;     // bytes of a failure message, and of all together: a huge answer is not printed whole
+constexpr std::size_t kPrinted = 4000;  // bytes kept of a test's output
+// bytes of a failure message, and of all together: a huge answer is not printed whole
+constexpr std::size_t kStory = 16'000;
 constexpr rlim_t kPrintedFile = 1u << 20;  // bytes that a test may print
 
 // The report of a test's process to its parent at a normal end: one byte of outcome, then the
@@ -59,7 +62,9 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
     // line are added.
     std::string message = part.message();
     const bool bare = message.find("\n  expected:") == std::string::npos;
-    if (bare && part.file_name() != nullptr) message += std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
+    if (bare && part.file_name() != nullptr)
+      message +=
+          std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
     constexpr const char* kFailed = "Failed\n";
     if (message.starts_with(kFailed)) message.erase(0, std::strlen(kFailed));
     if (message.size() > kStory) message = message.substr(0, kStory) + "\n[cut here]";
@@ -76,12 +81,14 @@ void write_all(int fd, const std::string& text) {
   }
 }
 
-[[noreturn]] void run_in_child(const std::string& test, const TestLimits& limits, int answer_fd, int printed_fd) {
+[[noreturn]] void run_in_child(const std::string& test, const TestLimits& limits, int answer_fd,
+                               int printed_fd) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::dup2(printed_fd, STDOUT_FILENO);
   ::dup2(printed_fd, STDERR_FILENO);
   ::signal(SIGXFSZ, SIG_IGN);  // excessive output ends in failed writes, not in a signal
-  const rlimit file{kPrintedFile, kPrintedFile}, core{0, 0}, memory{limits.memory_bytes, limits.memory_bytes};
+  const rlimit file{kPrintedFile, kPrintedFile}, core{0, 0},
+      memory{limits.memory_bytes, limits.memory_bytes};
   ::setrlimit(RLIMIT_FSIZE, &file);
   ::setrlimit(RLIMIT_CORE, &core);
   if (!TUMBLE_SANITIZED) ::setrlimit(RLIMIT_AS, &memory);
@@ -93,8 +100,11 @@ void write_all(int fd, const std::string& text) {
   ::testing::GTEST_FLAG(filter) = test;
   ::testing::GTEST_FLAG(catch_exceptions) = true;
   ::testing::GTEST_FLAG(also_run_disabled_tests) = false;
-  const bool passed = RUN_ALL_TESTS() == 0 && ::testing::UnitTest::GetInstance()->test_to_run_count() == 1;
-  const Outcome outcome = collector->skipped ? Outcome::kSkipped : passed ? Outcome::kPassed : Outcome::kFailed;
+  const bool passed =
+      RUN_ALL_TESTS() == 0 && ::testing::UnitTest::GetInstance()->test_to_run_count() == 1;
+  const Outcome outcome = collector->skipped ? Outcome::kSkipped
+                          : passed           ? Outcome::kPassed
+                                             : Outcome::kFailed;
   std::fflush(nullptr);
   write_all(answer_fd, static_cast<char>(outcome) + collector->text);
   ::_exit(0);
@@ -102,23 +112,26 @@ void write_all(int fd, const std::string& text) {
 
 struct Answer {
   std::string text;
-  double timed_out_s = 0.0;   // the limit that was exceeded
-  bool is_hopeless = false;   // no limit was exceeded, but the test did not end: the machine is too busy
-  ProcessTimes times;         // of the test's process, at its end
+  double timed_out_s = 0.0;  // the limit that was exceeded
+  // no limit was exceeded, but the test did not end: the machine is too busy
+  bool is_hopeless = false;
+  ProcessTimes times;  // of the test's process, at its end
 };
 
 // Measures from outside the own time of a test's process, and of its current call where that has a
 // limit.
 class TestWatch {
  public:
-  TestWatch(pid_t child, Process owner, const CallLog& log, const TestLimits& limits) : child_(child), owner_(owner), log_(log), limits_(limits) {}
+  TestWatch(pid_t child, Process owner, const CallLog& log, const TestLimits& limits)
+      : child_(child), owner_(owner), log_(log), limits_(limits) {}
 
   /// @return whether the test must end now
   bool is_over(Answer& answer) {
     const auto now = Clock::now();
     const ProcessTimes times = process_times(child_);
     answer.timed_out_s = passed(now, times);
-    answer.is_hopeless = answer.timed_out_s == 0.0 && seconds(now - start_) > kPatience * limits_.own_s;
+    answer.is_hopeless =
+        answer.timed_out_s == 0.0 && seconds(now - start_) > kPatience * limits_.own_s;
     return answer.timed_out_s > 0.0 || answer.is_hopeless;
   }
 
@@ -127,7 +140,9 @@ class TestWatch {
 
   double passed(Clock::time_point now, const ProcessTimes& times) {
     // A judge waits for its worker, which has its own limits: only the judge's CPU time counts.
-    const double own_s = owner_ == Process::kGraders && times.is_known ? times.cpu_s : own_time({}, times, seconds(now - start_));
+    const double own_s = owner_ == Process::kGraders && times.is_known
+                             ? times.cpu_s
+                             : own_time({}, times, seconds(now - start_));
     if (own_s > limits_.own_s) return limits_.own_s;
     const long call = log_.in_call ? log_.calls : 0;
     if (call != call_) call_ = call, since_ = now, at_start_ = times;
@@ -146,8 +161,9 @@ class TestWatch {
   ProcessTimes at_start_;
 };
 
-Answer read_answer(int fd, pid_t child, Process owner, const CallLog& log, const TestLimits& limits) {
-  constexpr int kPeriod = 20;   // ms between two checks
+Answer read_answer(int fd, pid_t child, Process owner, const CallLog& log,
+                   const TestLimits& limits) {
+  constexpr int kPeriod = 20;  // ms between two checks
   TestWatch watch(child, owner, log, limits);
   Answer answer;
   char buffer[4096];
@@ -162,7 +178,7 @@ Answer read_answer(int fd, pid_t child, Process owner, const CallLog& log, const
     if (n <= 0) break;
     answer.text.append(buffer, static_cast<std::size_t>(n));
   }
-  answer.times = process_times(child);   // ended, but not yet reaped
+  answer.times = process_times(child);  // ended, but not yet reaped
   return answer;
 }
 
@@ -175,7 +191,8 @@ int reap(pid_t child) {
     ::usleep(i < 10 ? 50 : 1000);
   }
   ::kill(child, SIGKILL);
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
   return status;
 }
 
@@ -194,14 +211,16 @@ void judge_death(TestResult& result, const CallLog& log, int status, const Answe
     result.story = log.story;
   } else if (answer.timed_out_s > 0.0) {
     result.verdict = Verdict::kOutOfResources;
-    result.story = timeout_story(answer.timed_out_s, log.last_call, log.in_call) + (log.in_call ? asked_words(log.asked()) : "");
+    result.story = timeout_story(answer.timed_out_s, log.last_call, log.in_call) +
+                   (log.in_call ? asked_words(log.asked()) : "");
   } else if (answer.is_hopeless) {
     result.verdict = Verdict::kMachineBusy;
     result.story = busy_story(log.last_call);
   } else {
     result.verdict = Verdict::kCrashed;
-    result.story = WIFSIGNALED(status) ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
-                                       : exit_story(WEXITSTATUS(status), log.last_call, log.in_call);
+    result.story = WIFSIGNALED(status)
+                       ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
+                       : exit_story(WEXITSTATUS(status), log.last_call, log.in_call);
     if (log.in_call) result.story += asked_words(log.asked());
   }
 }
@@ -254,8 +273,9 @@ void CallLog::keep(const modules::Bytes& bytes, std::size_t number) {
 std::string CallLog::asked() const {
   if (argument_bytes == 0 || describer >= describers().size()) return "";
   try {
-    return describers()[describer](modules::Bytes(arguments, arguments + std::min(argument_bytes, kArguments)));
-  } catch (const std::exception&) {   // damaged by the process that wrote them
+    return describers()[describer](
+        modules::Bytes(arguments, arguments + std::min(argument_bytes, kArguments)));
+  } catch (const std::exception&) {  // damaged by the process that wrote them
     return "";
   }
 }
@@ -278,7 +298,8 @@ std::vector<std::string> linked_tests() {
   const auto* all = ::testing::UnitTest::GetInstance();
   for (int i = 0; i < all->total_test_suite_count(); ++i) {
     const auto* suite = all->GetTestSuite(i);
-    for (int k = 0; k < suite->total_test_count(); ++k) names.push_back(std::string(suite->name()) + "." + suite->GetTestInfo(k)->name());
+    for (int k = 0; k < suite->total_test_count(); ++k)
+      names.push_back(std::string(suite->name()) + "." + suite->GetTestInfo(k)->name());
   }
   return names;
 }
@@ -287,7 +308,8 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
   TestResult result;
   result.test = test;
   if (shared_log == nullptr) {
-    void* page = ::mmap(nullptr, sizeof(CallLog), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void* page =
+        ::mmap(nullptr, sizeof(CallLog), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (page == MAP_FAILED) return result.story = "no memory for the log of calls", result;
     shared_log = static_cast<CallLog*>(page);
   }
@@ -295,7 +317,8 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
   const auto start = Clock::now();
   int answer_pipe[2];
   const int printed = ::memfd_create("printed", MFD_CLOEXEC);
-  if (printed < 0 || ::pipe2(answer_pipe, O_CLOEXEC) != 0) return result.story = "no descriptor left", result;
+  if (printed < 0 || ::pipe2(answer_pipe, O_CLOEXEC) != 0)
+    return result.story = "no descriptor left", result;
   std::fflush(nullptr);
   const pid_t child = ::fork();
   if (child == 0) {
@@ -310,18 +333,24 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
     const bool in_time = answer.timed_out_s == 0.0 && !answer.is_hopeless;
     if (!in_time) ::kill(child, SIGKILL);
     const int status = reap(child);
-    if (in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) judge_answer(result, log, answer.text);
-    else judge_death(result, log, status, answer);
+    if (in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+      judge_answer(result, log, answer.text);
+    else
+      judge_death(result, log, status, answer);
     result.timed_out_s = log.noted ? log.timed_out_s : answer.timed_out_s;
     const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
     // The judge's own CPU time is charged where it exceeds the cost of right answers.
     const double judges_s = std::max(0.0, answer.times.cpu_s - kFreeJudging);
-    result.charged_s = owner == Process::kGraders ? log.own_s + judges_s : own_time({}, answer.times, wall_s);
-    const bool is_judged = result.verdict == Verdict::kRight || result.verdict == Verdict::kWrong || result.verdict == Verdict::kMachineBusy;
+    result.charged_s =
+        owner == Process::kGraders ? log.own_s + judges_s : own_time({}, answer.times, wall_s);
+    const bool is_judged = result.verdict == Verdict::kRight || result.verdict == Verdict::kWrong ||
+                           result.verdict == Verdict::kMachineBusy;
     if (owner == Process::kGraders && !log.noted && answer.timed_out_s > 0.0) {
       // With right answers the judge's part of a test takes at most a few seconds.
       result.verdict = Verdict::kOutOfResources;
-      result.story = "the judge could not process this submission's answers in " + fmt_seconds(answer.timed_out_s) + " of its own work, the last from " + log.last_call + ": they cause too much work";
+      result.story = "the judge could not process this submission's answers in " +
+                     fmt_seconds(answer.timed_out_s) + " of its own work, the last from " +
+                     log.last_call + ": they cause too much work";
     } else if (owner == Process::kGraders && !log.noted && !is_judged) {
       result.verdict = Verdict::kGraderFault;
       result.story = "the judge's own test process ended without a verdict: " + result.story;

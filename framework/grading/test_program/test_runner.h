@@ -12,15 +12,17 @@
 namespace tumble::grading {
 
 struct TestLimits {
-  double own_s = 5.0;                        // own time (own_time.h): a test of a module takes milliseconds
-  std::uint64_t memory_bytes = 2ull << 30;   // of address space; a module's test needs a few MB
-  std::map<std::string, double> call_own_s = {};   // [s], shorter limits of one call, by function (see TimeBudget)
+  // own time (own_time.h): a test of a module takes milliseconds
+  double own_s = 5.0;
+  std::uint64_t memory_bytes = 2ull << 30;  // of address space; a module's test needs a few MB
+  // [s], shorter limits of one call, by function (see TimeBudget)
+  std::map<std::string, double> call_own_s = {};
 };
 
 /// Whose code runs in the test's process, and so whose fault a crash of that process is.
 enum class Process {
-  kStudents,   // the module is linked in
-  kGraders,    // the module runs in another process
+  kStudents,  // the module is linked in
+  kGraders,   // the module runs in another process
 };
 
 /// Names of all tests linked into this program, "Suite.Name", in the order of registration.

@@ -12,7 +12,8 @@ namespace tumble::grading {
 namespace {
 
 bool matches(const char* pattern, const char* text) {
-  if (*pattern == '*') return matches(pattern + 1, text) || (*text != '\0' && matches(pattern, text + 1));
+  if (*pattern == '*')
+    return matches(pattern + 1, text) || (*text != '\0' && matches(pattern, text + 1));
   if (*pattern == '\0') return *text == '\0';
   return *text != '\0' && (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
 }
@@ -25,12 +26,15 @@ std::size_t distance_of(const std::string& test, std::string pattern) {
   const std::size_t dot = test.find('.');
   const std::string wanted = lowercase(pattern);
   if (!wanted.empty() && lowercase(test).find(wanted) != std::string::npos) return 0;
-  return std::min({edit_distance(lowercase(test), wanted), edit_distance(lowercase(test.substr(0, dot)), wanted), edit_distance(lowercase(test.substr(dot + 1)), wanted)});
+  return std::min({edit_distance(lowercase(test), wanted),
+                   edit_distance(lowercase(test.substr(0, dot)), wanted),
+                   edit_distance(lowercase(test.substr(dot + 1)), wanted)});
 }
 
 }  // namespace
 
-std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, const std::string& filter) {
+std::vector<std::string> chosen_tests(const std::vector<std::string>& tests,
+                                      const std::string& filter) {
   std::vector<std::string> found;
   for (const std::string& test : tests)
     if (chosen(test, filter)) found.push_back(test);
@@ -38,16 +42,22 @@ std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, con
   constexpr std::size_t kShown = 5;
   std::vector<std::string> nearest = tests;
   const std::string first = filter.substr(0, filter.find(':'));
-  std::stable_sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) { return distance_of(a, first) < distance_of(b, first); });
+  std::stable_sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
+    return distance_of(a, first) < distance_of(b, first);
+  });
   std::string shown;
-  for (std::size_t i = 0; i < std::min(kShown, nearest.size()); ++i) shown += (i > 0 ? ", " : "") + nearest[i];
-  throw UserError(filter, "no test has this name", "Nearest: " + shown + ". A pattern may hold '*' and '?', such as '" + tests.front().substr(0, tests.front().find('.')) + ".*'.");
+  for (std::size_t i = 0; i < std::min(kShown, nearest.size()); ++i)
+    shown += (i > 0 ? ", " : "") + nearest[i];
+  throw UserError(filter, "no test has this name",
+                  "Nearest: " + shown + ". A pattern may hold '*' and '?', such as '" +
+                      tests.front().substr(0, tests.front().find('.')) + ".*'.");
 }
 
 double number_word(const std::string& flag, const std::string& word) {
   char* rest = nullptr;
   const double number = std::strtod(word.c_str(), &rest);
-  if (word.empty() || *rest != '\0' || !(number > 0.0)) throw UserError(flag + " " + word, "is not a number of seconds above 0");
+  if (word.empty() || *rest != '\0' || !(number > 0.0))
+    throw UserError(flag + " " + word, "is not a number of seconds above 0");
   return number;
 }
 

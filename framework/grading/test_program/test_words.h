@@ -12,7 +12,8 @@ bool chosen(const std::string& test, const std::string& filter);
 
 /// The tests that the filter selects, in their order.
 /// @throws UserError with the nearest names when it selects none
-std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, const std::string& filter);
+std::vector<std::string> chosen_tests(const std::vector<std::string>& tests,
+                                      const std::string& filter);
 
 /// The number of seconds after a flag.
 /// @throws UserError when it is not a number above 0

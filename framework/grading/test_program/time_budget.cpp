@@ -7,12 +7,12 @@
 namespace tumble::grading {
 
 void TimeBudget::charge(const TestResult& result) {
-  if (!is_final_verdict(result.verdict)) return;   // it will be run again
+  if (!is_final_verdict(result.verdict)) return;  // it will be run again
   if (result.timed_out_s > 0.0) {
     spent_s_ += result.timed_out_s;
     if (!result.last_call.empty()) ++timeouts_[result.last_call];
   } else {
-    constexpr double kTenths = 10.0;   // 1/s: right tests take a few hundredths of a second
+    constexpr double kTenths = 10.0;  // 1/s: right tests take a few hundredths of a second
     spent_s_ += std::floor(result.charged_s * kTenths) / kTenths;
   }
 }
@@ -31,9 +31,12 @@ TestResult TimeBudget::not_run(const std::string& test) const {
   result.not_run = true;
   char budget[32];
   std::snprintf(budget, sizeof budget, "%g", rules_.budget_s);
-  result.story = std::string("not run: the time budget of all tests together, ") + budget + " s, was used up by the tests before it";
+  result.story = std::string("not run: the time budget of all tests together, ") + budget +
+                 " s, was used up by the tests before it";
   std::string where;
-  for (const auto& [function, count] : timeouts_) where += (where.empty() ? "" : ", ") + function + " (" + std::to_string(count) + (count == 1 ? " test)" : " tests)");
+  for (const auto& [function, count] : timeouts_)
+    where += (where.empty() ? "" : ", ") + function + " (" + std::to_string(count) +
+             (count == 1 ? " test)" : " tests)");
   if (!where.empty()) result.story += "; functions that ran out of time: " + where;
   return result;
 }

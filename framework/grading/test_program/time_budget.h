@@ -14,9 +14,9 @@
 namespace tumble::grading {
 
 struct TimeRules {
-  double budget_s = 60.0;     // of all tests together: right submissions take a few seconds
-  int full_timeouts = 2;      // per function; later calls of the same function have a shorter limit
-  double suspect_own_s = 1.0;   // that shorter limit: right calls take microseconds
+  double budget_s = 60.0;  // of all tests together: right submissions take a few seconds
+  int full_timeouts = 2;   // per function; later calls of the same function have a shorter limit
+  double suspect_own_s = 1.0;  // that shorter limit: right calls take microseconds
 };
 
 /// The time account of one submission.
@@ -36,7 +36,7 @@ class TimeBudget {
  private:
   TimeRules rules_;
   double spent_s_ = 0.0;
-  std::map<std::string, int> timeouts_;   // by function
+  std::map<std::string, int> timeouts_;  // by function
 };
 
 }  // namespace tumble::grading

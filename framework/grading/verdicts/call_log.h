@@ -18,18 +18,19 @@ namespace tumble::grading {
 
 /// In memory shared between a test's process and its parent. Plain data, which survives a crash.
 struct CallLog {
-  static constexpr std::size_t kStory = 4096;  // bytes: longer exception texts are cut
-  static constexpr std::size_t kArguments = 8192;   // bytes in the wire format
+  static constexpr std::size_t kStory = 4096;      // bytes: longer exception texts are cut
+  static constexpr std::size_t kArguments = 8192;  // bytes in the wire format
   char last_call[96] = "";
   unsigned char arguments[kArguments] = {};
-  std::size_t argument_bytes = 0;                   // 0: none kept
-  std::size_t describer = 0;                        // converts the arguments to words: see add_describer
+  std::size_t argument_bytes = 0;  // 0: none kept
+  // converts the arguments to words: see add_describer
+  std::size_t describer = 0;
   char story[kStory] = "";
   long calls = 0;
   bool in_call = false;
   bool noted = false;
-  double timed_out_s = 0.0;   // the limit that a call exceeded
-  double own_s = 0.0;         // own time of the worker in this test, where there is one
+  double timed_out_s = 0.0;  // the limit that a call exceeded
+  double own_s = 0.0;        // own time of the worker in this test, where there is one
   Verdict verdict = Verdict::kGraderFault;
 
   void begin(const char* function);
@@ -64,12 +65,15 @@ inline const std::size_t describer_of = add_describer(modules::show_written_argu
 // Adds checks of sizes to callbacks; other arguments stay unchanged.
 template <class T, class... A>
 decltype(auto) guarded(T& argument, const char* name, const A&... call) {
-  if constexpr (modules::is_function<std::decay_t<T>>::value) return modules::asked_rightly(argument, name, end_by_size, call...);
-  else return (argument);
+  if constexpr (modules::is_function<std::decay_t<T>>::value)
+    return modules::asked_rightly(argument, name, end_by_size, call...);
+  else
+    return (argument);
 }
 
 template <class Module, class R, class... A>
-std::function<R(A...)> observe(std::size_t index, const char* name, std::function<R(A...)> function) {
+std::function<R(A...)> observe(std::size_t index, const char* name,
+                               std::function<R(A...)> function) {
   return [index, name, function](A... arguments) -> R {
     CallLog& log = call_log();
     log.begin(name);
@@ -79,7 +83,10 @@ std::function<R(A...)> observe(std::size_t index, const char* name, std::functio
     log.keep(writer.bytes, describer_of<A...>);
     try {
       R result = function(guarded(arguments, name, arguments...)...);
-      if (const std::string problem = modules::answer_sizes<Module>().problem(index, name, result, arguments...); !problem.empty()) end_by_size(problem);
+      if (const std::string problem =
+              modules::answer_sizes<Module>().problem(index, name, result, arguments...);
+          !problem.empty())
+        end_by_size(problem);
       log.end();
       return result;
     } catch (const NotImplemented& missing) {
@@ -89,10 +96,13 @@ std::function<R(A...)> observe(std::size_t index, const char* name, std::functio
       log.note(Verdict::kOutOfResources, std::string(name) + " needed more memory than its limit");
       throw;
     } catch (const std::exception& error) {
-      log.note(Verdict::kCrashed, std::string(name) + " threw an exception: " + error.what() + asked_words(log.asked()));
+      log.note(Verdict::kCrashed, std::string(name) + " threw an exception: " + error.what() +
+                                      asked_words(log.asked()));
       throw;
     } catch (...) {
-      log.note(Verdict::kCrashed, std::string(name) + " threw an object that is not a std::exception" + asked_words(log.asked()));
+      log.note(Verdict::kCrashed, std::string(name) +
+                                      " threw an object that is not a std::exception" +
+                                      asked_words(log.asked()));
       throw;
     }
   };
@@ -104,7 +114,9 @@ std::function<R(A...)> observe(std::size_t index, const char* name, std::functio
 template <class Module>
 Module observed(Module module) {
   std::size_t index = 0;
-  Module::visit(module, [&](const char* name, auto& field) { field = detail::observe<Module>(index++, name, field); });
+  Module::visit(module, [&](const char* name, auto& field) {
+    field = detail::observe<Module>(index++, name, field);
+  });
   return module;
 }
 

@@ -8,13 +8,15 @@ namespace {
 
 struct Character {
   std::uint32_t code = 0;
-  std::size_t length = 1;    // bytes
+  std::size_t length = 1;  // bytes
   bool is_valid = false;
 };
 
 // UTF-8 by Unicode 15, table 3-7: no overlong forms, no surrogates, nothing above U+10FFFF.
 Character character_at(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
+  };
   const std::uint32_t first = byte(at);
   if (first < 0x80) return {first, 1, true};
   const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
@@ -30,18 +32,25 @@ Character character_at(std::string_view text, std::size_t at) {
 }
 
 bool is_unseen(std::uint32_t code) {
-  if (code < 0x20 || (code >= 0x7f && code <= 0xa0)) return true;               // controls, the no-break space
-  const bool turns = code == 0x061c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-  const bool breaks = code == 0x2028 || code == 0x2029 || (code >= 0x2000 && code <= 0x200a) || code == 0x202f || code == 0x205f || code == 0x3000;  // and unusual spaces
+  // controls, the no-break space
+  if (code < 0x20 || (code >= 0x7f && code <= 0xa0)) return true;
+  const bool turns = code == 0x061c || code == 0x200e || code == 0x200f ||
+                     (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  // and unusual spaces
+  const bool breaks = code == 0x2028 || code == 0x2029 || (code >= 0x2000 && code <= 0x200a) ||
+                      code == 0x202f || code == 0x205f || code == 0x3000;
   // The joiners U+200C and U+200D stay: names in Persian and Hindi need them.
-  const bool hides = code == 0x00ad || code == 0x034f || code == 0x115f || code == 0x1160 || code == 0x3164 || code == 0xffa0 ||
-                     (code >= 0x180b && code <= 0x180f) || code == 0x200b || (code >= 0x2060 && code <= 0x2064) ||
-                     (code >= 0x206a && code <= 0x206f) || (code >= 0xfe00 && code <= 0xfe0f) || code == 0xfeff || (code >= 0xfff9 && code <= 0xfffb) ||
+  const bool hides = code == 0x00ad || code == 0x034f || code == 0x115f || code == 0x1160 ||
+                     code == 0x3164 || code == 0xffa0 || (code >= 0x180b && code <= 0x180f) ||
+                     code == 0x200b || (code >= 0x2060 && code <= 0x2064) ||
+                     (code >= 0x206a && code <= 0x206f) || (code >= 0xfe00 && code <= 0xfe0f) ||
+                     code == 0xfeff || (code >= 0xfff9 && code <= 0xfffb) ||
                      (code >= 0xe0000 && code <= 0xe0fff);
   return turns || breaks || hides;
 }
 
-// Length of a terminal's control sequence (ECMA-48: ESC [ parameters, final byte) at `at`; 0 where there is none.
+// Length of a terminal's control sequence (ECMA-48: ESC [ parameters, final byte) at `at`; 0 where
+// there is none.
 std::size_t colour_at(std::string_view text, std::size_t at) {
   if (text[at] != '\x1b' || at + 1 >= text.size() || text[at + 1] != '[') return 0;
   std::size_t end = at + 2;
@@ -51,7 +60,8 @@ std::size_t colour_at(std::string_view text, std::size_t at) {
 
 std::string written_out(const Character& c) {
   char text[16];
-  std::snprintf(text, sizeof text, c.is_valid && c.code >= 0x80 ? "\\u{%04X}" : "\\x%02X", static_cast<unsigned>(c.code));
+  std::snprintf(text, sizeof text, c.is_valid && c.code >= 0x80 ? "\\u{%04X}" : "\\x%02X",
+                static_cast<unsigned>(c.code));
   return text;
 }
 
@@ -64,9 +74,12 @@ std::string plain(std::string_view text, bool one_line) {
     }
     const Character c = character_at(text, at);
     const bool stays = !one_line && (c.code == '\n' || c.code == '\t');
-    if (one_line && c.code == '\\') result += "\\\\";
-    else if (c.is_valid && (stays || !is_unseen(c.code))) result += text.substr(at, c.length);
-    else result += written_out(c);
+    if (one_line && c.code == '\\')
+      result += "\\\\";
+    else if (c.is_valid && (stays || !is_unseen(c.code)))
+      result += text.substr(at, c.length);
+    else
+      result += written_out(c);
     at += c.length;
   }
   return result;
@@ -75,7 +88,10 @@ std::string plain(std::string_view text, bool one_line) {
 }  // namespace
 
 std::string shell_word(std::string_view text) {
-  const auto is_plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string_view("_-./+,@%").find(c) != std::string_view::npos; };
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("_-./+,@%").find(c) != std::string_view::npos;
+  };
   // Invisible characters are escaped as bytes in $'...' (bash and zsh); other text is put in single
   // quotes.
   std::string word;
@@ -87,9 +103,12 @@ std::string shell_word(std::string_view text) {
   }
   for (const char c : text) {
     char byte[8];
-    std::snprintf(byte, sizeof byte, "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    if (is_seen) word += c == '\'' ? "'\\''" : std::string(1, c);
-    else word += is_plain(c) || c == ' ' ? std::string(1, c) : byte;
+    std::snprintf(byte, sizeof byte, "\\x%02x",
+                  static_cast<unsigned>(static_cast<unsigned char>(c)));
+    if (is_seen)
+      word += c == '\'' ? "'\\''" : std::string(1, c);
+    else
+      word += is_plain(c) || c == ' ' ? std::string(1, c) : byte;
   }
   return (is_seen ? "'" : "$'") + word + "'";
 }

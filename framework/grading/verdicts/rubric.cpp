@@ -19,12 +19,16 @@ RubricItem read_item(const nlohmann::json& entry, const std::string& where) {
     item.level = entry.at("level");
     item.title = entry.at("title");
   } catch (const nlohmann::json::exception& error) {
-    throw UserError(where, std::string("is not an entry of a rubric: ") + error.what(), "It needs test, points, level and title.");
+    throw UserError(where, std::string("is not an entry of a rubric: ") + error.what(),
+                    "It needs test, points, level and title.");
   }
-  if (item.test.find('.') == std::string::npos) throw UserError(where, "test '" + item.test + "' is not of the form Suite.Name");
+  if (item.test.find('.') == std::string::npos)
+    throw UserError(where, "test '" + item.test + "' is not of the form Suite.Name");
   if (!(item.points >= 0.0)) throw UserError(where, "test '" + item.test + "' has points below 0");
   static const std::set<std::string> levels = {"basic", "intermediate", "advanced"};
-  if (!levels.contains(item.level)) throw UserError(where, "unknown level '" + item.level + "'", "Levels are basic, intermediate, advanced.");
+  if (!levels.contains(item.level))
+    throw UserError(where, "unknown level '" + item.level + "'",
+                    "Levels are basic, intermediate, advanced.");
   return item;
 }
 
@@ -54,13 +58,15 @@ Rubric read_rubric(const std::filesystem::path& file, bool hidden) {
   Rubric rubric;
   rubric.assignment = document.value("assignment", "");
   rubric.title = document.value("title", "");
-  if (!document.contains("tests") || !document["tests"].is_array()) throw UserError(file.string(), "has no array \"tests\"");
+  if (!document.contains("tests") || !document["tests"].is_array())
+    throw UserError(file.string(), "has no array \"tests\"");
   std::set<std::string> seen;
   for (std::size_t i = 0; i < document["tests"].size(); ++i) {
     const std::string where = file.string() + " /tests/" + std::to_string(i);
     RubricItem item = read_item(document["tests"][i], where);
     item.hidden = hidden;
-    if (!seen.insert(item.test).second) throw UserError(where, "names test '" + item.test + "' a second time");
+    if (!seen.insert(item.test).second)
+      throw UserError(where, "names test '" + item.test + "' a second time");
     rubric.items.push_back(std::move(item));
   }
   return rubric;
@@ -69,12 +75,17 @@ Rubric read_rubric(const std::filesystem::path& file, bool hidden) {
 Rubric joined(const Rubric& open, const Rubric& hidden) {
   Rubric all = open;
   for (const RubricItem& item : hidden.items) {
-    if (open.find(item.test) != nullptr) throw UserError("rubric of " + open.assignment, "test '" + item.test + "' is both public and hidden");
+    if (open.find(item.test) != nullptr)
+      throw UserError("rubric of " + open.assignment,
+                      "test '" + item.test + "' is both public and hidden");
     all.items.push_back(item);
   }
-  constexpr double kFull = 100.0, kSlack = 1e-9;  // points: they have few decimals, so the sum is exact up to round-off
+  // points: they have few decimals, so the sum is exact up to round-off
+  constexpr double kFull = 100.0, kSlack = 1e-9;
   if (std::abs(all.total() - kFull) > kSlack)
-    throw UserError("rubric of " + open.assignment, "public and hidden points sum to " + std::to_string(all.total()), "They must sum to 100.");
+    throw UserError("rubric of " + open.assignment,
+                    "public and hidden points sum to " + std::to_string(all.total()),
+                    "They must sum to 100.");
   return all;
 }
 

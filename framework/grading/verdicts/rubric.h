@@ -2,7 +2,8 @@
 /// solutions_private/aN_name/rubric_hidden.json for hidden ones.
 ///
 ///   {"assignment": "a1", "title": "Impulse",
-///    "tests": [{"test": "Suite.Name", "points": 5, "level": "basic", "title": "short human title"}]}
+///    "tests": [{"test": "Suite.Name", "points": 5, "level": "basic", "title": "short human
+///    title"}]}
 #pragma once
 
 #include <filesystem>
@@ -12,15 +13,15 @@
 namespace tumble::grading {
 
 struct RubricItem {
-  std::string test;      // "Suite.Name"
+  std::string test;  // "Suite.Name"
   double points = 0.0;
-  std::string level;     // basic, intermediate, advanced
-  std::string title;     // shown to the user
+  std::string level;  // basic, intermediate, advanced
+  std::string title;  // shown to the user
   bool hidden = false;
 };
 
 struct Rubric {
-  std::string assignment;   // "a1"
+  std::string assignment;  // "a1"
   std::string title;
   std::vector<RubricItem> items;
 

@@ -8,7 +8,13 @@
 namespace tumble::grading {
 namespace {
 
-constexpr std::array kWords = {"right", "wrong", "not attempted", "crashed", "out of time or memory", "fault of the grader", "machine too busy"};
+constexpr std::array kWords = {"right",
+                               "wrong",
+                               "not attempted",
+                               "crashed",
+                               "out of time or memory",
+                               "fault of the grader",
+                               "machine too busy"};
 
 }  // namespace
 
@@ -24,8 +30,10 @@ ExitCode exit_code(const std::vector<TestResult>& results) {
   bool wrong = false, missing = false;
   for (const TestResult& result : results) {
     if (!is_final_verdict(result.verdict)) return ExitCode::kOurBug;
-    if (result.verdict == Verdict::kNotAttempted) missing = true;
-    else if (result.verdict != Verdict::kRight) wrong = true;
+    if (result.verdict == Verdict::kNotAttempted)
+      missing = true;
+    else if (result.verdict != Verdict::kRight)
+      wrong = true;
   }
   return wrong ? ExitCode::kCheckFailed : missing ? ExitCode::kNotAttempted : ExitCode::kFine;
 }
@@ -33,11 +41,21 @@ ExitCode exit_code(const std::vector<TestResult>& results) {
 void write_results(const std::string& file, const std::vector<TestResult>& results) {
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   for (const TestResult& r : results)
-    tests.push_back({{"test", r.test}, {"verdict", words(r.verdict)}, {"story", r.story}, {"last_call", r.last_call},
-                     {"calls", r.calls}, {"printed", r.printed}, {"timed_out_s", r.timed_out_s}, {"not_run", r.not_run}, {"charged_s", r.charged_s}, {"wall_s", r.wall_s}});
+    tests.push_back({{"test", r.test},
+                     {"verdict", words(r.verdict)},
+                     {"story", r.story},
+                     {"last_call", r.last_call},
+                     {"calls", r.calls},
+                     {"printed", r.printed},
+                     {"timed_out_s", r.timed_out_s},
+                     {"not_run", r.not_run},
+                     {"charged_s", r.charged_s},
+                     {"wall_s", r.wall_s}});
   std::ofstream out(file);
   // Students' code may print any bytes: invalid UTF-8 is replaced, not refused.
-  out << nlohmann::ordered_json{{"tests", tests}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  out << nlohmann::ordered_json{{"tests", tests}}.dump(
+             1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+      << '\n';
   if (!out.flush()) throw UserError(file, "cannot be written");
 }
 
@@ -46,7 +64,8 @@ std::vector<TestResult> read_results(const std::string& file) {
   if (!in) throw UserError(file, "cannot be read");
   try {
     std::vector<TestResult> results;
-    const auto record = nlohmann::json::parse(in);  // named: a range over a part of a temporary would outlive it
+    // named: a range over a part of a temporary would outlive it
+    const auto record = nlohmann::json::parse(in);
     for (const auto& item : record.at("tests")) {
       TestResult r;
       r.test = item.at("test");

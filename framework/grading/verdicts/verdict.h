@@ -19,26 +19,34 @@ enum class Verdict {
   kMachineBusy,     // too little CPU time for a verdict: to be run again
 };
 
-/// "right", "wrong", "not attempted", "crashed", "out of time or memory", "fault of the grader", "machine too busy"
+/// "right", "wrong", "not attempted", "crashed", "out of time or memory", "fault of the grader",
+/// "machine too busy"
 const char* words(Verdict verdict);
 /// The inverse of words(). @return empty for anything else
 std::optional<Verdict> verdict_from_words(const std::string& text);
 
 /// Whether the verdict is about the submission. A verdict that is not final costs no points: the
 /// test is run again.
-inline bool is_final_verdict(Verdict verdict) { return verdict != Verdict::kGraderFault && verdict != Verdict::kMachineBusy; }
+inline bool is_final_verdict(Verdict verdict) {
+  return verdict != Verdict::kGraderFault && verdict != Verdict::kMachineBusy;
+}
 
 struct TestResult {
-  std::string test;                                // "Suite.Name"
-  Verdict verdict = Verdict::kGraderFault;         // fail-closed: only an observed answer changes it
-  std::string story;                               // what went wrong, for the student; empty when right
-  std::string last_call;                           // the last function of the module that was called
-  long calls = 0;                                  // of the module's functions
-  std::string printed;                             // output of the student's code to stdout and stderr, cut short
-  double timed_out_s = 0.0;                        // the limit that it exceeded; 0: none
-  double charged_s = 0.0;                          // own time of the submission's code (own_time.h); never part of compared output
-  bool not_run = false;                            // the budget of all tests together was used up
-  double wall_s = 0.0;                             // never part of compared output
+  std::string test;  // "Suite.Name"
+  // fail-closed: only an observed answer changes it
+  Verdict verdict = Verdict::kGraderFault;
+  // what went wrong, for the student; empty when right
+  std::string story;
+  // the last function of the module that was called
+  std::string last_call;
+  long calls = 0;  // of the module's functions
+  // output of the student's code to stdout and stderr, cut short
+  std::string printed;
+  double timed_out_s = 0.0;  // the limit that it exceeded; 0: none
+  // own time of the submission's code (own_time.h); never part of compared output
+  double charged_s = 0.0;
+  bool not_run = false;  // the budget of all tests together was used up
+  double wall_s = 0.0;   // never part of compared output
 };
 
 /// Exit code of a test program: 3 for a fault of the grader or a machine too busy, 1 when something

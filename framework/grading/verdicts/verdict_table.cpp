@@ -31,12 +31,15 @@ std::string number(double x) {
 
 struct Line {
   const TestResult* result;
-  const RubricItem* item;   // may be null
+  const RubricItem* item;  // may be null
 };
 
-std::string title_of(const Line& line) { return line.item != nullptr ? line.item->title : line.result->test; }
+std::string title_of(const Line& line) {
+  return line.item != nullptr ? line.item->title : line.result->test;
+}
 
-void print_level(std::ostream& out, const std::vector<Line>& lines, const std::string& level, bool colours) {
+void print_level(std::ostream& out, const std::vector<Line>& lines, const std::string& level,
+                 bool colours) {
   std::size_t widest = 0;
   for (const Line& line : lines) widest = std::max(widest, title_of(line).size());
   bool first = true;
@@ -46,7 +49,8 @@ void print_level(std::ostream& out, const std::vector<Line>& lines, const std::s
     first = false;
     std::string verdict = words(line.result->verdict);
     verdict.resize(kVerdictWidth, ' ');
-    out << "  " << (colours ? colour(line.result->verdict) : "") << verdict << (colours ? "\033[0m" : "");
+    out << "  " << (colours ? colour(line.result->verdict) : "") << verdict
+        << (colours ? "\033[0m" : "");
     std::string title = title_of(line);
     if (line.item != nullptr) {
       title.resize(widest + 2, ' ');
@@ -59,24 +63,31 @@ void print_level(std::ostream& out, const std::vector<Line>& lines, const std::s
 std::string indented(const std::string& text, const std::string& by) {
   std::istringstream in(text);
   std::string result;
-  for (std::string line; std::getline(in, line);) result += line.empty() ? "" : by + (line.starts_with("  ") ? line.substr(2) : line) + "\n";
+  for (std::string line; std::getline(in, line);)
+    result += line.empty() ? "" : by + (line.starts_with("  ") ? line.substr(2) : line) + "\n";
   return result;
 }
 
 void print_story(std::ostream& out, const Line& line, bool colours) {
   const TestResult& r = *line.result;
-  out << '\n' << (colours ? colour(r.verdict) : "") << words(r.verdict) << (colours ? "\033[0m" : "") << ": " << title_of(line);
+  out << '\n'
+      << (colours ? colour(r.verdict) : "") << words(r.verdict) << (colours ? "\033[0m" : "")
+      << ": " << title_of(line);
   if (line.item != nullptr) out << "  [" << r.test << ']';
   out << '\n' << indented(plain_text(r.story), "    ");
-  if (!r.printed.empty()) out << "    your code printed:\n" << indented(plain_text(r.printed), "      | ");
+  if (!r.printed.empty())
+    out << "    your code printed:\n" << indented(plain_text(r.printed), "      | ");
 }
 
 void print_count(std::ostream& out, const std::vector<TestResult>& results, const Rubric& rubric) {
-  constexpr std::array kAll = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
+  constexpr std::array kAll = {
+      Verdict::kRight,          Verdict::kWrong,       Verdict::kNotAttempted, Verdict::kCrashed,
+      Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
   out << '\n' << results.size() << (results.size() == 1 ? " test: " : " tests: ");
   bool first = true;
   for (const Verdict verdict : kAll) {
-    const auto n = std::count_if(results.begin(), results.end(), [&](const TestResult& r) { return r.verdict == verdict; });
+    const auto n = std::count_if(results.begin(), results.end(),
+                                 [&](const TestResult& r) { return r.verdict == verdict; });
     if (n == 0) continue;
     out << (first ? "" : ", ") << n << ' ' << words(verdict);
     first = false;
@@ -87,13 +98,15 @@ void print_count(std::ostream& out, const std::vector<TestResult>& results, cons
       possible += item->points;
       if (r.verdict == Verdict::kRight) reached += item->points;
     }
-  if (possible > 0.0) out << "; " << number(reached) << " of " << number(possible) << " public points";
+  if (possible > 0.0)
+    out << "; " << number(reached) << " of " << number(possible) << " public points";
   out << '\n';
 }
 
 }  // namespace
 
-void print_verdicts(std::ostream& out, const std::vector<TestResult>& results, const Rubric& rubric, bool colours) {
+void print_verdicts(std::ostream& out, const std::vector<TestResult>& results, const Rubric& rubric,
+                    bool colours) {
   std::vector<Line> lines;
   for (const TestResult& r : results) lines.push_back({&r, rubric.find(r.test)});
   for (const char* level : kLevels) print_level(out, lines, level, colours);
@@ -105,7 +118,8 @@ void print_verdicts(std::ostream& out, const std::vector<TestResult>& results, c
     } else if (line.result->verdict != Verdict::kRight) {
       print_story(out, line, colours);
     } else if (!line.result->printed.empty()) {
-      out << "\nright: " << title_of(line) << "\n    your code printed:\n" << indented(plain_text(line.result->printed), "      | ");
+      out << "\nright: " << title_of(line) << "\n    your code printed:\n"
+          << indented(plain_text(line.result->printed), "      | ");
     }
   }
   if (!missing.empty()) out << "\nnot attempted\n" << missing;

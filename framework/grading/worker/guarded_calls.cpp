@@ -22,27 +22,30 @@
 namespace tumble::grading {
 namespace {
 
-constexpr auto kPeriod = std::chrono::milliseconds(250);   // between two checks of the calls
+constexpr auto kPeriod = std::chrono::milliseconds(250);  // between two checks of the calls
 constexpr int kMostChecks = static_cast<int>(kGuardedCallLimit / 0.25);
 constexpr std::array kSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr const char* kLoading = "its global and static variables";
 
 /// The current call of one thread. Written by that thread, read by watch() and by signal handlers.
 struct CallPlace {
-  std::atomic<const char*> function{nullptr};   // the innermost guarded function; null: none
-  std::atomic<const char*> file{nullptr};       // its file
-  std::atomic<unsigned long> outermost{0};      // number of outermost calls so far
-  unsigned long seen = 0;                       // used by watch() only
-  int checks = 0;                               // used by watch() only
+  std::atomic<const char*> function{nullptr};  // the innermost guarded function; null: none
+  std::atomic<const char*> file{nullptr};      // its file
+  std::atomic<unsigned long> outermost{0};     // number of outermost calls so far
+  unsigned long seen = 0;                      // used by watch() only
+  int checks = 0;                              // used by watch() only
 };
 
-constexpr std::size_t kThreads = 256;   // more run unguarded
+constexpr std::size_t kThreads = 256;  // more run unguarded
 CallPlace places[kThreads];
 std::atomic<std::size_t> threads{0};
 thread_local CallPlace* here = nullptr;
-char signal_words[kSignals.size()][256];   // prepared in advance: a signal handler must not allocate memory
+// prepared in advance: a signal handler must not allocate memory
+char signal_words[kSignals.size()][256];
 
-void say(const char* text) { [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text)); }
+void say(const char* text) {
+  [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
+}
 
 [[noreturn]] void leave(const char* what, const char* function, const char* file) {
   say("\ntumble: ");
@@ -51,7 +54,8 @@ void say(const char* text) { [[maybe_unused]] const ssize_t n = ::write(STDERR_F
   say(what);
   say(", in ");
   say(function);
-  say("\n  The run ends here. ./tumble check tests each function separately and shows its arguments.\n");
+  say("\n  The run ends here. ./tumble check tests each function separately and shows its "
+      "arguments.\n");
   ::_exit(1);
 }
 
@@ -60,21 +64,24 @@ void on_signal(int signal) {
   if (function != nullptr)
     for (std::size_t i = 0; i < kSignals.size(); ++i)
       if (kSignals[i] == signal) leave(signal_words[i], function, here->file);
-  ::signal(signal, SIG_DFL);   // not in a module: the default action
+  ::signal(signal, SIG_DFL);  // not in a module: the default action
   ::raise(signal);
 }
 
 [[noreturn]] void watch() {
   static char words[96];
-  std::snprintf(words, sizeof words, "out of time: no answer within %g s (an endless loop?)", kGuardedCallLimit);
+  std::snprintf(words, sizeof words, "out of time: no answer within %g s (an endless loop?)",
+                kGuardedCallLimit);
   for (;;) {
     std::this_thread::sleep_for(kPeriod);
     for (std::size_t i = 0; i < std::min(threads.load(), kThreads); ++i) {
       CallPlace& place = places[i];
       const char* function = place.function.load();
       const unsigned long call = place.outermost.load();
-      if (function == nullptr || call != place.seen) place.checks = 0;
-      else if (++place.checks > kMostChecks) leave(words, function, place.file);
+      if (function == nullptr || call != place.seen)
+        place.checks = 0;
+      else if (++place.checks > kMostChecks)
+        leave(words, function, place.file);
       place.seen = call;
     }
   }
@@ -87,7 +94,8 @@ void start_guard() {
     action.sa_handler = on_signal;
     action.sa_flags = SA_ONSTACK | SA_NODEFER;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      std::snprintf(signal_words[i], sizeof signal_words[i], "%s", signal_words_of(kSignals[i]).c_str());
+      std::snprintf(signal_words[i], sizeof signal_words[i], "%s",
+                    signal_words_of(kSignals[i]).c_str());
       ::sigaction(kSignals[i], &action, nullptr);
     }
     std::thread(watch).detach();
@@ -97,7 +105,7 @@ void start_guard() {
 // Endless recursion leaves no stack for the signal handler: each calling thread has an alternate
 // stack.
 void enter_thread() {
-  constexpr std::size_t kStack = 1u << 16;   // bytes
+  constexpr std::size_t kStack = 1u << 16;  // bytes
   thread_local std::unique_ptr<char[]> stack;
   const std::size_t index = threads.fetch_add(1);
   if (index >= kThreads) return;
@@ -115,7 +123,9 @@ class Guard : public modules::CallWatcher {
     if (here == nullptr) enter_thread();
     if (here == nullptr) return nullptr;
     const char* outer = here->function.load(std::memory_order_relaxed);
-    if (outer == nullptr) here->outermost.store(here->outermost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    if (outer == nullptr)
+      here->outermost.store(here->outermost.load(std::memory_order_relaxed) + 1,
+                            std::memory_order_relaxed);
     here->file.store(file_.c_str(), std::memory_order_relaxed);
     here->function.store(function, std::memory_order_relaxed);
     return outer;
@@ -125,8 +135,10 @@ class Guard : public modules::CallWatcher {
   }
   void threw(const char* function, const std::exception& error) override {
     // Exceptions of the framework, thrown by callbacks, are not the module's.
-    const bool ours = dynamic_cast<const NotImplemented*>(&error) || dynamic_cast<const UserError*>(&error) || dynamic_cast<const PreconditionError*>(&error) ||
-                      dynamic_cast<const Final*>(&error) || dynamic_cast<const engines::StoppedRun*>(&error);
+    const bool ours =
+        dynamic_cast<const NotImplemented*>(&error) || dynamic_cast<const UserError*>(&error) ||
+        dynamic_cast<const PreconditionError*>(&error) || dynamic_cast<const Final*>(&error) ||
+        dynamic_cast<const engines::StoppedRun*>(&error);
     if (!ours) throw CallEnded(file_ + ": " + function + " threw an exception: " + error.what());
   }
 
@@ -139,9 +151,13 @@ Guard& lasting_guard(const std::string& file) { return *new Guard(file); }
 
 }  // namespace
 
-modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& file) { return kind.watched(module, lasting_guard(file)); }
+modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module,
+                           const std::string& file) {
+  return kind.watched(module, lasting_guard(file));
+}
 
-modules::AnyModule guarded_load(const std::string& file, const std::function<modules::AnyModule()>& load) {
+modules::AnyModule guarded_load(const std::string& file,
+                                const std::function<modules::AnyModule()>& load) {
   Guard& guard = lasting_guard(file);
   const modules::detail::WatchedCall call(guard, kLoading);
   return load();

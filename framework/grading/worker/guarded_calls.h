@@ -19,9 +19,11 @@ constexpr double kGuardedCallLimit = 10.0;
 /// to stderr and exits with 1; an exception of the module itself becomes a CallEnded, which stops a
 /// run with its reason.
 /// @param file  the module's source, for messages
-modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& file);
+modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module,
+                           const std::string& file);
 
 /// Runs `load`, which may execute a module's static initialisers, under the same guard.
-modules::AnyModule guarded_load(const std::string& file, const std::function<modules::AnyModule()>& load);
+modules::AnyModule guarded_load(const std::string& file,
+                                const std::function<modules::AnyModule()>& load);
 
 }  // namespace tumble::grading

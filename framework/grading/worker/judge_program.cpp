@@ -22,14 +22,16 @@ namespace {
 // submission's answers cause too much work. The wall-clock limit is kPatience times as long, longer
 // than that of the worker.
 constexpr double kJudgesOwn = 60.0;
-constexpr int kMostBusy = 2;   // tests ended by a busy machine; then the rest is not run, because it would not count either
+// tests ended by a busy machine; then the rest is not run, because it would not count either
+constexpr int kMostBusy = 2;
 
 TestResult not_run_for_busy(const std::string& test) {
   TestResult result;
   result.test = test;
   result.verdict = Verdict::kMachineBusy;
   result.not_run = true;
-  result.story = "not run: the machine was too busy in " + std::to_string(kMostBusy) + " tests before it";
+  result.story =
+      "not run: the machine was too busy in " + std::to_string(kMostBusy) + " tests before it";
   return result;
 }
 
@@ -56,30 +58,42 @@ Words read_words(const char* id, int argc, char** argv) {
       if (i + 1 >= argc) throw UserError(word, "needs a value");
       return argv[++i];
     };
-    if (word == "--submission") words.worker.module = value();
-    else if (word == "--json") words.json = value();
-    else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
-    else if (word == "--list") words.list = true;
-    else if (word == "--plain") words.worker.sandboxed = false;
-    else if (word == "--quick") be_quick(words);
+    if (word == "--submission")
+      words.worker.module = value();
+    else if (word == "--json")
+      words.json = value();
+    else if (word == "--budget-s")
+      words.time.budget_s = number_word(word, value());
+    else if (word == "--list")
+      words.list = true;
+    else if (word == "--plain")
+      words.worker.sandboxed = false;
+    else if (word == "--quick")
+      be_quick(words);
     else if (word == "--rubric") {
       const Rubric more = read_rubric(value());
       words.rubric.items.insert(words.rubric.items.end(), more.items.begin(), more.items.end());
     } else if (word.starts_with("-")) {
-      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, --plain, --quick, --list, and patterns of test names.");
+      throw UserError(word, "is not known here",
+                      "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, "
+                      "--plain, --quick, --list, and patterns of test names.");
     } else {
       words.filter += (words.filter.empty() ? "" : ":") + word;
     }
   }
-  if (words.worker.module.empty() && !words.list) throw UserError("--submission", "is missing", "Give the shared object of a compiled submission.");
+  if (words.worker.module.empty() && !words.list)
+    throw UserError("--submission", "is missing",
+                    "Give the shared object of a compiled submission.");
   return words;
 }
 
-int run(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
+int run(const char* id, const std::function<void(modules::Connection&)>& attach, int argc,
+        char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   const Words words = read_words(id, argc, argv);
   if (words.list) {
-    for (const std::string& test : chosen_tests(linked_tests(), words.filter)) std::cout << test << '\n';
+    for (const std::string& test : chosen_tests(linked_tests(), words.filter))
+      std::cout << test << '\n';
     return static_cast<int>(ExitCode::kFine);
   }
   // Adopts the keepers of sandboxes whose test has ended, and waits for them at the end.
@@ -98,11 +112,13 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
       results.push_back(not_run_for_busy(test));
       continue;
     }
-    results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kGraders));
+    results.push_back(budget.is_used_up() ? budget.not_run(test)
+                                          : run_isolated(test, limits, Process::kGraders));
     if (results.back().verdict == Verdict::kMachineBusy) ++busy;
     if (!results.back().not_run) budget.charge(results.back());
   }
-  while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {}
+  while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {
+  }
   if (!words.json.empty()) write_results(words.json, results);
   print_verdicts(std::cout, results, words.rubric, ::isatty(STDOUT_FILENO) == 1);
   return static_cast<int>(exit_code(results));
@@ -110,7 +126,8 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
 
 }  // namespace
 
-int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
+int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach,
+                      int argc, char** argv) {
   try {
     return run(id, attach, argc, argv);
   } catch (const UserError& error) {

@@ -13,22 +13,27 @@
 namespace tumble::grading {
 
 /// Command line of a judge:
-///   judge_a1 --submission FILE.so [--json FILE] [--rubric FILE]... [--budget-s S] [--plain] [--quick] [PATTERN...]
+///   judge_a1 --submission FILE.so [--json FILE] [--rubric FILE]... [--budget-s S] [--plain]
+///   [--quick] [PATTERN...]
 /// --budget-s limits the time of all tests together (TimeBudget); later tests are not run.
 ///   judge_a1 --list [PATTERN...]
 /// --list prints the names of the tests, one per line, and runs none.
 /// --plain runs the submission without a sandbox: for trusted code only.
 /// --quick has the short limits of a student's own check, because the user waits.
 /// @param attach  sets the connection's proxy as the module under test
-int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv);
+int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach,
+                      int argc, char** argv);
 
 template <class Module>
 int run_judge(int argc, char** argv) {
   static Module module;
-  return run_judge_program(Module::kId, [](modules::Connection& connection) {
-    module = modules::make_proxy<Module>(connection);
-    modules::UnderTest<Module>::table = &module;
-  }, argc, argv);
+  return run_judge_program(
+      Module::kId,
+      [](modules::Connection& connection) {
+        module = modules::make_proxy<Module>(connection);
+        modules::UnderTest<Module>::table = &module;
+      },
+      argc, argv);
 }
 
 }  // namespace tumble::grading

@@ -27,11 +27,14 @@ using Ending = SandboxOutcome::Ending;
 constexpr const char* kModuleInside = "/module.so";
 constexpr const char* kWorkerInside = "/worker";
 
-constexpr auto kFresh = std::chrono::milliseconds(50);   // age up to which a reading of the times is reused
+// age up to which a reading of the times is reused
+constexpr auto kFresh = std::chrono::milliseconds(50);
 
 double seconds_of(Channel::Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-Channel::Clock::duration seconds(double s) { return std::chrono::duration_cast<Channel::Clock::duration>(std::chrono::duration<double>(s)); }
+Channel::Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<Channel::Clock::duration>(std::chrono::duration<double>(s));
+}
 
 // A worker without a sandbox, for trusted code. It dies with this process.
 pid_t start_plain(const std::filesystem::path& worker, const WorkerOptions& options, int socket) {
@@ -63,21 +66,26 @@ SandboxOutcome stop_plain(pid_t child, double grace_s) {
     if (grace_s > 0.0) ::usleep(1000);
   }
   ::kill(child, SIGKILL);
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
   return outcome;
 }
 
 }  // namespace
 
 WorkerPrograms worker_programs(const std::string& id, const std::filesystem::path& folder) {
-  const auto bin = folder.empty() ? std::filesystem::canonical("/proc/self/exe").parent_path() : folder;
+  const auto bin =
+      folder.empty() ? std::filesystem::canonical("/proc/self/exe").parent_path() : folder;
   WorkerPrograms programs{bin / ("worker_" + id), bin / "sandbox_init"};
   for (const auto& program : {programs.worker, programs.init})
-    if (!std::filesystem::exists(program)) throw UserError(program.string(), "is not built", "Build the targets worker_" + id + " and sandbox_init.");
+    if (!std::filesystem::exists(program))
+      throw UserError(program.string(), "is not built",
+                      "Build the targets worker_" + id + " and sandbox_init.");
   return programs;
 }
 
-WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(options)), user_(SandboxUser::lease()), stage_(&user_) {
+WorkerConnection::WorkerConnection(WorkerOptions options)
+    : options_(std::move(options)), user_(SandboxUser::lease()), stage_(&user_) {
   const WorkerPrograms programs = worker_programs(options_.id, options_.programs);
   options_.module = std::filesystem::absolute(options_.module);
   if (!options_.sandboxed) return;
@@ -87,16 +95,18 @@ WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(o
     job_.binds = {{stage_.add_file(options_.module, "worker", true), kWorkerInside}};
     job_.command = {kWorkerInside};
   } else {
-    job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
+    job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside},
+                  {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
     job_.command = {kWorkerInside, kModuleInside};
   }
   job_.uid = user_.uid();
-  job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the limits of calls are shorter; this one is for a judge that has died
+  // the limits of calls are shorter; this one is for a judge that has died
+  job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;
   job_.limits.cpu_s = static_cast<std::uint64_t>(std::ceil(options_.session_own_s));
   job_.limits.memory_bytes = options_.memory_bytes;
   job_.limits.tmp_bytes = 0;
-  // Memory is limited per process, and a second process or thread would delay the worker like a busy
-  // machine (own_time.h).
+  // Memory is limited per process, and a second process or thread would delay the worker like a
+  // busy machine (own_time.h).
   job_.is_alone = true;
 }
 
@@ -108,7 +118,8 @@ void WorkerConnection::reset() {
 
 void WorkerConnection::start() {
   int pair[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) end(Verdict::kGraderFault, "no descriptor left for a worker");
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
+    end(Verdict::kGraderFault, "no descriptor left for a worker");
   socket_ = pair[0];
   if (options_.sandboxed) {
     job_.channel = pair[1];
@@ -172,7 +183,8 @@ void WorkerConnection::end_call() {
     if (turns_s() - last_.turns_s > seconds_of(kFresh)) last_ = account();
     return;
   }
-  log.begin(calls_.back().function.c_str());  // the enclosing call continues; it was counted when it began
+  // the enclosing call continues; it was counted when it began
+  log.begin(calls_.back().function.c_str());
   --log.calls;
 }
 
@@ -181,11 +193,13 @@ void WorkerConnection::count_callback() {
   if (++callbacks_ > options_.callback_budget) {
     const std::string function = calls_.back().function;
     stop(0.0);
-    end(Verdict::kOutOfResources, function + " called its function arguments more than " + std::to_string(options_.callback_budget) + " times");
+    end(Verdict::kOutOfResources, function + " called its function arguments more than " +
+                                      std::to_string(options_.callback_budget) + " times");
   }
   // A worker that sends callbacks without pause is checked here.
   Call& call = calls_.back();
-  if (const auto now = Channel::Clock::now(); now >= call.next_check && check_time(call.next_check) <= now) {
+  if (const auto now = Channel::Clock::now();
+      now >= call.next_check && check_time(call.next_check) <= now) {
     const std::string function = call.function;
     stop(0.0);
     end_out_of_time(function.c_str());
@@ -199,7 +213,9 @@ void WorkerConnection::end_turn() {
   turn_.reset();
 }
 
-double WorkerConnection::turns_s() const { return past_turns_s_ + (turn_ ? seconds_of(Channel::Clock::now() - *turn_) : 0.0); }
+double WorkerConnection::turns_s() const {
+  return past_turns_s_ + (turn_ ? seconds_of(Channel::Clock::now() - *turn_) : 0.0);
+}
 
 void WorkerConnection::charge_wait(double wait_s) {
   own_before_s_ += wait_s;
@@ -220,26 +236,35 @@ WorkerConnection::Account WorkerConnection::account() {
 
 // The judge waits during the worker's turns; its own run delay is not time of the worker either.
 double WorkerConnection::own_s(const Account& from, const Account& to) const {
-  if (sandbox_ && !to.worker.is_known && shows_children()) return 0.0;   // the sandbox is still starting
-  return own_time(from.worker, to.worker, to.turns_s - from.turns_s - (to.judge.delay_s - from.judge.delay_s));
+  // the sandbox is still starting
+  if (sandbox_ && !to.worker.is_known && shows_children()) return 0.0;
+  return own_time(from.worker, to.worker,
+                  to.turns_s - from.turns_s - (to.judge.delay_s - from.judge.delay_s));
 }
 
 WorkerConnection::TimePoint WorkerConnection::check_time(TimePoint passed) {
   Call& call = calls_.back();
-  if (call.next_check > passed && call.next_check > Channel::Clock::now()) return call.next_check;   // already checked, and not due again
+  // already checked, and not due again
+  if (call.next_check > passed && call.next_check > Channel::Clock::now()) return call.next_check;
   last_ = account();
-  const double call_left_s = call_limit(call.function) - own_s(call.start, last_), session_left_s = options_.session_own_s - own_s(session_, last_);
+  const double call_left_s = call_limit(call.function) - own_s(call.start, last_),
+               session_left_s = options_.session_own_s - own_s(session_, last_);
   const double left_s = std::min(call_left_s, session_left_s);
-  timed_out_s_ = left_s > 0.0 ? 0.0 : call_left_s <= session_left_s ? call_limit(call.function) : options_.session_own_s;
-  const bool is_hopeless = seconds_of(last_.when - call.start.when) > kPatience * call_limit(call.function) || seconds_of(last_.when - session_.when) > kPatience * options_.session_own_s;
+  timed_out_s_ = left_s > 0.0                    ? 0.0
+                 : call_left_s <= session_left_s ? call_limit(call.function)
+                                                 : options_.session_own_s;
+  const bool is_hopeless =
+      seconds_of(last_.when - call.start.when) > kPatience * call_limit(call.function) ||
+      seconds_of(last_.when - session_.when) > kPatience * options_.session_own_s;
   if (left_s <= 0.0 || is_hopeless) return passed;
-  constexpr double kLeast = 1e-3, kMost = 1.0;   // s until the next check
+  constexpr double kLeast = 1e-3, kMost = 1.0;  // s until the next check
   return call.next_check = last_.when + seconds(std::clamp(left_s, kLeast, kMost));
 }
 
 double WorkerConnection::call_limit(const std::string& function) const {
   const auto own = options_.suspects.find(function);
-  return own == options_.suspects.end() ? options_.call_own_s : std::min(own->second, options_.call_own_s);
+  return own == options_.suspects.end() ? options_.call_own_s
+                                        : std::min(own->second, options_.call_own_s);
 }
 
 // After the check that ended the wait: a limit on own time was exceeded, or the machine is too
@@ -260,28 +285,37 @@ void WorkerConnection::end(Verdict verdict, const std::string& story) {
 }
 
 void WorkerConnection::explain_death(const char* function) {
-  constexpr double kGrace = 2.0;  // s: after the channel has closed, for a dying process to be reaped, also on a loaded machine
+  // s: after the channel has closed, for a dying process to be reaped, also on a loaded machine
+  constexpr double kGrace = 2.0;
   const auto before = Channel::Clock::now();
   const SandboxOutcome outcome = stop(kGrace);
-  if (outcome.ending == Ending::kStopped) charge_wait(seconds_of(Channel::Clock::now() - before));   // it continued without its channel
+  // it continued without its channel
+  if (outcome.ending == Ending::kStopped) charge_wait(seconds_of(Channel::Clock::now() - before));
   switch (outcome.ending) {
     case Ending::kSignal:
-      if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
+      if (outcome.code == SIGXCPU ||
+          (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
         end_at_limit(function, options_.session_own_s);
       end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(arguments_));
     case Ending::kExited: {
-      const std::string said = outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);
-      end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said + asked_words(arguments_));
+      const std::string said =
+          outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);
+      end(Verdict::kCrashed,
+          exit_story(outcome.code, function, true) + said + asked_words(arguments_));
     }
     case Ending::kStalled:
-    case Ending::kWallLimit:
-      end(Verdict::kMachineBusy, busy_story(function));
-    case Ending::kDiskLimit:   // impossible: it has no folder to write to
-      end(Verdict::kGraderFault, std::string("a worker without a folder wrote files, in ") + function);
+    case Ending::kWallLimit: end(Verdict::kMachineBusy, busy_story(function));
+    case Ending::kDiskLimit:  // impossible: it has no folder to write to
+      end(Verdict::kGraderFault,
+          std::string("a worker without a folder wrote files, in ") + function);
     case Ending::kOutputLimit:
-      end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function + asked_words(arguments_));
+      end(Verdict::kOutOfResources, "printed more than " +
+                                        std::to_string(job_.limits.output_bytes / 1024) +
+                                        " KiB, in " + function + asked_words(arguments_));
     case Ending::kStopped:
-      end(Verdict::kCrashed, std::string("closed its channel to the judge instead of returning from ") + function + asked_words(arguments_));
+      end(Verdict::kCrashed,
+          std::string("closed its channel to the judge instead of returning from ") + function +
+              asked_words(arguments_));
     case Ending::kNotStarted: break;
   }
   end(Verdict::kGraderFault, "the sandbox did not start: " + outcome.printed);
@@ -301,12 +335,13 @@ void WorkerConnection::fail(const char* function, std::exception_ptr transport_e
 void WorkerConnection::refuse(const char* function, const std::string& what) {
   stop(0.0);
   if (what.find("std::bad_alloc") != std::string::npos)
-    end(Verdict::kOutOfResources, std::string(function) + " needed more memory than its limit" + asked_words(arguments_));
+    end(Verdict::kOutOfResources,
+        std::string(function) + " needed more memory than its limit" + asked_words(arguments_));
   end(Verdict::kCrashed, std::string(function) + ' ' + what + asked_words(arguments_));
 }
 
 void WorkerConnection::wrong_size(const char*, const std::string& story) {
-  stop(0.0);   // it may still wait inside the call
+  stop(0.0);  // it may still wait inside the call
   end(Verdict::kWrong, story);
 }
 

@@ -19,24 +19,28 @@ namespace tumble::grading {
 
 /// The programs of a build tree that run submissions.
 struct WorkerPrograms {
-  std::filesystem::path worker;   // worker_a1, built from worker_program.h
-  std::filesystem::path init;     // sandbox_init
+  std::filesystem::path worker;  // worker_a1, built from worker_program.h
+  std::filesystem::path init;    // sandbox_init
 };
 /// @param folder  of the programs; empty: that of the running program
 /// @throws UserError when they are not built
 WorkerPrograms worker_programs(const std::string& id, const std::filesystem::path& folder = {});
 
 struct WorkerOptions {
-  std::string id;                       // of the module, "a1"
-  std::filesystem::path module;         // what compile_submission made: a shared object, or a worker that is linked with the submission
-  bool sandboxed = true;                // false: a plain process, for trusted code (known-wrong solutions)
-  std::filesystem::path programs;       // folder of worker_ID and sandbox_init; empty: that of this program
+  std::string id;  // of the module, "a1"
+  // what compile_submission made: a shared object, or a worker that is linked with the submission
+  std::filesystem::path module;
+  // false: a plain process, for trusted code (known-wrong solutions)
+  bool sandboxed = true;
+  // folder of worker_ID and sandbox_init; empty: that of this program
+  std::filesystem::path programs;
   // Own time of the worker (own_time.h), without the time that it waits for a core or for a
   // callback's answer.
-  double call_own_s = 5.0;              // a longer call counts as an endless loop; right calls take microseconds
-  std::map<std::string, double> suspects;   // shorter limits [s], by function: see TimeBudget
-  double session_own_s = 10.0;          // of all calls until reset()
-  long callback_budget = 2'000'000;     // per session: hundreds of times more than any module needs
+  // a longer call counts as an endless loop; right calls take microseconds
+  double call_own_s = 5.0;
+  std::map<std::string, double> suspects;  // shorter limits [s], by function: see TimeBudget
+  double session_own_s = 10.0;             // of all calls until reset()
+  long callback_budget = 2'000'000;  // per session: hundreds of times more than any module needs
   std::uint64_t memory_bytes = 1ull << 30;
 };
 
@@ -81,7 +85,7 @@ class WorkerConnection : public modules::Connection {
   };
   struct Call {
     std::string function;
-    TimePoint next_check{};     // of its own time
+    TimePoint next_check{};  // of its own time
     Account start;
   };
 
@@ -109,13 +113,14 @@ class WorkerConnection : public modules::Connection {
   pid_t plain_ = -1;
   int socket_ = -1;
   std::unique_ptr<modules::Channel> channel_;
-  std::string arguments_;               // of the failed call, in words
-  std::vector<Call> calls_;             // active calls, the outermost first
-  Account session_, last_;              // at the worker's start, and at the last reading
-  std::optional<TimePoint> turn_;       // start of the worker's turn; nothing: it is the judge's turn
+  std::string arguments_;    // of the failed call, in words
+  std::vector<Call> calls_;  // active calls, the outermost first
+  Account session_, last_;   // at the worker's start, and at the last reading
+  // start of the worker's turn; nothing: it is the judge's turn
+  std::optional<TimePoint> turn_;
   double past_turns_s_ = 0.0;
-  double own_before_s_ = 0.0;           // of earlier workers in this test
-  double timed_out_s_ = 0.0;            // the limit that the last check found exceeded; 0: none
+  double own_before_s_ = 0.0;  // of earlier workers in this test
+  double timed_out_s_ = 0.0;   // the limit that the last check found exceeded; 0: none
   pid_t worker_ = -1;
   long callbacks_ = 0;
 };

@@ -1,6 +1,7 @@
-// A right solution that works in the body's frame where it can: vectors are carried into it, and the tensor never leaves.
-// The ray is judged in a frame of its own, made of two perpendiculars to its direction. Mobility is built from one function
-// of contact and body that also serves the application of the impulse.
+// A right solution that works in the body's frame where it can: vectors are carried into it, and
+// the tensor never leaves. The ray is judged in a frame of its own, made of two perpendiculars to
+// its direction. Mobility is built from one function of contact and body that also serves the
+// application of the impulse.
 #include "assignments/a1_impulse/a1_impulse.h"
 
 namespace tumble::a1 {
@@ -31,7 +32,8 @@ double response(const Body& body, const Contact& contact) {
 }
 
 double bounce(double approach, double inverse_mass, double restitution) {
-  return approach < 0.0 && inverse_mass > 0.0 ? (1.0 + restitution) * -approach / inverse_mass : 0.0;
+  return approach < 0.0 && inverse_mass > 0.0 ? (1.0 + restitution) * -approach / inverse_mass
+                                              : 0.0;
 }
 
 Vector2d perpendicular_towards(const Vector2d& start, const Vector2d& end, const Vector2d& target) {
@@ -55,7 +57,8 @@ std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& tri
     const Vector3d p = corner_world - ray.origin_world;
     return {p.dot(right), p.dot(up), p.dot(d)};
   };
-  const SeenCorner a = seen(triangle.a_world), b = seen(triangle.b_world), c = seen(triangle.c_world);
+  const SeenCorner a = seen(triangle.a_world), b = seen(triangle.b_world),
+                   c = seen(triangle.c_world);
   double w_a = area(b, c), w_b = area(c, a), w_c = area(a, b);
   if (w_a + w_b + w_c < 0.0) w_a = -w_a, w_b = -w_b, w_c = -w_c;
   if (w_a < 0.0 || w_b < 0.0 || w_c < 0.0) return std::nullopt;
@@ -68,11 +71,14 @@ std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& tri
   return hit.t < 0.0 ? std::nullopt : std::optional<RayHit>(hit);
 }
 
-Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world, const Vector3d& com_world) {
+Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world,
+                             const Vector3d& com_world) {
   return {force_world, force_world.cross(com_world - point_world)};
 }
 
-Vector3d linear_acceleration(const Body& body, const Vector3d& force_world) { return force_world * body.inertia.inverse_mass; }
+Vector3d linear_acceleration(const Body& body, const Vector3d& force_world) {
+  return force_world * body.inertia.inverse_mass;
+}
 
 Vector3d angular_acceleration(const Body& body, const Vector3d& torque_world) {
   const bool immovable = body.inertia.inverse_inertia_body.isZero(0.0);
@@ -80,27 +86,35 @@ Vector3d angular_acceleration(const Body& body, const Vector3d& torque_world) {
   // In the world frame: I w' = tau - w x L with L = I w.
   const Quaterniond body_from_world = body.world_from_body.inverse();
   const Vector3d omega_body = body_from_world * body.omega_world;
-  const Vector3d angular_momentum_world = body.world_from_body * Vector3d(body.inertia.inertia_body * omega_body);
+  const Vector3d angular_momentum_world =
+      body.world_from_body * Vector3d(body.inertia.inertia_body * omega_body);
   return spin_up(body, torque_world - body.omega_world.cross(angular_momentum_world));
 }
 
 double relative_normal_velocity(const Contact& contact, const Body& a, const Body& b) {
   const Vector3d& n = contact.normal_b_to_a_world;
-  const Vector3d arm_a = contact.point_world - a.com_world, arm_b = contact.point_world - b.com_world;
+  const Vector3d arm_a = contact.point_world - a.com_world,
+                 arm_b = contact.point_world - b.com_world;
   // n . (w x r) = w . (r x n)
-  return n.dot(a.velocity_world - b.velocity_world) + a.omega_world.dot(arm_a.cross(n)) - b.omega_world.dot(arm_b.cross(n));
+  return n.dot(a.velocity_world - b.velocity_world) + a.omega_world.dot(arm_a.cross(n)) -
+         b.omega_world.dot(arm_b.cross(n));
 }
 
 RelativeMotion classify_relative_motion(double normal_velocity, double tolerance) {
   const bool separating = normal_velocity > tolerance, approaching = -normal_velocity > tolerance;
-  return approaching ? RelativeMotion::kApproaching : separating ? RelativeMotion::kSeparating : RelativeMotion::kResting;
+  return approaching  ? RelativeMotion::kApproaching
+         : separating ? RelativeMotion::kSeparating
+                      : RelativeMotion::kResting;
 }
 
-Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world, const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world) {
+Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world,
+                                    const Vector2d& edge_start_b_world,
+                                    const Vector2d& edge_end_b_world) {
   return perpendicular_towards(edge_start_b_world, edge_end_b_world, vertex_a_world);
 }
 
-Vector2d contact_normal_edge_edge(const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world, const Vector2d& com_a_world) {
+Vector2d contact_normal_edge_edge(const Vector2d& edge_start_b_world,
+                                  const Vector2d& edge_end_b_world, const Vector2d& com_a_world) {
   return perpendicular_towards(edge_start_b_world, edge_end_b_world, com_a_world);
 }
 
@@ -108,21 +122,26 @@ Vector2d contact_normal_vertex_vertex(const Vector2d& com_a_world, const Vector2
   return (com_a_world - com_b_world).normalized();
 }
 
-double collision_impulse_without_rotation(const Contact& contact, const Body& a, const Body& b, double restitution) {
-  return bounce(contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world), a.inertia.inverse_mass + b.inertia.inverse_mass,
-                restitution);
+double collision_impulse_without_rotation(const Contact& contact, const Body& a, const Body& b,
+                                          double restitution) {
+  return bounce(contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world),
+                a.inertia.inverse_mass + b.inertia.inverse_mass, restitution);
 }
 
 double collision_impulse(const Contact& contact, const Body& a, const Body& b, double restitution) {
-  return bounce(relative_normal_velocity(contact, a, b), response(a, contact) + response(b, contact), restitution);
+  return bounce(relative_normal_velocity(contact, a, b),
+                response(a, contact) + response(b, contact), restitution);
 }
 
-Velocity apply_impulse(const Body& body, const Vector3d& impulse_world, const Vector3d& point_world) {
+Velocity apply_impulse(const Body& body, const Vector3d& impulse_world,
+                       const Vector3d& point_world) {
   const Vector3d angular_impulse_world = (point_world - body.com_world).cross(impulse_world);
-  return {body.velocity_world + body.inertia.inverse_mass * impulse_world, body.omega_world + spin_up(body, angular_impulse_world)};
+  return {body.velocity_world + body.inertia.inverse_mass * impulse_world,
+          body.omega_world + spin_up(body, angular_impulse_world)};
 }
 
-CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b, double restitution) {
+CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b,
+                                   double restitution) {
   const double j = collision_impulse(contact, a, b, restitution);
   return {apply_impulse(a, j * contact.normal_b_to_a_world, contact.point_world),
           apply_impulse(b, -j * contact.normal_b_to_a_world, contact.point_world)};

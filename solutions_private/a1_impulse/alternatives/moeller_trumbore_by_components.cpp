@@ -1,5 +1,6 @@
-// A right solution: the ray by Moeller and Trumbore's cross products, each edge judged by a number of its own (their 1 - u - v, taken
-// from the edge bc itself); everything else by components in plain loops, the way a first program is written.
+// A right solution: the ray by Moeller and Trumbore's cross products, each edge judged by a number
+// of its own (their 1 - u - v, taken from the edge bc itself); everything else by components in
+// plain loops, the way a first program is written.
 #include "assignments/a1_impulse/a1_impulse.h"
 
 #include <array>
@@ -54,16 +55,21 @@ Vector3d turned_by(const Body& body, const Vector3d& angular_impulse_world) {
   return to_world(R, times(body.inertia.inverse_inertia_body, to_body(R, angular_impulse_world)));
 }
 
-Vector3d velocity_of_point(const Body& body, const Vector3d& p) { return body.velocity_world + cross(body.omega_world, p - body.com_world); }
+Vector3d velocity_of_point(const Body& body, const Vector3d& p) {
+  return body.velocity_world + cross(body.omega_world, p - body.com_world);
+}
 
 /// n . ((I^-1 (r x n)) x r), as the equation is printed.
 double turning_term(const Body& body, const Contact& contact) {
   const Vector3d r = contact.point_world - body.com_world;
-  return dot(contact.normal_b_to_a_world, cross(turned_by(body, cross(r, contact.normal_b_to_a_world)), r));
+  return dot(contact.normal_b_to_a_world,
+             cross(turned_by(body, cross(r, contact.normal_b_to_a_world)), r));
 }
 
 /// d . ((p + q) x (q - p)): twice d . (p x q); swapped ends give exactly the opposite number.
-double edge(const Vector3d& d, const Vector3d& p, const Vector3d& q) { return dot(d, cross(p + q, q - p)); }
+double edge(const Vector3d& d, const Vector3d& p, const Vector3d& q) {
+  return dot(d, cross(p + q, q - p));
+}
 
 }  // namespace
 
@@ -90,7 +96,8 @@ std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& tri
   return RayHit{t, Vector3d(of_a / sum, of_b / sum, of_c / sum)};
 }
 
-Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world, const Vector3d& com_world) {
+Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world,
+                             const Vector3d& com_world) {
   return {force_world, -cross(force_world, point_world - com_world)};
 }
 
@@ -108,7 +115,8 @@ Vector3d angular_acceleration(const Body& body, const Vector3d& torque_world) {
 }
 
 double relative_normal_velocity(const Contact& contact, const Body& a, const Body& b) {
-  return dot(velocity_of_point(a, contact.point_world), contact.normal_b_to_a_world) - dot(velocity_of_point(b, contact.point_world), contact.normal_b_to_a_world);
+  return dot(velocity_of_point(a, contact.point_world), contact.normal_b_to_a_world) -
+         dot(velocity_of_point(b, contact.point_world), contact.normal_b_to_a_world);
 }
 
 RelativeMotion classify_relative_motion(double normal_velocity, double tolerance) {
@@ -117,24 +125,32 @@ RelativeMotion classify_relative_motion(double normal_velocity, double tolerance
   return RelativeMotion::kResting;
 }
 
-Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world, const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world) {
-  // The direction of the edge first, then what is left of the way to the corner: both ways to the side, rounded otherwise.
-  const Vector2d along = (edge_end_b_world - edge_start_b_world).normalized(), right(along.y(), -along.x());
+Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world,
+                                    const Vector2d& edge_start_b_world,
+                                    const Vector2d& edge_end_b_world) {
+  // The direction of the edge first, then what is left of the way to the corner: both ways to the
+  // side, rounded otherwise.
+  const Vector2d along = (edge_end_b_world - edge_start_b_world).normalized(),
+                 right(along.y(), -along.x());
   const Vector2d way = vertex_a_world - edge_start_b_world;
   return right.x() * way.x() + right.y() * way.y() < 0 ? Vector2d(-right.x(), -right.y()) : right;
 }
 
-Vector2d contact_normal_edge_edge(const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world, const Vector2d& com_a_world) {
+Vector2d contact_normal_edge_edge(const Vector2d& edge_start_b_world,
+                                  const Vector2d& edge_end_b_world, const Vector2d& com_a_world) {
   return contact_normal_vertex_edge(com_a_world, edge_start_b_world, edge_end_b_world);
 }
 
 Vector2d contact_normal_vertex_vertex(const Vector2d& com_a_world, const Vector2d& com_b_world) {
-  const double x = com_a_world.x() - com_b_world.x(), y = com_a_world.y() - com_b_world.y(), length = std::hypot(x, y);
+  const double x = com_a_world.x() - com_b_world.x(), y = com_a_world.y() - com_b_world.y(),
+               length = std::hypot(x, y);
   return {x / length, y / length};
 }
 
-double collision_impulse_without_rotation(const Contact& contact, const Body& a, const Body& b, double restitution) {
-  const double u = dot(contact.normal_b_to_a_world, a.velocity_world) - dot(contact.normal_b_to_a_world, b.velocity_world);
+double collision_impulse_without_rotation(const Contact& contact, const Body& a, const Body& b,
+                                          double restitution) {
+  const double u = dot(contact.normal_b_to_a_world, a.velocity_world) -
+                   dot(contact.normal_b_to_a_world, b.velocity_world);
   if (u >= 0) return 0;
   if (a.inertia.inverse_mass == 0 && b.inertia.inverse_mass == 0) return 0;
   return -(1 + restitution) * u / (a.inertia.inverse_mass + b.inertia.inverse_mass);
@@ -144,18 +160,23 @@ double collision_impulse(const Contact& contact, const Body& a, const Body& b, d
   const double u = relative_normal_velocity(contact, a, b);
   if (u >= 0) return 0;
   if (a.inertia.inverse_mass == 0 && b.inertia.inverse_mass == 0) return 0;
-  const double k = a.inertia.inverse_mass + b.inertia.inverse_mass + turning_term(a, contact) + turning_term(b, contact);
+  const double k = a.inertia.inverse_mass + b.inertia.inverse_mass + turning_term(a, contact) +
+                   turning_term(b, contact);
   return -(u + restitution * u) / k;
 }
 
-Velocity apply_impulse(const Body& body, const Vector3d& impulse_world, const Vector3d& point_world) {
+Velocity apply_impulse(const Body& body, const Vector3d& impulse_world,
+                       const Vector3d& point_world) {
   if (body.inertia.inverse_mass == 0) return {body.velocity_world, body.omega_world};
-  return {body.velocity_world + impulse_world / body.inertia.mass, body.omega_world + turned_by(body, cross(point_world - body.com_world, impulse_world))};
+  return {body.velocity_world + impulse_world / body.inertia.mass,
+          body.omega_world + turned_by(body, cross(point_world - body.com_world, impulse_world))};
 }
 
-CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b, double restitution) {
+CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b,
+                                   double restitution) {
   const double j = collision_impulse(contact, a, b, restitution);
-  return {apply_impulse(a, contact.normal_b_to_a_world * j, contact.point_world), apply_impulse(b, contact.normal_b_to_a_world * (-j), contact.point_world)};
+  return {apply_impulse(a, contact.normal_b_to_a_world * j, contact.point_world),
+          apply_impulse(b, contact.normal_b_to_a_world * (-j), contact.point_world)};
 }
 
 }  // namespace tumble::a1

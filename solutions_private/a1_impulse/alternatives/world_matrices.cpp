@@ -1,5 +1,5 @@
-// A right solution, written the way the handout reads: inertia tensors as world matrices, each term as it stands in the
-// equation, the ray by three volumes.
+// A right solution, written the way the handout reads: inertia tensors as world matrices, each term
+// as it stands in the equation, the ray by three volumes.
 #include "assignments/a1_impulse/a1_impulse.h"
 
 #include <cmath>
@@ -18,9 +18,11 @@ Vector3d point_velocity(const Body& body, const Vector3d& point_world) {
   return body.velocity_world + body.omega_world.cross(r);
 }
 
-/// Twice d . (p x q), written so that p and q swapped give exactly the opposite number, and that a far origin (large p and
-/// q, small q - p) costs few digits.
-double volume(const Vector3d& d, const Vector3d& p, const Vector3d& q) { return d.dot((p + q).cross(q - p)); }
+/// Twice d . (p x q), written so that p and q swapped give exactly the opposite number, and that a
+/// far origin (large p and q, small q - p) costs few digits.
+double volume(const Vector3d& d, const Vector3d& p, const Vector3d& q) {
+  return d.dot((p + q).cross(q - p));
+}
 
 }  // namespace
 
@@ -30,7 +32,8 @@ std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& tri
   const Vector3d b = triangle.b_world - ray.origin_world;
   const Vector3d c = triangle.c_world - ray.origin_world;
 
-  // The ray passes each edge on one side or the other: the sign of the volume that it spans with the edge.
+  // The ray passes each edge on one side or the other: the sign of the volume that it spans with
+  // the edge.
   const double side_bc = volume(d, b, c);
   const double side_ca = volume(d, c, a);
   const double side_ab = volume(d, a, b);
@@ -50,7 +53,8 @@ std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& tri
   return RayHit{t, weights};
 }
 
-Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world, const Vector3d& com_world) {
+Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world,
+                             const Vector3d& com_world) {
   const Vector3d r = point_world - com_world;
   return Wrench{force_world, r.cross(force_world)};
 }
@@ -80,7 +84,9 @@ RelativeMotion classify_relative_motion(double normal_velocity, double tolerance
   return normal_velocity < 0 ? RelativeMotion::kApproaching : RelativeMotion::kSeparating;
 }
 
-Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world, const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world) {
+Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world,
+                                    const Vector2d& edge_start_b_world,
+                                    const Vector2d& edge_end_b_world) {
   const Vector2d edge = edge_end_b_world - edge_start_b_world;
   Vector2d normal(edge.y(), -edge.x());
   normal /= normal.norm();
@@ -88,7 +94,8 @@ Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world, const Vector
   return normal;
 }
 
-Vector2d contact_normal_edge_edge(const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world, const Vector2d& com_a_world) {
+Vector2d contact_normal_edge_edge(const Vector2d& edge_start_b_world,
+                                  const Vector2d& edge_end_b_world, const Vector2d& com_a_world) {
   const Vector2d edge = edge_end_b_world - edge_start_b_world;
   Vector2d normal(edge.y(), -edge.x());
   normal /= normal.norm();
@@ -101,7 +108,8 @@ Vector2d contact_normal_vertex_vertex(const Vector2d& com_a_world, const Vector2
   return line / line.norm();
 }
 
-double collision_impulse_without_rotation(const Contact& contact, const Body& a, const Body& b, double restitution) {
+double collision_impulse_without_rotation(const Contact& contact, const Body& a, const Body& b,
+                                          double restitution) {
   const double u = contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world);
   const double denominator = a.inertia.inverse_mass + b.inertia.inverse_mass;
   if (u >= 0 || denominator == 0) return 0;
@@ -115,12 +123,14 @@ double collision_impulse(const Contact& contact, const Body& a, const Body& b, d
   const double u = relative_normal_velocity(contact, a, b);
   const Vector3d turning_a = (inverse_inertia_world(a) * r_a.cross(n)).cross(r_a);
   const Vector3d turning_b = (inverse_inertia_world(b) * r_b.cross(n)).cross(r_b);
-  const double denominator = a.inertia.inverse_mass + b.inertia.inverse_mass + n.dot(turning_a + turning_b);
+  const double denominator =
+      a.inertia.inverse_mass + b.inertia.inverse_mass + n.dot(turning_a + turning_b);
   if (u >= 0 || denominator == 0) return 0;
   return -(1 + restitution) * u / denominator;
 }
 
-Velocity apply_impulse(const Body& body, const Vector3d& impulse_world, const Vector3d& point_world) {
+Velocity apply_impulse(const Body& body, const Vector3d& impulse_world,
+                       const Vector3d& point_world) {
   const Vector3d r = point_world - body.com_world;
   Velocity after;
   after.linear_world = body.velocity_world + impulse_world * body.inertia.inverse_mass;
@@ -128,7 +138,8 @@ Velocity apply_impulse(const Body& body, const Vector3d& impulse_world, const Ve
   return after;
 }
 
-CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b, double restitution) {
+CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b,
+                                   double restitution) {
   const double j = collision_impulse(contact, a, b, restitution);
   const Vector3d J = j * contact.normal_b_to_a_world;
   CollisionOutcome after;

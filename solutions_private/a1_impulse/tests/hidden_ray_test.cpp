@@ -26,7 +26,8 @@ Shot random_shot(Random& random, const Vector3d& weights) {
     shot.ray.direction_world = (aim - shot.ray.origin_world) / shot.t;
     shot.weights = weights;
     const Vector3d normal = (b - a).cross(c - a);
-    const double seen = std::abs(normal.dot(shot.ray.direction_world.normalized()));  // twice the area that the ray sees
+    // twice the area that the ray sees
+    const double seen = std::abs(normal.dot(shot.ray.direction_world.normalized()));
     shot.conditioning = 30.0 / seen;
     if (seen > 0.1) return shot;  // slivers and edge-on triangles have tests of their own
   }
@@ -43,14 +44,16 @@ TEST(HiddenRayTriangle, FindsHitsBuiltFromWeights) {
   for (int i = 0; i < 200 && !HasFailure(); ++i) {
     const Shot shot = random_shot(random, random_inside(random));
     const auto found = student().intersect_ray_triangle(shot.ray, shot.triangle);
-    const Story story{.scene = "ray " + std::to_string(i) + " of seed 2001, aimed at weights " + show(shot.weights) + " of a random triangle at t = " + show(shot.t),
+    const Story story{.scene = "ray " + std::to_string(i) + " of seed 2001, aimed at weights " +
+                               show(shot.weights) + " of a random triangle at t = " + show(shot.t),
                       .slip = "the order of the weights, or lost digits",
                       .handout = kHandout};
     expect_true(found.has_value(), "a hit", "a miss", story);
     if (!found) return;
     // The aim is rounded to eps of the scene's size 3, which the view of the triangle amplifies.
     expect_near(found->t, shot.t, 10 * kEps * shot.conditioning * shot.t, "lengths of d", story);
-    expect_near(found->barycentric, shot.weights, 10 * kEps * shot.conditioning, "(weights)", story);
+    expect_near(found->barycentric, shot.weights, 10 * kEps * shot.conditioning, "(weights)",
+                story);
   }
 }
 
@@ -66,10 +69,12 @@ TEST(HiddenRayTriangle, MissesBuiltFromNegativeWeights) {
     weights[(k + 1) % 3] += shift;
     const Shot shot = random_shot(random, weights);
     const auto found = student().intersect_ray_triangle(shot.ray, shot.triangle);
-    expect_true(!found, "a miss", "a hit",
-                {.scene = "ray " + std::to_string(i) + " of seed 2002, aimed beside a random triangle at weights " + show(weights),
-                 .slip = "one of the three weights is not tested",
-                 .handout = kHandout});
+    expect_true(
+        !found, "a miss", "a hit",
+        {.scene = "ray " + std::to_string(i) +
+                  " of seed 2002, aimed beside a random triangle at weights " + show(weights),
+         .slip = "one of the three weights is not tested",
+         .handout = kHandout});
   }
 }
 
@@ -80,10 +85,11 @@ TEST(HiddenRayTriangle, NeverLooksBack) {
     Shot shot = random_shot(random, random_inside(random));
     shot.ray.direction_world *= -1.0;
     const auto found = student().intersect_ray_triangle(shot.ray, shot.triangle);
-    expect_true(!found, "a miss", "a hit",
-                {.scene = "ray " + std::to_string(i) + " of seed 2003, turned away from its triangle",
-                 .slip = "hits behind the origin accepted",
-                 .handout = kHandout});
+    expect_true(
+        !found, "a miss", "a hit",
+        {.scene = "ray " + std::to_string(i) + " of seed 2003, turned away from its triangle",
+         .slip = "hits behind the origin accepted",
+         .handout = kHandout});
   }
 }
 
@@ -94,11 +100,13 @@ TEST(HiddenRayTriangle, CornersMayBeListedFromAnyOfThem) {
     const auto& [a, b, c] = shot.triangle;
     const auto found = student().intersect_ray_triangle(shot.ray, {b, c, a});
     const Vector3d turned(shot.weights[1], shot.weights[2], shot.weights[0]);
-    const Story story{.scene = "ray " + std::to_string(i) + " of seed 2004 against a triangle listed from its second corner",
+    const Story story{.scene = "ray " + std::to_string(i) +
+                               " of seed 2004 against a triangle listed from its second corner",
                       .slip = "the weights do not follow the corners",
                       .handout = kHandout};
     expect_true(found.has_value(), "a hit", "a miss", story);
-    if (found) expect_near(found->barycentric, turned, 10 * kEps * shot.conditioning, "(weights)", story);
+    if (found)
+      expect_near(found->barycentric, turned, 10 * kEps * shot.conditioning, "(weights)", story);
   }
 }
 
@@ -106,16 +114,21 @@ TEST(HiddenRayTriangle, SeesFromAMillionMetres) {
   Random random(2005);
   for (int i = 0; i < 100 && !HasFailure(); ++i) {
     // The far eye and the aim are dyadic, so that the ray passes exactly through (x, y, 0).
-    const double x = 0.25 + 0x1p-10 * static_cast<double>(random.below(100)), y = 0.25 + 0x1p-10 * static_cast<double>(random.below(100));
+    const double x = 0.25 + 0x1p-10 * static_cast<double>(random.below(100)),
+                 y = 0.25 + 0x1p-10 * static_cast<double>(random.below(100));
     const double far = 0x1p20;
-    const auto found = student().intersect_ray_triangle({{x + far, y - far, far}, {-1, 1, -1}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-    const Story story{.scene = "a triangle of 1 m seen from 1 800 km away, aim (" + show(x) + ", " + show(y) + ", 0)",
+    const auto found = student().intersect_ray_triangle({{x + far, y - far, far}, {-1, 1, -1}},
+                                                        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const Story story{.scene = "a triangle of 1 m seen from 1 800 km away, aim (" + show(x) + ", " +
+                               show(y) + ", 0)",
                       .slip = "an absolute epsilon, or a limit on t",
                       .handout = kHandout};
     expect_true(found.has_value(), "a hit", "a miss", story);
     // Nothing rounds but the divisions and, in some orders of evaluation, sums of size 2^20.
     if (found) expect_near(found->t, far, 8 * kEps * far, "lengths of d", story);
-    if (found) expect_near(found->barycentric, Vector3d(1 - x - y, x, y), 8 * kEps * far, "(weights)", story);
+    if (found)
+      expect_near(found->barycentric, Vector3d(1 - x - y, x, y), 8 * kEps * far, "(weights)",
+                  story);
   }
 }
 

@@ -1,5 +1,5 @@
-// A right solution, written with loops and components where the reference uses Eigen's words; Newton as in textbooks:
-// an iterate, the last steps, and a bracket closed at the end.
+// A right solution, written with loops and components where the reference uses Eigen's words;
+// Newton as in textbooks: an iterate, the last steps, and a bracket closed at the end.
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <algorithm>
@@ -17,15 +17,17 @@ VectorXd moved(VectorXd y, double h, const VectorXd& slope) {
 Matrix3d matrix_of(const Quaterniond& q) {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   Matrix3d R;
-  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+      1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
+      1 - 2 * (x * x + y * y);
   return R;
 }
 
 }  // namespace
 
-VectorXd euler_step(const OdeFunction& f, double t, const VectorXd& y, double h) { return moved(y, h, f(t, y)); }
+VectorXd euler_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  return moved(y, h, f(t, y));
+}
 
 VectorXd rk4_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
   const double where[] = {0, 0.5, 0.5, 1}, weight[] = {1, 2, 2, 1};
@@ -47,10 +49,12 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
   return inertia_world;
 }
 
-VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia,
+                               const Wrench& wrench) {
   const Quaterniond& q = state.world_from_body;
   const Vector3d momentum_body = matrix_of(q).transpose() * state.angular_momentum_world;
-  const Vector3d w = inertia.inverse_inertia_body * momentum_body;  // body frame: q' = 1/2 q (0, w_body)
+  // body frame: q' = 1/2 q (0, w_body)
+  const Vector3d w = inertia.inverse_inertia_body * momentum_body;
   VectorXd rate(kStateSize);
   rate.segment<3>(0) = state.momentum_world * inertia.inverse_mass;
   rate[3] = -0.5 * (q.x() * w.x() + q.y() * w.y() + q.z() * w.z());
@@ -77,11 +81,11 @@ Matrix3d orthonormalize(const Matrix3d& drifted) {
 }
 
 Matrix3d rotation_from_euler_angles(double yaw, double pitch, double roll) {
-  const double cy = std::cos(yaw), sy = std::sin(yaw), cp = std::cos(pitch), sp = std::sin(pitch), cr = std::cos(roll), sr = std::sin(roll);
+  const double cy = std::cos(yaw), sy = std::sin(yaw), cp = std::cos(pitch), sp = std::sin(pitch),
+               cr = std::cos(roll), sr = std::sin(roll);
   Matrix3d R;
-  R << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
-      sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
-      -sp, cp * sr, cp * cr;
+  R << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr,
+      sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr;
   return R;
 }
 
@@ -91,7 +95,8 @@ EulerAngles euler_angles_from_rotation(const Matrix3d& R) {
   return {std::atan2(R(1, 0), R(0, 0)), std::atan2(-R(2, 0), c), std::atan2(R(2, 1), R(2, 2))};
 }
 
-RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high, double tolerance) {
+RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high,
+                                 double tolerance) {
   RootResult r;
   const double g_low = gap(t_low), g_high = gap(t_high);
   r.evaluations = 2;
@@ -125,7 +130,8 @@ RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double
   return r;
 }
 
-RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance) {
+RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                              double t_low, double t_high, double tolerance) {
   int evaluations = 0;
   bool saw_nan = false;
   const auto g = [&](double t) {
@@ -135,8 +141,12 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
     return value;
   };
   double a = t_low, b = t_high, g_a = g(a), g_b = g(b);
-  const auto done = [&](RootStatus status, double t, double residual) { return RootResult{status, t, residual, evaluations}; };
-  const auto not_converged = [&] { return done(RootStatus::kNotConverged, g_a >= 0 ? a : kUnset, g_a >= 0 ? g_a : kUnset); };
+  const auto done = [&](RootStatus status, double t, double residual) {
+    return RootResult{status, t, residual, evaluations};
+  };
+  const auto not_converged = [&] {
+    return done(RootStatus::kNotConverged, g_a >= 0 ? a : kUnset, g_a >= 0 ? g_a : kUnset);
+  };
   if (saw_nan) return not_converged();
   if (g_a < 0 || (g_a > 0 && g_b > 0)) return done(RootStatus::kNoSignChange, kUnset, kUnset);
   if (g_a == 0) return done(RootStatus::kConverged, a, 0.0);
@@ -146,7 +156,8 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
     g_t >= 0 ? (a = t, g_a = g_t) : (b = t, g_b = g_t);
   };
 
-  // Newton's iterate, until its step is small; a midpoint where the step is no good or not half the one before last.
+  // Newton's iterate, until its step is small; a midpoint where the step is no good or not half the
+  // one before last.
   double t = a + (b - a) / 2, last = b - a, before_last = b - a;
   for (int i = 0; i < 200 && b - a > tolerance; ++i) {
     const double g_t = g(t);
@@ -154,14 +165,17 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
     if (g_t == 0) return done(RootStatus::kConverged, t, 0.0);
     cut(t, g_t);
     double next = t - g_t / gap_rate(t);
-    if (std::abs(next - t) <= std::max(tolerance / 8, 4e-16 * std::abs(t))) break;  // t is the root, as well as Newton knows
+    // t is the root, as well as Newton knows
+    if (std::abs(next - t) <= std::max(tolerance / 8, 4e-16 * std::abs(t))) break;
     if (!(next > a && next < b) || !(std::abs(next - t) <= before_last / 2)) next = a + (b - a) / 2;
     before_last = last;
     last = std::abs(next - t);
     t = next;
   }
-  // Close the bracket around it: look a little to either side, further and further, then halve what is left.
-  for (double reach = std::max(tolerance / 4, 4e-16 * std::abs(t)); b - a > tolerance && reach < b - a && !saw_nan; reach *= 4) {
+  // Close the bracket around it: look a little to either side, further and further, then halve what
+  // is left.
+  for (double reach = std::max(tolerance / 4, 4e-16 * std::abs(t));
+       b - a > tolerance && reach < b - a && !saw_nan; reach *= 4) {
     const double before = a, after = b;
     for (const double probe : {t - reach, t + reach})
       if (!saw_nan && probe > a && probe < b) cut(probe, g(probe));

@@ -1,5 +1,6 @@
-// A right solution in other words: turns by quaternions instead of matrices, angles that keep the rotation in gimbal lock to
-// round-off, and one loop for both searches, which is told how to choose the next time.
+// A right solution in other words: turns by quaternions instead of matrices, angles that keep the
+// rotation in gimbal lock to round-off, and one loop for both searches, which is told how to choose
+// the next time.
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <array>
@@ -26,20 +27,27 @@ VectorXd rk4_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
 
 Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& q) {
   Matrix3d inertia_world;
-  for (int i = 0; i < 3; ++i) inertia_world.col(i) = q * Vector3d(inertia_body * (q.conjugate() * Vector3d(Vector3d::Unit(i))));
+  for (int i = 0; i < 3; ++i)
+    inertia_world.col(i) =
+        q * Vector3d(inertia_body * (q.conjugate() * Vector3d(Vector3d::Unit(i))));
   return inertia_world;
 }
 
-VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia,
+                               const Wrench& wrench) {
   const Quaterniond& q = state.world_from_body;
-  const Vector3d omega_body = inertia.inverse_inertia_body * (q.conjugate() * state.angular_momentum_world);
+  const Vector3d omega_body =
+      inertia.inverse_inertia_body * (q.conjugate() * state.angular_momentum_world);
   const Vector3d w = q * omega_body, v = q.vec();
   VectorXd rate(13);
-  rate << inertia.inverse_mass * state.momentum_world, -0.5 * w.dot(v), 0.5 * (q.w() * w + w.cross(v)), wrench.force_world, wrench.torque_world;
+  rate << inertia.inverse_mass * state.momentum_world, -0.5 * w.dot(v),
+      0.5 * (q.w() * w + w.cross(v)), wrench.force_world, wrench.torque_world;
   return rate;
 }
 
-Quaterniond renormalize(const Quaterniond& q) { return Quaterniond(q.coeffs() / q.coeffs().norm()); }
+Quaterniond renormalize(const Quaterniond& q) {
+  return Quaterniond(q.coeffs() / q.coeffs().norm());
+}
 
 Matrix3d orthonormalize(const Matrix3d& drifted) {
   // The modified order: as soon as a column is ready, its share is taken off all that follow.
@@ -62,16 +70,21 @@ EulerAngles euler_angles_from_rotation(const Matrix3d& R) {
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
   const double pitch = std::atan2(-R(2, 0), cos_pitch);
   if (cos_pitch < 1e-8) return {.yaw = std::atan2(-R(0, 1), R(1, 1)), .pitch = pitch, .roll = 0.0};
-  // Roll is what is left after yaw is undone: whatever rounding did to yaw, the two together are right.
+  // Roll is what is left after yaw is undone: whatever rounding did to yaw, the two together are
+  // right.
   const double yaw = std::atan2(R(1, 0), R(0, 0)), c = std::cos(yaw), s = std::sin(yaw);
-  return {.yaw = yaw, .pitch = pitch, .roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1))};
+  return {.yaw = yaw,
+          .pitch = pitch,
+          .roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1))};
 }
 
 namespace {
 
-/// Cuts [a, b] at times that `propose` names, as long as they lie inside, and at the middle otherwise.
+/// Cuts [a, b] at times that `propose` names, as long as they lie inside, and at the middle
+/// otherwise.
 template <class Propose>
-RootResult close_bracket(const ScalarFunction& gap, double a, double b, double tolerance, Propose&& propose) {
+RootResult close_bracket(const ScalarFunction& gap, double a, double b, double tolerance,
+                         Propose&& propose) {
   RootResult r{RootStatus::kConverged, kUnset, kUnset, 2};
   double g_a = gap(a), g_b = gap(b);
   if (std::isnan(g_a) || std::isnan(g_b)) {
@@ -99,8 +112,10 @@ RootResult close_bracket(const ScalarFunction& gap, double a, double b, double t
       r.status = RootStatus::kNotConverged;
       break;
     }
-    if (g >= 0) a = t, g_a = g;
-    else b = t, g_b = g;
+    if (g >= 0)
+      a = t, g_a = g;
+    else
+      b = t, g_b = g;
   }
   r.time = a;
   r.residual = g_a;
@@ -109,13 +124,17 @@ RootResult close_bracket(const ScalarFunction& gap, double a, double b, double t
 
 }  // namespace
 
-RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high, double tolerance) {
-  return close_bracket(gap, t_low, t_high, tolerance, [](double, double, double, double) { return kUnset; });
+RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high,
+                                 double tolerance) {
+  return close_bracket(gap, t_low, t_high, tolerance,
+                       [](double, double, double, double) { return kUnset; });
 }
 
-RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance) {
-  // In turn: Newton from the better end, the same and a hair beyond, the middle. Newton's own convergence makes the first
-  // two close the bracket from both sides; the third guarantees that it closes at all.
+RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                              double t_low, double t_high, double tolerance) {
+  // In turn: Newton from the better end, the same and a hair beyond, the middle. Newton's own
+  // convergence makes the first two close the bracket from both sides; the third guarantees that it
+  // closes at all.
   int turn = 0;
   const auto propose = [&](double a, double g_a, double b, double g_b) {
     if (turn++ % 4 == 3) return kUnset;

@@ -1,5 +1,6 @@
-// A right solution after the textbooks: Numerical Recipes' rtsafe, its bracket closed at the end; (A2.7) in the printed order, rotations as
-// products of three matrices, pitch by atan2, the derivative by the matrix of (0, w).
+// A right solution after the textbooks: Numerical Recipes' rtsafe, its bracket closed at the end;
+// (A2.7) in the printed order, rotations as products of three matrices, pitch by atan2, the
+// derivative by the matrix of (0, w).
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <array>
@@ -30,16 +31,18 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
   return whole;
 }
 
-VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia,
+                               const Wrench& wrench) {
   const Quaterniond& q = state.world_from_body;
-  const Vector3d w = q * Vector3d(inertia.inverse_inertia_body * (q.conjugate() * state.angular_momentum_world));
+  const Vector3d w =
+      q * Vector3d(inertia.inverse_inertia_body * (q.conjugate() * state.angular_momentum_world));
   Eigen::Matrix4d turning;  // of (w x y z), from the left
-  turning << 0, -w.x(), -w.y(), -w.z(),
-      w.x(), 0, -w.z(), w.y(),
-      w.y(), w.z(), 0, -w.x(),
-      w.z(), -w.y(), w.x(), 0;
+  turning << 0, -w.x(), -w.y(), -w.z(), w.x(), 0, -w.z(), w.y(), w.y(), w.z(), 0, -w.x(), w.z(),
+      -w.y(), w.x(), 0;
   VectorXd rate(13);
-  rate << state.momentum_world * inertia.inverse_mass, 0.5 * (turning * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())), wrench.force_world, wrench.torque_world;
+  rate << state.momentum_world * inertia.inverse_mass,
+      0.5 * (turning * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())), wrench.force_world,
+      wrench.torque_world;
   return rate;
 }
 
@@ -51,7 +54,8 @@ Quaterniond renormalize(const Quaterniond& world_from_body) {
 }
 
 Matrix3d orthonormalize(const Matrix3d& drifted_world_from_body) {
-  const Vector3d a = drifted_world_from_body.col(0), b = drifted_world_from_body.col(1), c = drifted_world_from_body.col(2);
+  const Vector3d a = drifted_world_from_body.col(0), b = drifted_world_from_body.col(1),
+                 c = drifted_world_from_body.col(2);
   const Vector3d x = a / std::sqrt(a.dot(a));
   Vector3d y = b - x.dot(b) * x;
   y /= std::sqrt(y.dot(y));
@@ -98,7 +102,9 @@ struct Counted {
   }
 };
 
-RootResult answer(RootStatus status, const Seen& seen, int calls) { return {status, seen.t, seen.g, calls}; }
+RootResult answer(RootStatus status, const Seen& seen, int calls) {
+  return {status, seen.t, seen.g, calls};
+}
 
 /// What the two ends alone decide; kConverged with NaN for a time: nothing, search on.
 RootResult at_the_ends(const Seen& a, const Seen& b, int calls) {
@@ -126,7 +132,8 @@ RootResult halve(Counted& g, Seen a, Seen b, double tolerance) {
 
 }  // namespace
 
-RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high, double tolerance) {
+RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high,
+                                 double tolerance) {
   Counted g{gap};
   const Seen a = g.at(t_low), b = g.at(t_high);
   const RootResult ends = at_the_ends(a, b, g.calls);
@@ -134,7 +141,8 @@ RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double
   return halve(g, a, b, tolerance);
 }
 
-RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance) {
+RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                              double t_low, double t_high, double tolerance) {
   Counted g{gap};
   Seen a = g.at(t_low), b = g.at(t_high);
   const RootResult ends = at_the_ends(a, b, g.calls);
@@ -149,7 +157,8 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
     (t.g > 0 ? a : b) = t;
     if (b.t - a.t <= tolerance) return answer(RootStatus::kConverged, a, g.calls);
     const double slope = gap_rate(t.t), newton = t.t - t.g / slope;
-    const bool good = newton > a.t && newton < b.t && std::abs(newton - t.t) <= 0.5 * std::abs(step_before);
+    const bool good =
+        newton > a.t && newton < b.t && std::abs(newton - t.t) <= 0.5 * std::abs(step_before);
     const double next = good ? newton : 0.5 * (a.t + b.t);
     step_before = step;
     step = next - t.t;
@@ -159,7 +168,8 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
   }
   // Past the root by a hair, and by more and more, from the side that has come near.
   const bool from_open = t.t == a.t;
-  for (double hair = std::max(0.5 * tolerance, 4e-16 * std::abs(t.t)); b.t - a.t > tolerance && hair < b.t - a.t; hair *= 8) {
+  for (double hair = std::max(0.5 * tolerance, 4e-16 * std::abs(t.t));
+       b.t - a.t > tolerance && hair < b.t - a.t; hair *= 8) {
     const double probe = from_open ? t.t + hair : t.t - hair;
     if (!(probe > a.t && probe < b.t)) break;
     const Seen seen = g.at(probe);

@@ -1,6 +1,7 @@
-// A submission as they come in the evening before the deadline: Euler and the matrices right, k3 built on the wrong slope, the
-// angular velocity on the wrong side of the quaternion, a search that never ends when asked for the last digit, Newton
-// without a safeguard, and the way back from a matrix to its angles not begun.
+// A submission as they come in the evening before the deadline: Euler and the matrices right, k3
+// built on the wrong slope, the angular velocity on the wrong side of the quaternion, a search that
+// never ends when asked for the last digit, Newton without a safeguard, and the way back from a
+// matrix to its angles not begun.
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <cmath>
@@ -26,7 +27,8 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
   return R * inertia_body * R.transpose();
 }
 
-VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia,
+                               const Wrench& wrench) {
   const Quaterniond& q = state.world_from_body;
   // a rotated inverse tensor, as on the slides
   Matrix3d inverse_inertia_world = inertia_in_world(inertia.inverse_inertia_body, q);
@@ -34,8 +36,8 @@ VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inert
   Quaterniond w(0, omega_world.x(), omega_world.y(), omega_world.z());
   Quaterniond spin = q * w;
   VectorXd rate(13);
-  rate << state.momentum_world * inertia.inverse_mass, 0.5 * spin.w(), 0.5 * spin.x(), 0.5 * spin.y(), 0.5 * spin.z(), wrench.force_world,
-      wrench.torque_world;
+  rate << state.momentum_world * inertia.inverse_mass, 0.5 * spin.w(), 0.5 * spin.x(),
+      0.5 * spin.y(), 0.5 * spin.z(), wrench.force_world, wrench.torque_world;
   return rate;
 }
 
@@ -66,7 +68,8 @@ EulerAngles euler_angles_from_rotation(const Matrix3d&) {
   throw NotImplemented("euler_angles_from_rotation", "handouts/a2_integration.md#hint-gimbal-lock");
 }
 
-RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high, double tolerance) {
+RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double t_high,
+                                 double tolerance) {
   RootResult result;
   double a = t_low, b = t_high;
   double at_a = gap(a), at_b = gap(b);
@@ -92,7 +95,8 @@ RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double
   return result;
 }
 
-RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance) {
+RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate,
+                              double t_low, double t_high, double tolerance) {
   RootResult result;
   result.evaluations = 2;
   if (gap(t_low) < 0 || (gap(t_low) > 0 && gap(t_high) > 0)) {

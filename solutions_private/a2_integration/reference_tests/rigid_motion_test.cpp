@@ -1,4 +1,5 @@
-// The reference solution of a2 on whole rigid bodies, against exact motion: orders of convergence, and what is conserved.
+// The reference solution of a2 on whole rigid bodies, against exact motion: orders of convergence,
+// and what is conserved.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -47,13 +48,16 @@ RigidBodyState fly(const Step& step, const Flight& flight, int steps) {
 
 /// Angle between the orientation found and the exact one. [rad]
 double turn_error(const RigidBodyState& found, const Flight& flight) {
-  const Spin exact = FreeRotation(flight.moments.asDiagonal()).after({start_of(flight).world_from_body, flight.omega_body}, flight.duration);
+  const Spin exact =
+      FreeRotation(flight.moments.asDiagonal())
+          .after({start_of(flight).world_from_body, flight.omega_body}, flight.duration);
   return 2 * (found.world_from_body.conjugate() * exact.world_from_body).vec().norm();
 }
 
 Vector3d exact_centre(const Flight& flight) {
   const double t = flight.duration;
-  return start_of(flight).com_world + Vector3d(1, -0.5, 3) * t + 0.5 * Vector3d(0, 0, -9.81) * t * t;
+  return start_of(flight).com_world + Vector3d(1, -0.5, 3) * t +
+         0.5 * Vector3d(0, 0, -9.81) * t * t;
 }
 
 void expect_order(const Step& step, double order, double tolerance, int first_steps) {
@@ -62,39 +66,48 @@ void expect_order(const Step& step, double order, double tolerance, int first_st
     for (int i = 0; i < 4; ++i) {
       const double error = turn_error(fly(step, flight, first_steps << i), flight);
       if (i > 0) {
-        EXPECT_NEAR(std::log2(coarser / error), order, tolerance) << flight.name << ", " << (first_steps << i) << " steps, error " << error << " rad";
+        EXPECT_NEAR(std::log2(coarser / error), order, tolerance)
+            << flight.name << ", " << (first_steps << i) << " steps, error " << error << " rad";
       }
       coarser = error;
     }
   }
 }
 
-// The order read from two steps is off by O(h): steps are as small as 0.05 and 0.1 ask for, and errors of 1e-8 rad or more
-// stand well above the 1e-14 of rounding.
+// The order read from two steps is off by O(h): steps are as small as 0.05 and 0.1 ask for, and
+// errors of 1e-8 rad or more stand well above the 1e-14 of rounding.
 TEST(RigidMotion, EulerTurnsABodyWithOrderOne) { expect_order(euler_step, 1.0, 0.05, 4000); }
 TEST(RigidMotion, RungeKuttaTurnsABodyWithOrderFour) { expect_order(rk4_step, 4.0, 0.1, 200); }
 
 TEST(RigidMotion, CentreOfMassFollowsItsParabola) {
   for (const Flight& flight : kFlights) {
     // A parabola is within reach of RK4 exactly; Euler lags behind it by g h t / 2.
-    EXPECT_LE((fly(rk4_step, flight, 100).com_world - exact_centre(flight)).norm(), 100 * 1e-14) << flight.name;
+    EXPECT_LE((fly(rk4_step, flight, 100).com_world - exact_centre(flight)).norm(), 100 * 1e-14)
+        << flight.name;
     const double lag = 9.81 * flight.duration / 100 * flight.duration / 2;
-    EXPECT_NEAR(fly(euler_step, flight, 100).com_world.z() - exact_centre(flight).z(), lag, 1e-11) << flight.name;
+    EXPECT_NEAR(fly(euler_step, flight, 100).com_world.z() - exact_centre(flight).z(), lag, 1e-11)
+        << flight.name;
   }
 }
 
 TEST(RigidMotion, AngularMomentumStaysBitForBitAndEnergyToOrderFour) {
   for (const Flight& flight : kFlights) {
     const Inertia inertia = finite_inertia(2.0, flight.moments.asDiagonal());
-    const auto turning = [&](const RigidBodyState& s) { return 0.5 * s.angular_momentum_world.dot(omega_of(s, inertia)); };
+    const auto turning = [&](const RigidBodyState& s) {
+      return 0.5 * s.angular_momentum_world.dot(omega_of(s, inertia));
+    };
     double coarser = kUnset;
     for (const int steps : {200, 400, 800}) {
       const RigidBodyState later = fly(rk4_step, flight, steps);
-      EXPECT_EQ(later.angular_momentum_world, start_of(flight).angular_momentum_world) << flight.name;
+      EXPECT_EQ(later.angular_momentum_world, start_of(flight).angular_momentum_world)
+          << flight.name;
       EXPECT_NEAR(later.world_from_body.norm(), 1.0, 1e-15) << flight.name;
       const double lost = std::abs(turning(later) - turning(start_of(flight)));
-      // Falls by 16 at each halving, or faster where the leading term cancels; 12 still tells order 3 off. 1e-13: round-off.
-      if (steps > 200) { EXPECT_LE(lost, coarser / 12 + 1e-13) << flight.name << ", " << steps << " steps"; }
+      // Falls by 16 at each halving, or faster where the leading term cancels; 12 still tells order
+      // 3 off. 1e-13: round-off.
+      if (steps > 200) {
+        EXPECT_LE(lost, coarser / 12 + 1e-13) << flight.name << ", " << steps << " steps";
+      }
       coarser = lost;
     }
   }

@@ -1,5 +1,6 @@
-// Another right solution: the skyline of A eliminated row by row in the order given, dependent rows skipped; contacts by
-// Lemke's method with the lexicographic rule, which never runs in circles (Cottle, Pang, Stone 1992, section 4.9).
+// Another right solution: the skyline of A eliminated row by row in the order given, dependent rows
+// skipped; contacts by Lemke's method with the lexicographic rule, which never runs in circles
+// (Cottle, Pang, Stone 1992, section 4.9).
 #include "assignments/a3_constraints/a3_constraints.h"
 
 #include <algorithm>
@@ -26,13 +27,14 @@ Vector3d spring_force(const Spring& spring, const AnchorState& a, const AnchorSt
   const double length = d.stableNorm();
   if (length == 0.0) return Vector3d::Zero();
   const Vector3d n = d / length;
-  Vector3d force = spring.stiffness * d;                 // k |d| n
+  Vector3d force = spring.stiffness * d;  // k |d| n
   force -= spring.stiffness * spring.rest_length * n;
   force += spring.damping * n.dot(b.velocity_world - a.velocity_world) * n;
   return force;
 }
 
-ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b, const Vector3d& point_b_body, double length) {
+ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b,
+                      const Vector3d& point_b_body, double length) {
   const Vector3d d = anchor_position(a, point_a_body) - anchor_position(b, point_b_body);
   const Vector3d d_rate = anchor_velocity(a, point_a_body) - anchor_velocity(b, point_b_body);
   const double distance = d.norm();
@@ -44,13 +46,18 @@ ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b
   row.jacobian_b << -n, n.cross(r_b);
   row.rate = n.dot(d_rate);
   // w x (w x r) = w (w . r) - r w^2
-  const Vector3d turn_a = a.omega_world * a.omega_world.dot(r_a) - r_a * a.omega_world.squaredNorm();
-  const Vector3d turn_b = b.omega_world * b.omega_world.dot(r_b) - r_b * b.omega_world.squaredNorm();
-  row.velocity_product = n.dot(turn_a - turn_b) + (d_rate.squaredNorm() - row.rate * row.rate) / distance;
+  const Vector3d turn_a =
+      a.omega_world * a.omega_world.dot(r_a) - r_a * a.omega_world.squaredNorm();
+  const Vector3d turn_b =
+      b.omega_world * b.omega_world.dot(r_b) - r_b * b.omega_world.squaredNorm();
+  row.velocity_product =
+      n.dot(turn_a - turn_b) + (d_rate.squaredNorm() - row.rate * row.rate) / distance;
   return row;
 }
 
-double baumgarte_acceleration(double value, double rate, double time_constant_s) { return -(2 * rate + value / time_constant_s) / time_constant_s; }
+double baumgarte_acceleration(double value, double rate, double time_constant_s) {
+  return -(2 * rate + value / time_constant_s) / time_constant_s;
+}
 
 namespace {
 
@@ -69,25 +76,32 @@ struct SkylineRow {
   double get(std::size_t k) const { return k < first ? 0.0 : entries[k - first]; }
 };
 
-VectorXd solve_rows(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& right) {
+VectorXd solve_rows(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies,
+                    const VectorXd& right) {
   const std::size_t m = rows.size();
   std::vector<std::vector<std::size_t>> of_body(bodies.size());
   for (std::size_t i = 0; i < m; ++i)
     for (const int k : {rows[i].body_a, rows[i].body_b})
-      if (bodies[static_cast<std::size_t>(k)].inverse_mass > 0) of_body[static_cast<std::size_t>(k)].push_back(i);
+      if (bodies[static_cast<std::size_t>(k)].inverse_mass > 0)
+        of_body[static_cast<std::size_t>(k)].push_back(i);
 
-  const auto side = [&](std::size_t i, int body) { return body == rows[i].body_a ? rows[i].row.jacobian_a : rows[i].row.jacobian_b; };
+  const auto side = [&](std::size_t i, int body) {
+    return body == rows[i].body_a ? rows[i].row.jacobian_a : rows[i].row.jacobian_b;
+  };
   std::vector<double> scale(m, 0.0);
   for (std::size_t i = 0; i < m; ++i) {
     const auto& [a, b, row] = rows[i];
-    const double diagonal = row.jacobian_a.dot(per_mass(bodies[static_cast<std::size_t>(a)], row.jacobian_a)) + row.jacobian_b.dot(per_mass(bodies[static_cast<std::size_t>(b)], row.jacobian_b));
+    const double diagonal =
+        row.jacobian_a.dot(per_mass(bodies[static_cast<std::size_t>(a)], row.jacobian_a)) +
+        row.jacobian_b.dot(per_mass(bodies[static_cast<std::size_t>(b)], row.jacobian_b));
     if (diagonal > 0) scale[i] = 1 / std::sqrt(diagonal);
   }
   std::vector<SkylineRow> A(m);
   for (std::size_t i = 0; i < m; ++i) {
     A[i].first = i;
     for (const int k : {rows[i].body_a, rows[i].body_b})
-      if (bodies[static_cast<std::size_t>(k)].inverse_mass > 0) A[i].first = std::min(A[i].first, of_body[static_cast<std::size_t>(k)].front());
+      if (bodies[static_cast<std::size_t>(k)].inverse_mass > 0)
+        A[i].first = std::min(A[i].first, of_body[static_cast<std::size_t>(k)].front());
     A[i].entries.assign(i - A[i].first + 1, 0.0);
     for (const int k : {rows[i].body_a, rows[i].body_b}) {
       if (!(bodies[static_cast<std::size_t>(k)].inverse_mass > 0)) continue;
@@ -97,14 +111,16 @@ VectorXd solve_rows(const std::vector<Constraint>& rows, const std::vector<Const
     }
   }
 
-  // A = L D L^T by rows; a pivot of round-off is a row that says what rows before it say, and is left out.
+  // A = L D L^T by rows; a pivot of round-off is a row that says what rows before it say, and is
+  // left out.
   std::vector<SkylineRow> L = A;
   std::vector<double> inverse_pivot(m, 0.0);
   for (std::size_t i = 0; i < m; ++i) {
     double pivot = A[i].get(i);
     for (std::size_t j = A[i].first; j < i; ++j) {
       double y = A[i].get(j);
-      for (std::size_t k = std::max(A[i].first, L[j].first); k < j; ++k) y -= L[i].get(k) * L[j].get(k);
+      for (std::size_t k = std::max(A[i].first, L[j].first); k < j; ++k)
+        y -= L[i].get(k) * L[j].get(k);
       L[i].at(j) = y;  // L_ij d_j for now
     }
     for (std::size_t j = A[i].first; j < i; ++j) {
@@ -119,10 +135,12 @@ VectorXd solve_rows(const std::vector<Constraint>& rows, const std::vector<Const
   }
   const auto solve_once = [&](VectorXd x) {
     for (std::size_t i = 0; i < m; ++i)
-      for (std::size_t k = L[i].first; k < i; ++k) x[static_cast<Eigen::Index>(i)] -= L[i].get(k) * x[static_cast<Eigen::Index>(k)];
+      for (std::size_t k = L[i].first; k < i; ++k)
+        x[static_cast<Eigen::Index>(i)] -= L[i].get(k) * x[static_cast<Eigen::Index>(k)];
     for (std::size_t i = 0; i < m; ++i) x[static_cast<Eigen::Index>(i)] *= inverse_pivot[i];
     for (std::size_t i = m; i-- > 0;)
-      for (std::size_t k = L[i].first; k < i; ++k) x[static_cast<Eigen::Index>(k)] -= L[i].get(k) * x[static_cast<Eigen::Index>(i)];
+      for (std::size_t k = L[i].first; k < i; ++k)
+        x[static_cast<Eigen::Index>(k)] -= L[i].get(k) * x[static_cast<Eigen::Index>(i)];
     return x;
   };
   const Eigen::Map<const VectorXd> s(scale.data(), static_cast<Eigen::Index>(m));
@@ -135,16 +153,23 @@ VectorXd solve_rows(const std::vector<Constraint>& rows, const std::vector<Const
       u.segment<6>(6 * rows[i].body_a) += lambda * rows[i].row.jacobian_a;
       u.segment<6>(6 * rows[i].body_b) += lambda * rows[i].row.jacobian_b;
     }
-    for (std::size_t k = 0; k < bodies.size(); ++k) u.segment<6>(6 * static_cast<Eigen::Index>(k)) = per_mass(bodies[k], u.segment<6>(6 * static_cast<Eigen::Index>(k)));
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      u.segment<6>(6 * static_cast<Eigen::Index>(k)) =
+          per_mass(bodies[k], u.segment<6>(6 * static_cast<Eigen::Index>(k)));
     for (std::size_t i = 0; i < m; ++i)
-      left[static_cast<Eigen::Index>(i)] = scale[i] * (right[static_cast<Eigen::Index>(i)] - rows[i].row.jacobian_a.dot(u.segment<6>(6 * rows[i].body_a)) - rows[i].row.jacobian_b.dot(u.segment<6>(6 * rows[i].body_b)));
+      left[static_cast<Eigen::Index>(i)] =
+          scale[i] * (right[static_cast<Eigen::Index>(i)] -
+                      rows[i].row.jacobian_a.dot(u.segment<6>(6 * rows[i].body_a)) -
+                      rows[i].row.jacobian_b.dot(u.segment<6>(6 * rows[i].body_b)));
   }
   return s.cwiseProduct(x);
 }
 
 }  // namespace
 
-VectorXd constraint_multipliers(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted_acceleration) {
+VectorXd constraint_multipliers(const std::vector<Constraint>& rows,
+                                const std::vector<ConstrainedBody>& bodies,
+                                const VectorXd& wanted_acceleration) {
   VectorXd right = wanted_acceleration;
   Eigen::Index i = 0;
   for (const auto& [a, b, row] : rows) {
@@ -156,13 +181,16 @@ VectorXd constraint_multipliers(const std::vector<Constraint>& rows, const std::
   return solve_rows(rows, bodies, right);
 }
 
-VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
+VectorXd constraint_correction(const std::vector<Constraint>& rows,
+                               const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
   const VectorXd lambda = solve_rows(rows, bodies, -error);
   VectorXd x = VectorXd::Zero(6 * static_cast<Eigen::Index>(bodies.size()));
   Eigen::Index i = 0;
   for (const auto& [a, b, row] : rows) {
-    x.segment<6>(6 * a) += per_mass(bodies[static_cast<std::size_t>(a)], lambda[i] * row.jacobian_a);
-    x.segment<6>(6 * b) += per_mass(bodies[static_cast<std::size_t>(b)], lambda[i] * row.jacobian_b);
+    x.segment<6>(6 * a) +=
+        per_mass(bodies[static_cast<std::size_t>(a)], lambda[i] * row.jacobian_a);
+    x.segment<6>(6 * b) +=
+        per_mass(bodies[static_cast<std::size_t>(b)], lambda[i] * row.jacobian_b);
     ++i;
   }
   return x;
@@ -170,10 +198,12 @@ VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::v
 
 namespace {
 
-/// Lemke's method with the lexicographic rule: w = A z + q + e z0, one of w_i, z_i in the basis, z0 driven out of it.
+/// Lemke's method with the lexicographic rule: w = A z + q + e z0, one of w_i, z_i in the basis, z0
+/// driven out of it.
 class Lemke {
  public:
-  Lemke(const MatrixXd& A, const VectorXd& q) : m_(q.size()), table_(m_, 2 * m_ + 2), basis_(static_cast<std::size_t>(m_)) {
+  Lemke(const MatrixXd& A, const VectorXd& q)
+      : m_(q.size()), table_(m_, 2 * m_ + 2), basis_(static_cast<std::size_t>(m_)) {
     table_ << MatrixXd::Identity(m_, m_), -A, -VectorXd::Ones(m_), q;
     for (Eigen::Index i = 0; i < m_; ++i) basis_[static_cast<std::size_t>(i)] = i;
   }
@@ -203,8 +233,8 @@ class Lemke {
   }
 
  private:
-  /// Row i over its step is lexicographically less than row k over its own: right-hand sides first, then what were unit columns.
-  /// On equality z0 leaves first.
+  /// Row i over its step is lexicographically less than row k over its own: right-hand sides first,
+  /// then what were unit columns. On equality z0 leaves first.
   bool comes_before(Eigen::Index i, double step_i, Eigen::Index k, double step_k) const {
     constexpr double kEqual = 1e-11;
     for (Eigen::Index column = -1; column < m_; ++column) {
@@ -252,7 +282,8 @@ VectorXd contact_forces(const MatrixXd& A, const VectorXd& b) {
   VectorXd x = factor.solve(right);
   x += factor.solve(right - part * x);
   for (std::size_t k = 0; k < pushing.size(); ++k)
-    f[movable[static_cast<std::size_t>(pushing[k])]] = std::max(0.0, x[static_cast<Eigen::Index>(k)]) * scale[pushing[k]];
+    f[movable[static_cast<std::size_t>(pushing[k])]] =
+        std::max(0.0, x[static_cast<Eigen::Index>(k)]) * scale[pushing[k]];
   return f;
 }
 

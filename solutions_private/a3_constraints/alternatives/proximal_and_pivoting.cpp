@@ -1,5 +1,6 @@
-// Another right solution: a singular problem is solved as a sequence of regular ones, each with a little added to the diagonal and
-// the last answer as its starting point; the regular contact problems by exchanging all wrong contacts at once (Judice 1994).
+// Another right solution: a singular problem is solved as a sequence of regular ones, each with a
+// little added to the diagonal and the last answer as its starting point; the regular contact
+// problems by exchanging all wrong contacts at once (Judice 1994).
 #include "assignments/a3_constraints/a3_constraints.h"
 
 #include <algorithm>
@@ -20,10 +21,13 @@ Vector3d cross_matrix_times(const Vector3d& w, const Vector3d& r) {
 
 }  // namespace
 
-Vector3d anchor_position(const Body& body, const Vector3d& point_body) { return body.com_world + body.world_from_body.toRotationMatrix() * point_body; }
+Vector3d anchor_position(const Body& body, const Vector3d& point_body) {
+  return body.com_world + body.world_from_body.toRotationMatrix() * point_body;
+}
 
 Vector3d anchor_velocity(const Body& body, const Vector3d& point_body) {
-  return body.velocity_world + cross_matrix_times(body.omega_world, body.world_from_body.toRotationMatrix() * point_body);
+  return body.velocity_world +
+         cross_matrix_times(body.omega_world, body.world_from_body.toRotationMatrix() * point_body);
 }
 
 Vector3d spring_force(const Spring& spring, const AnchorState& a, const AnchorState& b) {
@@ -31,11 +35,13 @@ Vector3d spring_force(const Spring& spring, const AnchorState& a, const AnchorSt
   const double length = std::hypot(d.x(), d.y(), d.z());
   if (!(length > 0)) return Vector3d::Zero();
   const Vector3d direction(d.x() / length, d.y() / length, d.z() / length);
-  const double tension = spring.stiffness * (length - spring.rest_length) + spring.damping * direction.dot(b.velocity_world - a.velocity_world);
+  const double tension = spring.stiffness * (length - spring.rest_length) +
+                         spring.damping * direction.dot(b.velocity_world - a.velocity_world);
   return tension * direction;
 }
 
-ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b, const Vector3d& point_b_body, double length) {
+ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b,
+                      const Vector3d& point_b_body, double length) {
   const Vector3d arms[] = {a.world_from_body * point_a_body, b.world_from_body * point_b_body};
   const Vector3d d = a.com_world - b.com_world + arms[0] - arms[1];
   const Vector3d u = anchor_velocity(a, point_a_body) - anchor_velocity(b, point_b_body);
@@ -46,8 +52,12 @@ ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b
   row.jacobian_a << n, cross_matrix_times(arms[0], n);
   row.jacobian_b << -n, cross_matrix_times(n, arms[1]);
   row.rate = n.dot(u);
-  const auto inwards = [](const Body& body, const Vector3d& arm) { return cross_matrix_times(body.omega_world, cross_matrix_times(body.omega_world, arm)); };
-  row.velocity_product = distance > 0 ? n.dot(inwards(a, arms[0])) - n.dot(inwards(b, arms[1])) + n.cross(u).squaredNorm() / distance : 0.0;
+  const auto inwards = [](const Body& body, const Vector3d& arm) {
+    return cross_matrix_times(body.omega_world, cross_matrix_times(body.omega_world, arm));
+  };
+  row.velocity_product = distance > 0 ? n.dot(inwards(a, arms[0])) - n.dot(inwards(b, arms[1])) +
+                                            n.cross(u).squaredNorm() / distance
+                                      : 0.0;
   return row;
 }
 
@@ -65,7 +75,8 @@ struct Sparse {
 };
 
 Sparse sparse(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies) {
-  const Eigen::Index m = static_cast<Eigen::Index>(rows.size()), n = 6 * static_cast<Eigen::Index>(bodies.size());
+  const Eigen::Index m = static_cast<Eigen::Index>(rows.size()),
+                     n = 6 * static_cast<Eigen::Index>(bodies.size());
   std::vector<Eigen::Triplet<double>> j, w;
   VectorXd diagonal = VectorXd::Zero(m);
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -117,18 +128,24 @@ VectorXd solved(const Sparse& s, const VectorXd& right) {
 
 }  // namespace
 
-VectorXd constraint_multipliers(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted_acceleration) {
+VectorXd constraint_multipliers(const std::vector<Constraint>& rows,
+                                const std::vector<ConstrainedBody>& bodies,
+                                const VectorXd& wanted_acceleration) {
   const Sparse s = sparse(rows, bodies);
   VectorXd right(wanted_acceleration.size());
   for (Eigen::Index i = 0; i < right.size(); ++i) {
     const Constraint& c = rows[static_cast<std::size_t>(i)];
-    const double without = c.row.jacobian_a.dot(bodies[static_cast<std::size_t>(c.body_a)].free_acceleration) + c.row.jacobian_b.dot(bodies[static_cast<std::size_t>(c.body_b)].free_acceleration) + c.row.velocity_product;
+    const double without =
+        c.row.jacobian_a.dot(bodies[static_cast<std::size_t>(c.body_a)].free_acceleration) +
+        c.row.jacobian_b.dot(bodies[static_cast<std::size_t>(c.body_b)].free_acceleration) +
+        c.row.velocity_product;
     right[i] = s.scale[i] * (wanted_acceleration[i] - without);
   }
   return s.scale.cwiseProduct(solved(s, right));
 }
 
-VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
+VectorXd constraint_correction(const std::vector<Constraint>& rows,
+                               const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
   const Sparse s = sparse(rows, bodies);
   if (rows.empty()) return VectorXd::Zero(s.MiJt.rows());
   return s.MiJt * solved(s, -s.scale.cwiseProduct(error));
@@ -161,10 +178,14 @@ VectorXd regular_contact_forces(const MatrixXd& A, const VectorXd& b, std::vecto
       if (pushes[static_cast<std::size_t>(i)] ? f[i] < 0 : a[i] < -round_off) wrong.push_back(i);
     if (wrong.empty()) break;
     const Eigen::Index count = static_cast<Eigen::Index>(wrong.size());
-    if (count < fewest_wrong) fewest_wrong = count, patience = 5;
-    else --patience;
-    if (patience < 0) wrong.erase(wrong.begin(), wrong.end() - 1);  // one at a time, always the last: that cannot circle
-    for (const Eigen::Index i : wrong) pushes[static_cast<std::size_t>(i)] = !pushes[static_cast<std::size_t>(i)];
+    if (count < fewest_wrong)
+      fewest_wrong = count, patience = 5;
+    else
+      --patience;
+    // one at a time, always the last: that cannot circle
+    if (patience < 0) wrong.erase(wrong.begin(), wrong.end() - 1);
+    for (const Eigen::Index i : wrong)
+      pushes[static_cast<std::size_t>(i)] = !pushes[static_cast<std::size_t>(i)];
   }
   return f.cwiseMax(0.0);
 }
@@ -191,6 +212,8 @@ VectorXd contact_forces(const MatrixXd& A, const VectorXd& b) {
   return scale.cwiseProduct(f);
 }
 
-bool ends_in_contact(double approach_speed, double restitution, double rest_speed) { return rest_speed - restitution * approach_speed >= 0; }
+bool ends_in_contact(double approach_speed, double restitution, double rest_speed) {
+  return rest_speed - restitution * approach_speed >= 0;
+}
 
 }  // namespace tumble::a3

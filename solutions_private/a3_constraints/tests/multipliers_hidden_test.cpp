@@ -1,4 +1,5 @@
-// Hidden: multipliers and corrections of systems that nobody solves by hand, and of those that are hard to solve.
+// Hidden: multipliers and corrections of systems that nobody solves by hand, and of those that are
+// hard to solve.
 #include <algorithm>
 
 #include "tests/a3_constraints/a3_fixtures.h"
@@ -8,9 +9,16 @@ namespace {
 
 const Vector3d kNoArm = Vector3d::Zero();
 
-void expect_fulfilled(const Rig& rig, const VectorXd& lambda, double tolerance, const std::string& slip) {
-  const Story story{.scene = rig.scene, .slip = slip, .handout = equation(7), .no_number = "singular rows: a pivot of 0 is divided by", .iterates = true};
-  const VectorXd found = lambda.size() == rig.size() ? accelerations_of_rows(rig, lambda) : VectorXd(VectorXd::Constant(rig.size(), kUnset));
+void expect_fulfilled(const Rig& rig, const VectorXd& lambda, double tolerance,
+                      const std::string& slip) {
+  const Story story{.scene = rig.scene,
+                    .slip = slip,
+                    .handout = equation(7),
+                    .no_number = "singular rows: a pivot of 0 is divided by",
+                    .iterates = true};
+  const VectorXd found = lambda.size() == rig.size()
+                             ? accelerations_of_rows(rig, lambda)
+                             : VectorXd(VectorXd::Constant(rig.size(), kUnset));
   expect_near(found, rig.wanted, tolerance * size_of_terms(rig), "m/s^2 (C'')", story);
 }
 
@@ -19,7 +27,10 @@ TEST(ConstraintMultipliers, FulfilRandomSystems) {
   for (int i = 0; i < 40; ++i) {
     const int bodies = 1 + static_cast<int>(random.between(0, 12));
     const Rig rig = random_rig(random, bodies, static_cast<int>(random.between(0, bodies)));
-    expect_fulfilled(rig, rig.multipliers(), 1e-11, "C'' is not what is wanted: a term of the right-hand side, or a side of a row");  // condition below 1e4
+    // condition below 1e4
+    expect_fulfilled(
+        rig, rig.multipliers(), 1e-11,
+        "C'' is not what is wanted: a term of the right-hand side, or a side of a row");
   }
 }
 
@@ -28,11 +39,18 @@ TEST(ConstraintMultipliers, FindAChainInAnyOrder) {
   const Rig in_order = hanging_chain(std::vector<double>(kLinks, 1.0));
   Rig rig = in_order;
   rig.scene = "a chain of 300 links of 1 kg hangs at rest, its rods listed in no order";
-  for (int i = 0; i < kLinks; ++i) rig.rows[static_cast<std::size_t>(i)] = in_order.rows[static_cast<std::size_t>(i * 77 % kLinks)];  // 77 and 300 share no factor
+  // 77 and 300 share no factor
+  for (int i = 0; i < kLinks; ++i)
+    rig.rows[static_cast<std::size_t>(i)] =
+        in_order.rows[static_cast<std::size_t>(i * 77 % kLinks)];
   VectorXd expected(kLinks);
   for (int i = 0; i < kLinks; ++i) expected[i] = -(kLinks - i * 77 % kLinks) * kGravity;
-  expect_near(rig.multipliers(), expected, 1e-9 * kLinks * kGravity, "N",  // condition 4 n^2 / pi^2 = 4e4
-              {.scene = rig.scene, .slip = "what is counted on is that neighbours in the list are neighbours in the chain", .handout = equation(7)});
+  // condition 4 n^2 / pi^2 = 4e4
+  expect_near(
+      rig.multipliers(), expected, 1e-9 * kLinks * kGravity, "N",
+      {.scene = rig.scene,
+       .slip = "what is counted on is that neighbours in the list are neighbours in the chain",
+       .handout = equation(7)});
 }
 
 TEST(ConstraintMultipliers, CarryTonsOnGrams) {
@@ -44,16 +62,24 @@ TEST(ConstraintMultipliers, CarryTonsOnGrams) {
       const VectorXd found = rig.multipliers();
       VectorXd expected(links);
       for (int i = 0; i < links; ++i) expected[i] = -(heavy + (links - 1 - i)) * kGravity;
-      expect_near(found, expected, 1e-8 * heavy * kGravity, "N",
-                  {.scene = show(heavy) + " kg below " + std::to_string(links - 1) + " links of 1 kg", .slip = "an iteration that stops too early, or a regularisation that is not small against the heavy body's 1/m", .handout = equation(7), .iterates = true});
+      expect_near(
+          found, expected, 1e-8 * heavy * kGravity, "N",
+          {.scene = show(heavy) + " kg below " + std::to_string(links - 1) + " links of 1 kg",
+           .slip = "an iteration that stops too early, or a regularisation that is not small "
+                   "against the heavy body's 1/m",
+           .handout = equation(7),
+           .iterates = true});
     }
   }
 }
 
 TEST(ConstraintMultipliers, CloseLoopsWithRowsTooMany) {
-  // Four masses in a square, all six distances held, in a plane: one row too many. Two corners hang on rods.
+  // Four masses in a square, all six distances held, in a plane: one row too many. Two corners hang
+  // on rods.
   Rig rig;
-  rig.scene = "a square of four masses with both diagonals, hung by two corners: 8 rods, of which one is redundant";
+  rig.scene =
+      "a square of four masses with both diagonals, hung by two corners: 8 rods, of which one is "
+      "redundant";
   const Vector3d corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}};
   rig.bodies.push_back(ceiling());
   for (int i = 0; i < 4; ++i) {
@@ -62,11 +88,14 @@ TEST(ConstraintMultipliers, CloseLoopsWithRowsTooMany) {
     rig.bodies.push_back(mass);
   }
   for (int i = 0; i < 4; ++i)
-    for (int k = i + 1; k < 4; ++k) rig.rows.push_back(rod_between(i + 1, kNoArm, k + 1, kNoArm, (corners[i] - corners[k]).normalized()));
+    for (int k = i + 1; k < 4; ++k)
+      rig.rows.push_back(
+          rod_between(i + 1, kNoArm, k + 1, kNoArm, (corners[i] - corners[k]).normalized()));
   rig.rows.push_back(rod_between(1, kNoArm, 0, kNoArm, -Vector3d::UnitZ()));
   rig.rows.push_back(rod_between(2, kNoArm, 0, kNoArm, -Vector3d::UnitZ()));
   rig.wanted = VectorXd::Zero(rig.size());
-  expect_fulfilled(rig, rig.multipliers(), 1e-10, "singular rows: a pivot of round-off is divided by");
+  expect_fulfilled(rig, rig.multipliers(), 1e-10,
+                   "singular rows: a pivot of round-off is divided by");
 }
 
 TEST(ConstraintMultipliers, DoNotCareHowOftenARodIsThere) {
@@ -74,15 +103,21 @@ TEST(ConstraintMultipliers, DoNotCareHowOftenARodIsThere) {
   for (int i = 0; i < 20; ++i) {
     Rig rig = random_rig(random, 5, 3);
     const VectorXd once = forces_on_bodies(rig, rig.multipliers());
-    expect_true(once.norm() > 0.1, "forces", "none", {.scene = rig.scene, .slip = "the function gives nothing (0 or NaN) whatever it is asked", .handout = equation(7)});
+    expect_true(once.norm() > 0.1, "forces", "none",
+                {.scene = rig.scene,
+                 .slip = "the function gives nothing (0 or NaN) whatever it is asked",
+                 .handout = equation(7)});
     const std::size_t rows = rig.rows.size();
     for (std::size_t k = 0; k < rows; k += 2) rig.rows.push_back(rig.rows[k]);
     const VectorXd wanted = rig.wanted;
     rig.wanted.conservativeResize(rig.size());
-    for (std::size_t k = 0, at = rows; k < rows; k += 2, ++at) rig.wanted[static_cast<Eigen::Index>(at)] = wanted[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0, at = rows; k < rows; k += 2, ++at)
+      rig.wanted[static_cast<Eigen::Index>(at)] = wanted[static_cast<Eigen::Index>(k)];
     const VectorXd found = forces_on_bodies(rig, rig.multipliers());
     expect_near(found, once, 1e-8 * (1 + once.cwiseAbs().maxCoeff()), "N (and N m) on all bodies",
-                {.scene = rig.scene + ", every other one of them twice", .slip = "singular rows: a pivot of round-off is divided by", .handout = equation(7)});
+                {.scene = rig.scene + ", every other one of them twice",
+                 .slip = "singular rows: a pivot of round-off is divided by",
+                 .handout = equation(7)});
   }
 }
 
@@ -91,7 +126,11 @@ TEST(ConstraintMultipliers, AnswerSomethingFiniteToAContradiction) {
   rig.rows.push_back(rig.rows[0]);
   rig.wanted = vector({0, 0, 1});  // the same rod, and another C''
   const VectorXd found = rig.multipliers();
-  expect_true(found.size() == 3 && found.allFinite() && found.norm() > 1, "three finite numbers", show(found), {.scene = "a rod twice, with C'' wanted 0 and 1 m/s^2", .slip = "singular rows: NaN or nothing", .handout = equation(7)});
+  expect_true(found.size() == 3 && found.allFinite() && found.norm() > 1, "three finite numbers",
+              show(found),
+              {.scene = "a rod twice, with C'' wanted 0 and 1 m/s^2",
+               .slip = "singular rows: NaN or nothing",
+               .handout = equation(7)});
 }
 
 TEST(ConstraintMultipliers, HoldWhatTheCeilingHoldsAlone) {
@@ -106,18 +145,29 @@ TEST(ConstraintMultipliers, HoldWhatTheCeilingHoldsAlone) {
   const VectorXd found = rig.multipliers();
   VectorXd expected(1000);
   for (int i = 0; i < 1000; ++i) expected[i] = -(i + 1) * kGravity;
-  expect_near(found, expected, 1e-10 * 1000 * kGravity, "N", {.scene = "1,000 weights of 1 to 1,000 kg, each on its own rod below one ceiling", .slip = "a body of infinite mass couples no rows", .handout = equation(7)});
+  expect_near(found, expected, 1e-10 * 1000 * kGravity, "N",
+              {.scene = "1,000 weights of 1 to 1,000 kg, each on its own rod below one ceiling",
+               .slip = "a body of infinite mass couples no rows",
+               .handout = equation(7)});
 }
 
 TEST(ConstraintMultipliers, HaveNothingToSayAboutNothing) {
   const Rig one = hanging_chain({1});
-  expect_near(one.multipliers(), vector({-kGravity}), 1e-12, "N", {.scene = "asked first: 1 kg on a rod", .slip = "the function gives nothing whatever it is asked", .handout = equation(7)});
+  expect_near(one.multipliers(), vector({-kGravity}), 1e-12, "N",
+              {.scene = "asked first: 1 kg on a rod",
+               .slip = "the function gives nothing whatever it is asked",
+               .handout = equation(7)});
   Rig rig;
   rig.bodies = {ceiling(), point_mass(1)};
   rig.wanted = VectorXd(0);
-  expect_near(static_cast<double>(rig.multipliers().size()), 0.0, 0.0, "multipliers", {.scene = "two bodies without any row", .slip = "an empty list", .handout = equation(7)});
+  expect_near(
+      static_cast<double>(rig.multipliers().size()), 0.0, 0.0, "multipliers",
+      {.scene = "two bodies without any row", .slip = "an empty list", .handout = equation(7)});
   const VectorXd x = a3_module().constraint_correction(rig.rows, rig.bodies, rig.wanted);
-  expect_near(x, VectorXd::Zero(12), 0.0, "m (and rad)", {.scene = "two bodies without any row: the correction", .slip = "an empty list", .handout = equation(8)});
+  expect_near(x, VectorXd::Zero(12), 0.0, "m (and rad)",
+              {.scene = "two bodies without any row: the correction",
+               .slip = "an empty list",
+               .handout = equation(8)});
 }
 
 TEST(ConstraintCorrection, RemovesErrorsOfRandomSystems) {
@@ -130,32 +180,48 @@ TEST(ConstraintCorrection, RemovesErrorsOfRandomSystems) {
     Rig moved = rig;
     for (Constraint& c : moved.rows) c.row.velocity_product = 0;
     const bool right_size = x.size() == 6 * static_cast<Eigen::Index>(rig.bodies.size());
-    for (std::size_t k = 0; k < rig.bodies.size(); ++k) moved.bodies[k].free_acceleration = right_size ? Vector6d(x.segment<6>(6 * static_cast<Eigen::Index>(k))) : Vector6d(Vector6d::Constant(kUnset));
+    for (std::size_t k = 0; k < rig.bodies.size(); ++k)
+      moved.bodies[k].free_acceleration =
+          right_size ? Vector6d(x.segment<6>(6 * static_cast<Eigen::Index>(k)))
+                     : Vector6d(Vector6d::Constant(kUnset));
     const VectorXd changes = accelerations_of_rows(moved, VectorXd::Zero(rig.size()));
     expect_near(changes, VectorXd(-rig.wanted), 1e-10 * (1 + x.cwiseAbs().maxCoeff()), "m (J x)",
-                {.scene = rig.scene + ", number " + std::to_string(i), .slip = "J x = -error in every row at once", .handout = equation(8)});
-    expect_near(right_size ? Vector6d(x.head<6>()) : Vector6d(Vector6d::Constant(kUnset)), Vector6d::Zero(), 0.0, "m (the ceiling)", {.scene = rig.scene, .slip = "a body of infinite mass moves", .handout = equation(8)});
+                {.scene = rig.scene + ", number " + std::to_string(i),
+                 .slip = "J x = -error in every row at once",
+                 .handout = equation(8)});
+    expect_near(
+        right_size ? Vector6d(x.head<6>()) : Vector6d(Vector6d::Constant(kUnset)), Vector6d::Zero(),
+        0.0, "m (the ceiling)",
+        {.scene = rig.scene, .slip = "a body of infinite mass moves", .handout = equation(8)});
   }
 }
 
 TEST(ConstraintCorrection, IsWhatTheMultipliersDo) {
-  // Multipliers for C'' = -error from rest make the accelerations that the correction makes of places.
+  // Multipliers for C'' = -error from rest make the accelerations that the correction makes of
+  // places.
   Random random(344);
   for (int i = 0; i < 10; ++i) {
     Rig rig = random_rig(random, 6, 2);
     for (ConstrainedBody& body : rig.bodies) body.free_acceleration.setZero();
     for (Constraint& c : rig.rows) c.row.velocity_product = 0;
     const VectorXd x = a3_module().constraint_correction(rig.rows, rig.bodies, rig.wanted);
-    expect_true(x.norm() > 0.01, "a change", "none", {.scene = rig.scene, .slip = "the function gives nothing (0 or NaN) whatever it is asked", .handout = equation(8)});
+    expect_true(x.norm() > 0.01, "a change", "none",
+                {.scene = rig.scene,
+                 .slip = "the function gives nothing (0 or NaN) whatever it is asked",
+                 .handout = equation(8)});
     Rig other = rig;
     other.wanted = -rig.wanted;
     VectorXd forces = forces_on_bodies(other, other.multipliers());
     for (std::size_t k = 0; k < rig.bodies.size(); ++k) {
       const Eigen::Index at = 6 * static_cast<Eigen::Index>(k);
       forces.segment<3>(at) *= rig.bodies[k].inverse_mass;
-      forces.segment<3>(at + 3) = (rig.bodies[k].inverse_inertia_world * forces.segment<3>(at + 3)).eval();
+      forces.segment<3>(at + 3) =
+          (rig.bodies[k].inverse_inertia_world * forces.segment<3>(at + 3)).eval();
     }
-    expect_near(x, forces, 1e-10 * (1 + forces.cwiseAbs().maxCoeff()), "m (and rad)", {.scene = rig.scene, .slip = "mass for inverse mass, or a sign: x = -M^-1 J^T lambda", .handout = equation(8)});
+    expect_near(x, forces, 1e-10 * (1 + forces.cwiseAbs().maxCoeff()), "m (and rad)",
+                {.scene = rig.scene,
+                 .slip = "mass for inverse mass, or a sign: x = -M^-1 J^T lambda",
+                 .handout = equation(8)});
   }
 }
 

@@ -1,5 +1,6 @@
-// A right solution by recursion: groups by walking from body to body, rollback by each body calling those it had dealt with; the order by
-// a three-way comparison, times by minima over lists of numbers.
+// A right solution by recursion: groups by walking from body to body, rollback by each body calling
+// those it had dealt with; the order by a three-way comparison, times by minima over lists of
+// numbers.
 #include "assignments/a4_timewarp/a4_timewarp.h"
 
 #include <algorithm>
@@ -29,7 +30,8 @@ int compare(const Stamp& x, const Stamp& y) {
 
 bool comes_before(const Stamp& x, const Stamp& y) { return compare(x, y) < 0; }
 
-double next_check_time(double now, double gap, double closing_speed, double closing_acceleration, double step) {
+double next_check_time(double now, double gap, double closing_speed, double closing_acceleration,
+                       double step) {
   const double latest = now + kMostStepsAhead * step;
   if (gap <= 0) return now + step;
   if (closing_speed == 0 && closing_acceleration == 0) return latest;
@@ -39,7 +41,8 @@ double next_check_time(double now, double gap, double closing_speed, double clos
   return s >= kMostStepsAhead * step ? latest : now + s;
 }
 
-CheckDecision on_collision_check(const ScheduledEvent& event, const CheckFinding& finding, double step) {
+CheckDecision on_collision_check(const ScheduledEvent& event, const CheckFinding& finding,
+                                 double step) {
   CheckDecision decision;
   decision.next = event;
   decision.collides = finding.contact.has_value();
@@ -50,11 +53,13 @@ CheckDecision on_collision_check(const ScheduledEvent& event, const CheckFinding
     return decision;
   }
   decision.next.safe_time = event.stamp.time;
-  decision.next.stamp.time = next_check_time(event.stamp.time, finding.gap, finding.closing_speed, finding.closing_acceleration, step);
+  decision.next.stamp.time = next_check_time(event.stamp.time, finding.gap, finding.closing_speed,
+                                             finding.closing_acceleration, step);
   return decision;
 }
 
-std::vector<std::vector<Body>> contact_groups(const std::vector<Body>& bodies, const std::vector<GroupContact>& contacts) {
+std::vector<std::vector<Body>> contact_groups(const std::vector<Body>& bodies,
+                                              const std::vector<GroupContact>& contacts) {
   std::unordered_map<Body, std::vector<Body>> neighbours;
   for (const Body body : bodies) neighbours[body];
   for (const GroupContact& contact : contacts) {
@@ -63,7 +68,8 @@ std::vector<std::vector<Body>> contact_groups(const std::vector<Body>& bodies, c
     neighbours[contact.body_b].push_back(contact.body_a);
   }
   std::set<Body> seen;
-  const std::function<void(Body, std::vector<Body>&)> walk = [&](Body body, std::vector<Body>& group) {
+  const std::function<void(Body, std::vector<Body>&)> walk = [&](Body body,
+                                                                 std::vector<Body>& group) {
     if (!seen.insert(body).second) return;
     group.push_back(body);
     for (const Body next : neighbours[body]) walk(next, group);
@@ -79,7 +85,8 @@ std::vector<std::vector<Body>> contact_groups(const std::vector<Body>& bodies, c
   return groups;
 }
 
-GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<GroupContact>& contacts,
+                             double step) {
   GroupDecision decision;
   decision.next = event;
   std::vector<double> openings;
@@ -100,10 +107,13 @@ GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<Grou
   return decision;
 }
 
-std::vector<Rollback> on_callback(const ScheduledEvent& event, const std::vector<LocalTime>& local_times) {
+std::vector<Rollback> on_callback(const ScheduledEvent& event,
+                                  const std::vector<LocalTime>& local_times) {
   std::set<Body> late;
   for (const LocalTime& local : local_times)
-    if (local.time > event.stamp.time && std::count(event.receivers.begin(), event.receivers.end(), local.body) > 0) late.insert(local.body);
+    if (local.time > event.stamp.time &&
+        std::count(event.receivers.begin(), event.receivers.end(), local.body) > 0)
+      late.insert(local.body);
   std::vector<Rollback> rollbacks;
   for (const Body body : late) rollbacks.push_back({body, event.stamp});
   return rollbacks;
@@ -112,13 +122,15 @@ std::vector<Rollback> on_callback(const ScheduledEvent& event, const std::vector
 std::vector<Rollback> anti_messages(const std::vector<Effect>& effects, const Rollback& rollback) {
   std::vector<Rollback> messages;
   for (const auto& [stamp, processes] : effects)
-    if (compare(stamp, rollback.stamp) >= 0 && std::find(processes.begin(), processes.end(), rollback.body) != processes.end())
+    if (compare(stamp, rollback.stamp) >= 0 &&
+        std::find(processes.begin(), processes.end(), rollback.body) != processes.end())
       for (const Body other : processes)
         if (other != rollback.body) messages.push_back({other, stamp});
   return messages;
 }
 
-std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects, const std::vector<Rollback>& first) {
+std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects,
+                                    const std::vector<Rollback>& first) {
   std::unordered_map<Body, std::vector<const Effect*>> of;
   for (const Effect& effect : effects)
     for (const Body body : effect.processes) of[body].push_back(&effect);
@@ -135,27 +147,33 @@ std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects, const st
   for (const Rollback& rollback : first) send_back(rollback.body, rollback.stamp);
   std::vector<Rollback> plan;
   for (const auto& [body, stamp] : deepest) plan.push_back({body, stamp});
-  std::sort(plan.begin(), plan.end(), [](const Rollback& x, const Rollback& y) { return x.body < y.body; });
+  std::sort(plan.begin(), plan.end(),
+            [](const Rollback& x, const Rollback& y) { return x.body < y.body; });
   return plan;
 }
 
 ScheduledEvent after_rollback(const ScheduledEvent& event, const std::vector<Rollback>& rollbacks) {
   ScheduledEvent after = event;
-  if (event.stamp.kind != WorkKind::kCollision && event.stamp.kind != WorkKind::kGroup) return after;
+  if (event.stamp.kind != WorkKind::kCollision && event.stamp.kind != WorkKind::kGroup)
+    return after;
   for (const Rollback& rollback : rollbacks)
-    if (std::binary_search(event.receivers.begin(), event.receivers.end(), rollback.body) && rollback.stamp.time < after.safe_time)
+    if (std::binary_search(event.receivers.begin(), event.receivers.end(), rollback.body) &&
+        rollback.stamp.time < after.safe_time)
       after.safe_time = after.stamp.time = rollback.stamp.time;
   return after;
 }
 
-double global_virtual_time(const std::vector<LocalTime>& local_times, const std::vector<ScheduledEvent>& events) {
+double global_virtual_time(const std::vector<LocalTime>& local_times,
+                           const std::vector<ScheduledEvent>& events) {
   std::vector<double> times{kNever};
   for (const LocalTime& local : local_times) times.push_back(local.time);
   for (const ScheduledEvent& event : events) times.push_back(event.safe_time);
   return *std::min_element(times.begin(), times.end());
 }
 
-bool may_commit(const Stamp& stamp, double global_virtual_time) { return !(stamp.time >= global_virtual_time); }
+bool may_commit(const Stamp& stamp, double global_virtual_time) {
+  return !(stamp.time >= global_virtual_time);
+}
 
 std::uint32_t states_to_purge(const std::vector<double>& state_times, double global_virtual_time) {
   std::uint32_t earlier = 0;

@@ -30,7 +30,9 @@ class Changes {
   }
   const engines::EventStamp& key(int change) const { return changes_[change].key; }
   /// Bodies, and versions of the flights that began on them.
-  const std::vector<std::pair<int, std::uint32_t>>& began(int change) const { return changes_[change].began; }
+  const std::vector<std::pair<int, std::uint32_t>>& began(int change) const {
+    return changes_[change].began;
+  }
   /// One of its flights has been dropped. Called once for each flight.
   void release(int change) {
     const std::lock_guard lock(mutex_);

@@ -9,15 +9,23 @@
 namespace tumble::a4 {
 
 bool Coordinator::is_current(int body, std::uint32_t version) const {
-  return body < 0 || !all_.world().can_move(body) || all_.histories[body].find(version) < all_.histories[body].size();
+  return body < 0 || !all_.world().can_move(body) ||
+         all_.histories[body].find(version) < all_.histories[body].size();
 }
 
 // A commit is final: it lies before all pending events, and global virtual time never falls.
 void Coordinator::require_certain(const EventStamp& key) const {
-  if (key.time < all_.committed) throw PreconditionError(fmt::format("timewarp: global virtual time fell from {:.17g} s to {:.17g} s", all_.committed, key.time));
+  if (key.time < all_.committed)
+    throw PreconditionError(
+        fmt::format("timewarp: global virtual time fell from {:.17g} s to {:.17g} s",
+                    all_.committed, key.time));
   for (const Domain& domain : all_.domains)
-    if (!domain.queue.empty() && domain.queue.front().key.time <= all_.run.duration() && domain.queue.front().key < key)
-      throw PreconditionError(fmt::format("timewarp: events before {:.17g} s are to be committed while an event at {:.17g} s is pending", key.time, domain.queue.front().key.time));
+    if (!domain.queue.empty() && domain.queue.front().key.time <= all_.run.duration() &&
+        domain.queue.front().key < key)
+      throw PreconditionError(
+          fmt::format("timewarp: events before {:.17g} s are to be committed while an event at "
+                      "{:.17g} s is pending",
+                      key.time, domain.queue.front().key.time));
 }
 
 // Commits everything before `key` in order, with the frames between.
@@ -26,25 +34,35 @@ void Coordinator::commit_before(const EventStamp& key) {
   // Collects the executed events of all workers, in their total order.
   std::vector<Executed>& executed = alone().executed;
   for (std::size_t k = 1; k < workers_.size(); ++k) {
-    executed.insert(executed.end(), std::make_move_iterator(workers_[k]->executed.begin()), std::make_move_iterator(workers_[k]->executed.end()));
+    executed.insert(executed.end(), std::make_move_iterator(workers_[k]->executed.begin()),
+                    std::make_move_iterator(workers_[k]->executed.end()));
     workers_[k]->executed.clear();
   }
   const auto in_order = [](const Executed& x, const Executed& y) { return x.key < y.key; };
-  if (!std::is_sorted(executed.begin(), executed.end(), in_order)) std::sort(executed.begin(), executed.end(), in_order);
+  if (!std::is_sorted(executed.begin(), executed.end(), in_order))
+    std::sort(executed.begin(), executed.end(), in_order);
   const auto draw_before = [&](double until) {
     while (all_.run.next_frame() < until) {
       const double time = all_.run.next_frame();
-      all_.run.commit_frame([&](int body) -> const Flight& { return all_.world().can_move(body) ? all_.histories[body][all_.histories[body].at(time)] : all_.immovable(body); });
+      all_.run.commit_frame([&](int body) -> const Flight& {
+        return all_.world().can_move(body) ? all_.histories[body][all_.histories[body].at(time)]
+                                           : all_.immovable(body);
+      });
     }
   };
   // Commits events that are not rolled back, and the frames between them.
   std::size_t done = 0;
   for (; done < executed.size() && executed[done].key < key; ++done) {
     const Executed& event = executed[done];
-    if (!is_current(event.key.body_a, event.version_a) || !is_current(event.key.body_b, event.version_b)) continue;   // rolled back
+    // rolled back
+    if (!is_current(event.key.body_a, event.version_a) ||
+        !is_current(event.key.body_b, event.version_b))
+      continue;
     draw_before(event.key.time);
-    if (event.is_silent) all_.run.pass(event.key);
-    else all_.run.commit(event.key, event.first, event.more);
+    if (event.is_silent)
+      all_.run.pass(event.key);
+    else
+      all_.run.commit(event.key, event.first, event.more);
   }
   // Commits the remaining frames, and releases what lies before the committed time.
   executed.erase(executed.begin(), executed.begin() + static_cast<std::ptrdiff_t>(done));
@@ -58,7 +76,8 @@ void Coordinator::note_kept() {
   std::int64_t kept = 0;
   for (const auto& worker : workers_) kept += worker->kept;
   if (workers_.size() == 1) kept = alone().most_kept;
-  most_kept_ = std::max(most_kept_, kept + static_cast<std::int64_t>(all_.world().all_processes().segments().kept()));
+  most_kept_ = std::max(
+      most_kept_, kept + static_cast<std::int64_t>(all_.world().all_processes().segments().kept()));
 }
 
 }  // namespace tumble::a4

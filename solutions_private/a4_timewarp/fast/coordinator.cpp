@@ -18,33 +18,51 @@
 namespace tumble::a4 {
 namespace {
 
-constexpr std::size_t kCommitAfter = 512;      // executed events between computations of global virtual time
-constexpr std::size_t kForgetAfter = 1;        // advances per body, likewise: the data of segments should stay in the nearer caches
+// executed events between computations of global virtual time
+constexpr std::size_t kCommitAfter = 512;
+// advances per body, likewise: the data of segments should stay in the nearer caches
+constexpr std::size_t kForgetAfter = 1;
 constexpr int kMostThreads = 64;
-constexpr int kRegionIds = std::numeric_limits<std::uint8_t>::max();   // Shared::owner has one byte; the boundary is one more
-constexpr int kFewestStates = 8;               // a segment keeps two committed steps, and the current one
+// Shared::owner has one byte; the boundary is one more
+constexpr int kRegionIds = std::numeric_limits<std::uint8_t>::max();
+// a segment keeps two committed steps, and the current one
+constexpr int kFewestStates = 8;
 
 // Bounded optimism: the window is adapted so that 5 to 15 % of the integrations are rolled back.
 constexpr double kTooMuchUndone = 0.15, kTooLittleUndone = 0.05, kWiden = 1.3, kNarrow = 0.75;
 constexpr std::uint64_t kIntegrationsToJudgeBy = 2000;
-constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;   // of the first window
-constexpr double kOptimismWindowSteps = 2.0;           // with several threads, the first window: of the time in which a process advances once
-constexpr double kOptimismWindowAlone = 2.0;           // with one thread, which is unbounded until too much is rolled back: of that window
-constexpr double kRound = 0.25;                // of the window is an epoch: at its end processes have completed their advances, not been cut short
-constexpr double kMostInARound = 2.0;          // integrations per body
-constexpr double kEpochAlone = 0.125;          // with one thread and several regions: longer epochs check more pairs, shorter ones switch between regions more often
+constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;  // of the first window
+// with several threads, the first window: of the time in which a process advances once
+constexpr double kOptimismWindowSteps = 2.0;
+// with one thread, which is unbounded until too much is rolled back: of that window
+constexpr double kOptimismWindowAlone = 2.0;
+// of the window is an epoch: at its end processes have completed their advances, not been cut short
+constexpr double kRound = 0.25;
+constexpr double kMostInARound = 2.0;  // integrations per body
+// with one thread and several regions: longer epochs check more pairs, shorter ones switch between
+// regions more often
+constexpr double kEpochAlone = 0.125;
 
 }  // namespace
 
-Coordinator::Coordinator(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch)
-    : all_(scene, laws, options, sink), record_(record), watch_(watch), commit_at_(kCommitAfter), wanted_owner_(all_.owner), leaders_(all_.owner.size()) {
+Coordinator::Coordinator(const scene::Scene& scene, const Laws& laws,
+                         const engines::RunOptions& options, TrajectorySink& sink,
+                         VirtualTimes* record, const engines::RollbackCheck* watch)
+    : all_(scene, laws, options, sink),
+      record_(record),
+      watch_(watch),
+      commit_at_(kCommitAfter),
+      wanted_owner_(all_.owner),
+      leaders_(all_.owner.size()) {
   const FlightWorld& world = all_.world();
   const double bin = bin_for(world, all_.lengths.advance, all_.run.duration());
   const std::size_t domains = all_.regions > 1 ? static_cast<std::size_t>(all_.regions) + 1 : 1;
   const int all_bodies = world.size(), a_territory = 2 * all_bodies / all_.regions;
   all_.domains.reserve(domains);
   for (std::size_t k = 0; k < domains; ++k) {
-    all_.domains.emplace_back(all_.boxes, static_cast<int>(k), k == kBoundary ? all_bodies : a_territory, all_.lengths, k == kBoundary ? bin : bin * all_.regions);
+    all_.domains.emplace_back(all_.boxes, static_cast<int>(k),
+                              k == kBoundary ? all_bodies : a_territory, all_.lengths,
+                              k == kBoundary ? bin : bin * all_.regions);
     workers_.push_back(std::make_unique<Worker>(all_, k));
   }
   if (domains > 1) all_.work_loads.assign(static_cast<std::size_t>(world.size()), 0.0);
@@ -62,21 +80,24 @@ void Coordinator::enter_obstacle(int i) {
   const FlightWorld& world = all_.world();
   all_.processes[static_cast<std::size_t>(i)].horizon = kInfinity;
   if (world.is_half_space(i)) return all_.planes.push_back(i);
-  all_.domains[kBoundary].pairs.set_box(i, engines::box_of_immovable(world, i, all_.run.duration()));
+  all_.domains[kBoundary].pairs.set_box(i,
+                                        engines::box_of_immovable(world, i, all_.run.duration()));
 }
 
 void Coordinator::run() {
   std::string stopped_by;
   try {
     begin();
-    if (all_.regions > 1) run_in_epochs();
-    else run_alone();
+    if (all_.regions > 1)
+      run_in_epochs();
+    else
+      run_alone();
     commit_before(kInfinity);
     check_nothing_leaked();
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
   }
-  try {   // everything before is certain, and kept
+  try {  // everything before is certain, and kept
     if (working_at_) commit_before(*working_at_);
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
@@ -98,7 +119,10 @@ void Coordinator::begin() {
   alone().now = kInfinity;
   // The cost of the first advances is the cost of the time that they cover.
   if (all_.regions > 1)
-    for (const int body : order) all_.work_loads[static_cast<std::size_t>(body)] *= first_optimism_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_optimism_window_);
+    for (const int body : order)
+      all_.work_loads[static_cast<std::size_t>(body)] *=
+          first_optimism_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon,
+                                            1e-3 * first_optimism_window_);
 }
 
 // ---- One thread ------------------------------------------------------------------------------
@@ -109,15 +133,21 @@ void Coordinator::run_alone() {
   while (!queue.empty() && queue.front().key.time <= duration) {
     if (is_injection_due())
       inject_rollback([&] {
-        for (std::size_t k = 0; k < all_.world().movers().size() && !queue.empty() && queue.front().key.time <= duration; ++k) work_alone_at(queue.pop());
+        for (std::size_t k = 0; k < all_.world().movers().size() && !queue.empty() &&
+                                queue.front().key.time <= duration;
+             ++k)
+          work_alone_at(queue.pop());
       });
     if (all_.faults.rollback_every > 0) alone().disturb();
     Due due = all_.faults.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
-    if (all_.faults.late_callbacks && due.key.kind == StampKind::kCallback && !queue.empty() && queue.front().key.time <= duration) due = in_place_of(due);
+    if (all_.faults.late_callbacks && due.key.kind == StampKind::kCallback && !queue.empty() &&
+        queue.front().key.time <= duration)
+      due = in_place_of(due);
     if (!queue.empty()) alone().fetch(queue.front());
     work_alone_at(due);
     const double gvt = queue.empty() ? kInfinity : queue.front().key.time;
-    const bool keeps_much = all_.world().processes() && ++since_commit_ >= kForgetAfter * all_.world().movers().size();
+    const bool keeps_much =
+        all_.world().processes() && ++since_commit_ >= kForgetAfter * all_.world().movers().size();
     if (keeps_much || alone().executed.size() >= commit_at_ || all_.run.next_frame() < gvt) {
       commit_before(std::min(gvt, duration));
       commit_at_ = alone().executed.size() + kCommitAfter;
@@ -131,7 +161,8 @@ void Coordinator::run_alone() {
 Due Coordinator::in_place_of(const Due& callback) {
   engines::EventQueue<Due>& queue = all_.domains[kBoundary].queue;
   std::vector<Due> late{callback};
-  while (queue.front().key.kind == StampKind::kCallback && queue.size() > 1) late.push_back(queue.pop());
+  while (queue.front().key.kind == StampKind::kCallback && queue.size() > 1)
+    late.push_back(queue.pop());
   const Due next = queue.pop();
   for (const Due& due : late) queue.push(due);
   return next;
@@ -142,7 +173,8 @@ Due Coordinator::in_place_of(const Due& callback) {
 Domain* Coordinator::next_domain() {
   Domain* next = nullptr;
   for (Domain& domain : all_.domains)
-    if (!domain.queue.empty() && (!next || domain.queue.front().key < next->queue.front().key)) next = &domain;
+    if (!domain.queue.empty() && (!next || domain.queue.front().key < next->queue.front().key))
+      next = &domain;
   return next;
 }
 
@@ -156,10 +188,15 @@ double Coordinator::first_optimism_window() const {
   const FlightWorld& world = all_.world();
   double sum = 0.0;
   for (const int i : world.movers()) {
-    const double speed = world.first_flight(i).velocity_world.norm() + std::sqrt(0.5 * world.gravity_world().norm() * all_.lengths.advance);
-    sum += world.is_ball(i) && speed > 0 ? std::min(all_.lengths.advance / speed, all_.run.duration()) : all_.run.step();
+    const double speed = world.first_flight(i).velocity_world.norm() +
+                         std::sqrt(0.5 * world.gravity_world().norm() * all_.lengths.advance);
+    sum += world.is_ball(i) && speed > 0
+               ? std::min(all_.lengths.advance / speed, all_.run.duration())
+               : all_.run.step();
   }
-  return world.movers().empty() ? all_.run.step() : kOptimismWindowSteps * sum / static_cast<double>(world.movers().size());
+  return world.movers().empty()
+             ? all_.run.step()
+             : kOptimismWindowSteps * sum / static_cast<double>(world.movers().size());
 }
 
 void Coordinator::run_in_epochs() {
@@ -199,25 +236,29 @@ void Coordinator::run_in_epochs() {
 // the caches meanwhile.
 // @return the time that all of them have reached
 double Coordinator::work_as(int thread, double end) {
-  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) end = workers_[k]->work_before(end);
+  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size();
+       k += static_cast<std::size_t>(all_.threads))
+    end = workers_[k]->work_before(end);
   return end;
 }
 
 void Coordinator::run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact) {
   all_.global_virtual_time = next_time();
-  end_of_epoch = all_.global_virtual_time + (all_.threads > 1 ? kRound : kEpochAlone) * all_.optimism_window;
+  end_of_epoch =
+      all_.global_virtual_time + (all_.threads > 1 ? kRound : kEpochAlone) * all_.optimism_window;
   const double began = thread_seconds();
   settle();
   const double settled = thread_seconds();
   all_.run.share(all_.threads > 1);
   resolve_impact.arrive_and_wait();
-  const double reached = work_as(0, end_of_epoch);   // with several threads: the end of the epoch
+  const double reached = work_as(0, end_of_epoch);  // with several threads: the end of the epoch
   resolve_impact.arrive_and_wait();
   all_.run.share(false);
   for (const auto& worker : workers_)
     if (worker->deferred.out_of_time) std::rethrow_exception(worker->deferred.out_of_time);
   std::vector<double> of_threads(static_cast<std::size_t>(all_.threads), 0.0);
-  for (std::size_t k = 1; k < workers_.size(); ++k) of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
+  for (std::size_t k = 1; k < workers_.size(); ++k)
+    of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
   const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
   const double worked = thread_seconds();
   collect_deferred();
@@ -239,13 +280,17 @@ void Coordinator::collect_deferred() {
     deferred.cancelled_callbacks.clear();
   }
   for (std::size_t k = 1; k < workers_.size(); ++k) {
-    for (const auto& [body, version] : workers_[k]->deferred.anti_messages) alone().roll_back_from(body, version);
+    for (const auto& [body, version] : workers_[k]->deferred.anti_messages)
+      alone().roll_back_from(body, version);
     workers_[k]->deferred.anti_messages.clear();
   }
 }
 
 void Coordinator::work_alone_before(double end) {
-  for (Domain* next = next_domain(); next && next->queue.front().key.time < end && next->queue.front().key.time <= all_.run.duration(); next = next_domain()) work_alone_at(next->queue.pop());
+  for (Domain* next = next_domain(); next && next->queue.front().key.time < end &&
+                                     next->queue.front().key.time <= all_.run.duration();
+       next = next_domain())
+    work_alone_at(next->queue.pop());
 }
 
 // A body at its limit of states waits until global virtual time has passed some of them. The first
@@ -270,20 +315,31 @@ void Coordinator::work_alone_at(Due due) {
 // ---- Optimism --------------------------------------------------------------------------------
 
 void Coordinator::adapt_optimism_window() {
-  if (all_.threads == 1 && all_.regions > 1 && !all_.world().processes()) return adapt_epochs();   // it cuts no advance short; it only measures epochs
-  if (all_.faults.late_callbacks) return;   // events that wait for the late callback would wait for the window too
+  // it cuts no advance short; it only measures epochs
+  if (all_.threads == 1 && all_.regions > 1 && !all_.world().processes()) return adapt_epochs();
+  // events that wait for the late callback would wait for the window too
+  if (all_.faults.late_callbacks) return;
   std::uint64_t done = 0, undone = 0;
   for (const auto& worker : workers_) {
     done += worker->counters.integrations;
     undone += worker->counters.undone_integrations;
   }
   if (done - done_before_ < kIntegrationsToJudgeBy) return;
-  const double share = static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
+  const double share =
+      static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
   done_before_ = done;
   undone_before_ = undone;
-  const double first = all_.regions > 1 ? first_optimism_window_ : kOptimismWindowAlone * first_optimism_window_;
-  if (share > kTooMuchUndone) all_.optimism_window = std::max(kNarrowest * first, kNarrow * (all_.optimism_window < kInfinity ? all_.optimism_window : first));
-  else if (share < kTooLittleUndone) all_.optimism_window = all_.regions > 1 ? std::min(kWidest * first, kWiden * all_.optimism_window) : all_.optimism_window > first ? kInfinity : kWiden * all_.optimism_window;
+  const double first =
+      all_.regions > 1 ? first_optimism_window_ : kOptimismWindowAlone * first_optimism_window_;
+  if (share > kTooMuchUndone)
+    all_.optimism_window =
+        std::max(kNarrowest * first,
+                 kNarrow * (all_.optimism_window < kInfinity ? all_.optimism_window : first));
+  else if (share < kTooLittleUndone)
+    all_.optimism_window = all_.regions > 1
+                               ? std::min(kWidest * first, kWiden * all_.optimism_window)
+                           : all_.optimism_window > first ? kInfinity
+                                                          : kWiden * all_.optimism_window;
 }
 
 // With one thread states are kept until the end of an epoch, so an epoch must not have many more
@@ -291,9 +347,13 @@ void Coordinator::adapt_optimism_window() {
 void Coordinator::adapt_epochs() {
   std::uint64_t done = 0;
   for (const auto& worker : workers_) done += worker->counters.integrations;
-  const double a_body = static_cast<double>(done - std::exchange(done_before_, done)) / static_cast<double>(all_.world().movers().size());
-  if (a_body > kMostInARound) all_.optimism_window *= std::max(0.1, kMostInARound / a_body);
-  else if (a_body < 0.25 * kMostInARound) all_.optimism_window = std::min(kWidest * first_optimism_window_, kWiden * all_.optimism_window);
+  const double a_body = static_cast<double>(done - std::exchange(done_before_, done)) /
+                        static_cast<double>(all_.world().movers().size());
+  if (a_body > kMostInARound)
+    all_.optimism_window *= std::max(0.1, kMostInARound / a_body);
+  else if (a_body < 0.25 * kMostInARound)
+    all_.optimism_window =
+        std::min(kWidest * first_optimism_window_, kWiden * all_.optimism_window);
 }
 
 // ---- End -------------------------------------------------------------------------------------
@@ -306,7 +366,8 @@ void Coordinator::check_nothing_leaked() {
       all_.world().release(all_.histories[body][k]);
       if (all_.histories[body][k].change >= 0) all_.changes.release(all_.histories[body][k].change);
     }
-  require(all_.world().all_processes().segments().alive() == 0 && all_.changes.alive() == 0, "no segment or change outlives its flights");
+  require(all_.world().all_processes().segments().alive() == 0 && all_.changes.alive() == 0,
+          "no segment or change outlives its flights");
 }
 
 void Coordinator::end(const std::string& stopped_by) {
@@ -317,20 +378,32 @@ void Coordinator::end(const std::string& stopped_by) {
     all_.run.cost.narrow.root_findings += worker->cost.narrow.root_findings;
   }
   if (workers_.size() > 1) {
-    const auto works_less = [](const auto& x, const auto& y) { return x->worked_at < y->worked_at; };
-    all_.run.counters.least_of_a_thread = (*std::min_element(workers_.begin() + 1, workers_.end(), works_less))->worked_at;
+    const auto works_less = [](const auto& x, const auto& y) {
+      return x->worked_at < y->worked_at;
+    };
+    all_.run.counters.least_of_a_thread =
+        (*std::min_element(workers_.begin() + 1, workers_.end(), works_less))->worked_at;
   }
   all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
   if (record_) record_->moves = std::move(alone().moves);
   all_.run.end(stopped_by);
 }
 
-void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch) {
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws,
+                       const engines::RunOptions& options, TrajectorySink& sink,
+                       VirtualTimes* record, const engines::RollbackCheck* watch) {
   if (options.most_states != 0 && options.most_states < kFewestStates)
-    throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
+    throw UserError("--most-states " + std::to_string(options.most_states),
+                    fmt::format("a process in contact needs {}", kFewestStates),
+                    fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
   if (options.threads < 1 || options.threads > kMostThreads)
-    throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "More threads than cores do not help.");
-  require(options.faults.regions >= 0 && options.faults.regions <= kRegionIds, fmt::format("FaultInjection::regions is from 0 to {}, and not {}: the owner of a body is stored in a byte", kRegionIds, options.faults.regions));
+    throw UserError("--threads " + std::to_string(options.threads),
+                    fmt::format("expected a number from 1 to {}", kMostThreads),
+                    "More threads than cores do not help.");
+  require(options.faults.regions >= 0 && options.faults.regions <= kRegionIds,
+          fmt::format("FaultInjection::regions is from 0 to {}, and not {}: the owner of a body is "
+                      "stored in a byte",
+                      kRegionIds, options.faults.regions));
   Coordinator(scene, laws, options, sink, record, watch).run();
 }
 

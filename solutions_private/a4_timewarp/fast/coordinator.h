@@ -22,7 +22,8 @@ namespace tumble::a4 {
 
 class Coordinator {
  public:
-  Coordinator(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch);
+  Coordinator(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options,
+              TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch);
   void run();
 
  private:
@@ -61,25 +62,29 @@ class Coordinator {
   // commits.cpp
   void require_certain(const EventStamp& key) const;
   void commit_before(const EventStamp& key);
-  void commit_before(double t) { commit_before(EventStamp{t, 0, StampKind::kRecheck, -1, -1}); }   // a stamp before all others of that time
+  // a stamp before all others of that time
+  void commit_before(double t) { commit_before(EventStamp{t, 0, StampKind::kRecheck, -1, -1}); }
   void note_kept();
   bool is_current(int body, std::uint32_t version) const;
 
   Shared all_;
-  std::vector<std::unique_ptr<Worker>> workers_;   // by domain
-  VirtualTimes* record_;                           // null: no record is wanted
-  const engines::RollbackCheck* watch_;            // null: no fault injection
-  int injections_ = 0;                                 // so far
-  int since_injection_ = 0;                            // events, or epochs
-  double last_injection_ = 0.0;                        // [s]
-  std::size_t commit_at_;                          // executed events between computations of global virtual time
-  std::size_t since_commit_ = 0;                   // events
-  std::optional<EventStamp> working_at_;             // by one thread alone
-  std::vector<std::uint8_t> wanted_owner_;               // by body: the new owner
-  std::vector<int> leaders_;                       // by body: of processes that must have one owner
-  std::uint64_t epochs_ = 0, last_partition_ = 0;        // started; the epoch before which regions were last cut
-  double first_optimism_window_ = 0.0;                      // [s]
-  std::uint64_t done_before_ = 0, undone_before_ = 0;   // integrations, at the last adaptation of the window
+  std::vector<std::unique_ptr<Worker>> workers_;  // by domain
+  VirtualTimes* record_;                          // null: no record is wanted
+  const engines::RollbackCheck* watch_;           // null: no fault injection
+  int injections_ = 0;                            // so far
+  int since_injection_ = 0;                       // events, or epochs
+  double last_injection_ = 0.0;                   // [s]
+  // executed events between computations of global virtual time
+  std::size_t commit_at_;
+  std::size_t since_commit_ = 0;            // events
+  std::optional<EventStamp> working_at_;    // by one thread alone
+  std::vector<std::uint8_t> wanted_owner_;  // by body: the new owner
+  std::vector<int> leaders_;                // by body: of processes that must have one owner
+  // started; the epoch before which regions were last cut
+  std::uint64_t epochs_ = 0, last_partition_ = 0;
+  double first_optimism_window_ = 0.0;  // [s]
+  // integrations, at the last adaptation of the window
+  std::uint64_t done_before_ = 0, undone_before_ = 0;
   std::int64_t most_kept_ = 0;
 };
 

@@ -28,6 +28,9 @@ namespace tumble::a4 {
 /// @param record  receives changes of local virtual times; null: none
 /// @param watch   rolls everything back repeatedly; null: never
 /// @throws UserError where the scene has an effect that flights do not model
-void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record = nullptr, const engines::RollbackCheck* watch = nullptr);
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws,
+                       const engines::RunOptions& options, TrajectorySink& sink,
+                       VirtualTimes* record = nullptr,
+                       const engines::RollbackCheck* watch = nullptr);
 
 }  // namespace tumble::a4

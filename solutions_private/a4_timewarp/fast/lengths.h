@@ -7,7 +7,7 @@
 namespace tumble::a4 {
 
 struct Lengths {
-  double advance, cell;   // [m]
+  double advance, cell;  // [m]
 };
 
 /// Measured on gases of 10^2 to 10^5 balls; an error of 50 % in either costs 10 % of the speed.

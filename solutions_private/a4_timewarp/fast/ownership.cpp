@@ -10,11 +10,14 @@ namespace {
 
 constexpr std::uint64_t kEpochsPerPartition = 256;  // at most, because bodies move
 constexpr std::uint64_t kEpochsToJudgeBy = 2;
-constexpr double kUneven = 1.15;            // the busiest thread against the mean, from which regions are cut anew
-constexpr double kFading = 0.5;             // weight of costs before the last partition
+// the busiest thread against the mean, from which regions are cut anew
+constexpr double kUneven = 1.15;
+constexpr double kFading = 0.5;  // weight of costs before the last partition
 
 int leader_of(std::vector<int>& leaders, int body) {
-  while (leaders[static_cast<std::size_t>(body)] != body) body = leaders[static_cast<std::size_t>(body)] = leaders[static_cast<std::size_t>(leaders[static_cast<std::size_t>(body)])];
+  while (leaders[static_cast<std::size_t>(body)] != body)
+    body = leaders[static_cast<std::size_t>(body)] =
+        leaders[static_cast<std::size_t>(leaders[static_cast<std::size_t>(body)])];
   return body;
 }
 
@@ -25,11 +28,14 @@ void Coordinator::settle() {
   double sum = 0.0, most = 0.0;
   for (int thread = 0; thread < all_.threads; ++thread) {
     double its = 0.0;
-    for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) its += workers_[k]->work_load;
+    for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size();
+         k += static_cast<std::size_t>(all_.threads))
+      its += workers_[k]->work_load;
     sum += its;
     most = std::max(most, its);
   }
-  const bool is_uneven = most * all_.threads > kUneven * sum && epochs_ - last_partition_ >= kEpochsToJudgeBy;
+  const bool is_uneven =
+      most * all_.threads > kUneven * sum && epochs_ - last_partition_ >= kEpochsToJudgeBy;
   if (epochs_ == 0 || is_uneven || epochs_ - last_partition_ >= kEpochsPerPartition) {
     repartition();
     last_partition_ = epochs_;
@@ -50,13 +56,15 @@ void Coordinator::repartition() {
   for (const int body : all_.world().movers()) {
     const Box& box = all_.domains[all_.owner[static_cast<std::size_t>(body)]].pairs.box(body);
     double& work_load = all_.work_loads[static_cast<std::size_t>(body)];
-    if (box.low.allFinite() && box.high.allFinite()) work_loads.push_back({0.5 * (box.low + box.high), 1.0 + work_load});
+    if (box.low.allFinite() && box.high.allFinite())
+      work_loads.push_back({0.5 * (box.low + box.high), 1.0 + work_load});
     work_load *= kFading;
   }
   const std::vector<Box> regions = partition_space(std::move(work_loads), all_.regions);
   for (std::size_t k = 1; k < all_.domains.size(); ++k) {
     all_.domains[k].region = regions[k - 1];
-    all_.domains[k].queue.drain([this](const Due& due) { all_.domains[kBoundary].queue.push(due); });
+    all_.domains[k].queue.drain(
+        [this](const Due& due) { all_.domains[kBoundary].queue.push(due); });
   }
   // Owners are found anew below: until then every body belongs to the boundary, where boxes may lie
   // anywhere.
@@ -68,7 +76,8 @@ void Coordinator::find_owners() {
     const std::size_t now = all_.owner[static_cast<std::size_t>(body)];
     const Box& box = all_.domains[now].pairs.box(body);
     std::uint8_t wanted = kBoundary;
-    if (now != kBoundary && holds(all_.domains[now].region, box)) wanted = static_cast<std::uint8_t>(now);
+    if (now != kBoundary && holds(all_.domains[now].region, box))
+      wanted = static_cast<std::uint8_t>(now);
     for (std::size_t k = 1; k < all_.domains.size() && wanted == kBoundary; ++k)
       if (holds(all_.domains[k].region, box)) wanted = static_cast<std::uint8_t>(k);
     wanted_owner_[static_cast<std::size_t>(body)] = wanted;
@@ -89,10 +98,14 @@ void Coordinator::keep_processes_together() {
       }
     }
   }
-  const auto wanted_of_leader = [&](int body) -> std::uint8_t& { return wanted_owner_[static_cast<std::size_t>(leader_of(leaders_, body))]; };
+  const auto wanted_of_leader = [&](int body) -> std::uint8_t& {
+    return wanted_owner_[static_cast<std::size_t>(leader_of(leaders_, body))];
+  };
   for (const int body : all_.world().movers())
-    if (wanted_owner_[static_cast<std::size_t>(body)] != wanted_of_leader(body)) wanted_of_leader(body) = kBoundary;
-  for (const int body : all_.world().movers()) wanted_owner_[static_cast<std::size_t>(body)] = wanted_of_leader(body);
+    if (wanted_owner_[static_cast<std::size_t>(body)] != wanted_of_leader(body))
+      wanted_of_leader(body) = kBoundary;
+  for (const int body : all_.world().movers())
+    wanted_owner_[static_cast<std::size_t>(body)] = wanted_of_leader(body);
 }
 
 void Coordinator::change_owner(int body, std::uint8_t owner) {
@@ -116,10 +129,13 @@ void Coordinator::hand_out() {
     all_.domains[owner].queue.push(due);
     if (owner != kBoundary || due.key.kind != StampKind::kCollision) continue;
     for (const int body : {due.key.body_a, due.key.body_b}) {
-      if (!all_.world().can_move(body) || all_.owner[static_cast<std::size_t>(body)] == kBoundary) continue;
+      if (!all_.world().can_move(body) || all_.owner[static_cast<std::size_t>(body)] == kBoundary)
+        continue;
       const int first = all_.first_member(body);
       LogicalProcess& waiting = all_.processes[static_cast<std::size_t>(first)];
-      if (waiting.horizon <= due.key.time) all_.domains[kBoundary].queue.push({{waiting.horizon, kAfterAll, StampKind::kAdvance, first, -1}, ++waiting.version, 0});
+      if (waiting.horizon <= due.key.time)
+        all_.domains[kBoundary].queue.push(
+            {{waiting.horizon, kAfterAll, StampKind::kAdvance, first, -1}, ++waiting.version, 0});
     }
   }
 }

@@ -9,7 +9,8 @@ namespace {
 
 using engines::Box;
 
-constexpr int kBodiesPerRegion = 6000;   // measured on a gas of 10^5 balls: 3,000 and 12,000 are slower by 10 %, one region by 33 %
+// measured on a gas of 10^5 balls: 3,000 and 12,000 are slower by 10 %, one region by 33 %
+constexpr int kBodiesPerRegion = 6000;
 constexpr int kMostRegions = 64;
 
 void cut(std::span<WorkLoad> work_loads, const Box& room, int count, std::vector<Box>& regions) {
@@ -27,10 +28,16 @@ void cut(std::span<WorkLoad> work_loads, const Box& room, int count, std::vector
   const int lower_count = count / 2;
   if (!work_loads.empty()) {
     (around.high - around.low).maxCoeff(&axis);
-    std::sort(work_loads.begin(), work_loads.end(), [axis](const WorkLoad& a, const WorkLoad& b) { return a.middle_world[axis] < b.middle_world[axis]; });
+    std::sort(work_loads.begin(), work_loads.end(), [axis](const WorkLoad& a, const WorkLoad& b) {
+      return a.middle_world[axis] < b.middle_world[axis];
+    });
     double sum = 0.0;
-    while (below + 1 < work_loads.size() && sum + 0.5 * work_loads[below].work < all * lower_count / count) sum += work_loads[below++].work;
-    place = below > 0 ? 0.5 * (work_loads[below - 1].middle_world[axis] + work_loads[below].middle_world[axis]) : work_loads[0].middle_world[axis];
+    while (below + 1 < work_loads.size() &&
+           sum + 0.5 * work_loads[below].work < all * lower_count / count)
+      sum += work_loads[below++].work;
+    place = below > 0 ? 0.5 * (work_loads[below - 1].middle_world[axis] +
+                               work_loads[below].middle_world[axis])
+                      : work_loads[0].middle_world[axis];
   }
   // Both halves are cut further.
   place = std::clamp(place, room.low[axis], room.high[axis]);
@@ -45,9 +52,11 @@ void cut(std::span<WorkLoad> work_loads, const Box& room, int count, std::vector
 int regions_for(const engines::FlightWorld& world, const engines::RunOptions& options) {
   const engines::FaultInjection& faults = options.faults;
   if (faults.regions > 0) return std::max(faults.regions, options.threads);
-  const bool is_of_one_queue = faults.disorder_s > 0 || faults.rollback_every > 0 || faults.late_callbacks;
+  const bool is_of_one_queue =
+      faults.disorder_s > 0 || faults.rollback_every > 0 || faults.late_callbacks;
   if (is_of_one_queue || world.processes()) return options.threads;
-  const int wanted = std::min(kMostRegions, static_cast<int>(world.movers().size()) / kBodiesPerRegion);
+  const int wanted =
+      std::min(kMostRegions, static_cast<int>(world.movers().size()) / kBodiesPerRegion);
   return std::max(1, wanted / options.threads) * options.threads;
 }
 

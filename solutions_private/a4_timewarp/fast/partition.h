@@ -16,8 +16,8 @@ int regions_for(const engines::FlightWorld& world, const engines::RunOptions& op
 
 /// The position of a body and its recent cost.
 struct WorkLoad {
-  Vector3d middle_world;   // [m]
-  double work;             // in any unit, >= 0
+  Vector3d middle_world;  // [m]
+  double work;            // in any unit, >= 0
 };
 
 /// Cuts space across its longest side, recursively.
@@ -29,7 +29,8 @@ std::vector<engines::Box> partition_space(std::vector<WorkLoad> work_loads, int 
 
 /// Whether a box lies inside a region.
 inline bool holds(const engines::Box& region, const engines::Box& box) {
-  return (region.low.array() <= box.low.array()).all() && (box.high.array() < region.high.array()).all();
+  return (region.low.array() <= box.low.array()).all() &&
+         (box.high.array() < region.high.array()).all();
 }
 
 }  // namespace tumble::a4

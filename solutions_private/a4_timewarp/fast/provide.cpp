@@ -5,7 +5,10 @@
 namespace tumble::engines {
 
 Engine fast_timewarp(VirtualTimes* record, const RollbackCheck* watch) {
-  return [record, watch](const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { a4::run_fast_timewarp(scene, laws, options, sink, record, watch); };
+  return [record, watch](const scene::Scene& scene, const Laws& laws, const RunOptions& options,
+                         TrajectorySink& sink) {
+    a4::run_fast_timewarp(scene, laws, options, sink, record, watch);
+  };
 }
 
 }  // namespace tumble::engines

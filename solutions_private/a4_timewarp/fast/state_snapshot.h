@@ -13,6 +13,7 @@ namespace tumble::a4 {
 /// @param t  the time to which all processes have been rolled back: steps of segments beyond it are
 ///   only computed ahead, and left out
 /// @pre one thread runs alone
-engines::StateSnapshot snapshot_of(Shared& all, std::vector<std::unique_ptr<Worker>>& workers, double t);
+engines::StateSnapshot snapshot_of(Shared& all, std::vector<std::unique_ptr<Worker>>& workers,
+                                   double t);
 
 }  // namespace tumble::a4

@@ -19,7 +19,8 @@ namespace tumble::a4 {
 
 class alignas(64) Worker {
  public:
-  Worker(Shared& all, std::size_t owner) : all_(all), owner_(owner), random_(all.faults.seed + owner) {}
+  Worker(Shared& all, std::size_t owner)
+      : all_(all), owner_(owner), random_(all.faults.seed + owner) {}
 
   /// Executes the events before `end`, in order, in this worker's region.
   /// @return `end`; with one thread less where a body has had very many events: the time that was
@@ -51,28 +52,35 @@ class alignas(64) Worker {
   /// Work that belongs to another worker.
   struct Deferred {
     std::vector<Due> due;
-    std::vector<std::pair<int, std::uint32_t>> anti_messages;   // body, and version of its flight that must be dropped
-    std::vector<EventStamp> cancelled_callbacks;                              // callbacks that must be executed again
-    std::exception_ptr out_of_time;                             // out of time: this worker has stopped, and all others must
+    // body, and version of its flight that must be dropped
+    std::vector<std::pair<int, std::uint32_t>> anti_messages;
+    // callbacks that must be executed again
+    std::vector<EventStamp> cancelled_callbacks;
+    // out of time: this worker has stopped, and all others must
+    std::exception_ptr out_of_time;
   };
   Deferred deferred;
   std::vector<Executed> executed;
   std::vector<VirtualTimes::Move> moves;
   engines::RunCounters counters;
   engines::CheckCost cost;
-  std::size_t longest = 0;                // largest number of states of a body since work_before began
-  std::int64_t kept = 0, most_kept = 0;   // flights; for one worker the change that it made
-  double work_load = 0.0;                    // of all its bodies, since the last partition
-  double cpu_seconds = 0.0;               // CPU time of work_before
-  std::uint64_t worked_at = 0;            // events, in work_before
-  double now = kInfinity;                 // time of the event in execution: it is not in the queue any more, but not finished [s]
+  // largest number of states of a body since work_before began
+  std::size_t longest = 0;
+  std::int64_t kept = 0, most_kept = 0;  // flights; for one worker the change that it made
+  double work_load = 0.0;                // of all its bodies, since the last partition
+  double cpu_seconds = 0.0;              // CPU time of work_before
+  std::uint64_t worked_at = 0;           // events, in work_before
+  // time of the event in execution: it is not in the queue any more, but not finished [s]
+  double now = kInfinity;
 
  private:
   bool is_alone() const { return owner_ == kBoundary; }
   const FlightWorld& world() const { return all_.world(); }
   LogicalProcess& process(int body) { return all_.processes[static_cast<std::size_t>(body)]; }
   const FlightHistory& history(int body) const { return all_.histories[body]; }
-  bool is_mine(int body) const { return is_alone() || all_.owner[static_cast<std::size_t>(body)] == owner_; }
+  bool is_mine(int body) const {
+    return is_alone() || all_.owner[static_cast<std::size_t>(body)] == owner_;
+  }
 
   void advance(int body);
   void advance_or_defer(int body);
@@ -90,7 +98,8 @@ class alignas(64) Worker {
   bool meets_nobody(int body, const Flight& flight, double from, double to) const;
   void find_obstacles(int body, const Flight& flight, double from, double to);
   void check(int body, const Flight& flight, double from, double to, int other);
-  void offer(int body, const Flight& flight, int other, const Flight& its, double time, const Flight* its_next);
+  void offer(int body, const Flight& flight, int other, const Flight& its, double time,
+             const Flight* its_next);
   double horizon_after(int body, const Flight& flight, double t) const;
   Box swept_box(int body, double from, double to) const;
   void move(int body, double t);
@@ -99,7 +108,9 @@ class alignas(64) Worker {
   void schedule(int body, std::size_t owner);
   void schedule(int body) { schedule(body, all_.owner[static_cast<std::size_t>(body)]); }
   void schedule_recheck(int body, std::size_t owner);
-  void schedule_recheck(int body) { schedule_recheck(body, all_.owner[static_cast<std::size_t>(body)]); }
+  void schedule_recheck(int body) {
+    schedule_recheck(body, all_.owner[static_cast<std::size_t>(body)]);
+  }
   double global_virtual_time() const;
 
   void collide(const Due& due);
@@ -119,12 +130,12 @@ class alignas(64) Worker {
   Shared& all_;
   const std::size_t owner_;
   Random random_;
-  std::vector<std::pair<int, std::size_t>> to_drop_;   // of roll_back, a member to keep its memory
+  std::vector<std::pair<int, std::size_t>> to_drop_;  // of roll_back, a member to keep its memory
   template <class Work>
   void for_each_member(const Due& due, const Work& work);
 
-  std::vector<Due> found_;                             // of advance
-  std::vector<Box> boxes_;                             // of advance: by member
+  std::vector<Due> found_;  // of advance
+  std::vector<Box> boxes_;  // of advance: by member
   std::uint64_t since_disturbed_ = 0;
 };
 

@@ -38,15 +38,17 @@ double Worker::horizon_after(int body, const Flight& flight, double t) const {
     double to = world.smooth_until(flight, t, kInfinity);
     for (int k = 1; k < kMostStepsAtOnce && to < trusted; ++k) {
       const double next = world.smooth_until(flight, to, kInfinity);
-      if (!(next > to)) break;   // the segment ends there
+      if (!(next > to)) break;  // the segment ends there
       to = next;
     }
     return std::min(all_.run.duration(), to);
   }
   if (flight.is_resting || !world.collides(body)) return all_.run.duration();
   const double advance = all_.lengths.advance;
-  const double speed = world.velocity(body, flight, t).norm() + std::sqrt(0.5 * world.gravity_world().norm() * advance);
-  const double far = std::min(all_.run.duration(), t + std::max(advance / speed, 1e-9 * all_.run.step()));
+  const double speed = world.velocity(body, flight, t).norm() +
+                       std::sqrt(0.5 * world.gravity_world().norm() * advance);
+  const double far =
+      std::min(all_.run.duration(), t + std::max(advance / speed, 1e-9 * all_.run.step()));
   if (world.is_ball(body)) return far;
   const double near = std::min(all_.run.duration(), all_.run.impacts().window_end(t));
   return far > near && meets_nobody(body, flight, t, far) ? far : near;
@@ -57,9 +59,13 @@ bool Worker::meets_nobody(int body, const Flight& flight, double from, double to
   const Box box = swept_box(body, std::min(from, global_virtual_time()), to);
   if (!is_alone() && !may_enter(box)) return false;
   for (const int plane : all_.planes)
-    if (world().may_collide(body, plane) && all_.run.impacts().may_meet(body, flight, plane, all_.immovable(plane), from, to)) return false;
+    if (world().may_collide(body, plane) &&
+        all_.run.impacts().may_meet(body, flight, plane, all_.immovable(plane), from, to))
+      return false;
   bool is_nobody = true;
-  for_each_in(all_.owner[static_cast<std::size_t>(body)], box, [&](int other) { is_nobody = is_nobody && (other == body || !world().may_collide(body, other)); });
+  for_each_in(all_.owner[static_cast<std::size_t>(body)], box, [&](int other) {
+    is_nobody = is_nobody && (other == body || !world().may_collide(body, other));
+  });
   return is_nobody;
 }
 
@@ -68,7 +74,8 @@ Box Worker::swept_box(int body, double from, double to) const {
   const FlightHistory& flights = history(body);
   Box box;
   for (std::size_t k = flights.at(from); k < flights.size(); ++k)
-    box.take_in(engines::swept_box(all_.world(), body, flights[k], std::max(from, flights[k].begin), k + 1 < flights.size() ? flights[k + 1].begin : to));
+    box.take_in(engines::swept_box(all_.world(), body, flights[k], std::max(from, flights[k].begin),
+                                   k + 1 < flights.size() ? flights[k + 1].begin : to));
   return box;
 }
 
@@ -87,11 +94,15 @@ void Worker::advance(int body) {
   // A rollback of a ball's flight costs the same for any horizon, so with one thread it needs no
   // window.
   const bool is_bounded = flight.segment >= 0 || all_.threads > 1;
-  if (is_bounded && to > gvt + all_.optimism_window) to = std::max(from, gvt + all_.optimism_window);
+  if (is_bounded && to > gvt + all_.optimism_window)
+    to = std::max(from, gvt + all_.optimism_window);
   const auto own_end = all_.run.own_end(body, flight, to);
   if (own_end) to = own_end->time;
   const double swept_from = std::min(from, gvt);
-  const auto members = flight.segment < 0 ? std::span<const int>(&body, 1) : std::span<const int>(world().all_processes().segments().members(flight.segment));
+  const auto members =
+      flight.segment < 0
+          ? std::span<const int>(&body, 1)
+          : std::span<const int>(world().all_processes().segments().members(flight.segment));
   boxes_.clear();
   for (const int member : members) {
     boxes_.push_back(swept_box(member, swept_from, to));
@@ -99,7 +110,8 @@ void Worker::advance(int body) {
   }
   found_.clear();
   if (own_end && own_end->time >= from) found_.push_back({*own_end, flight.version, 0});
-  for (std::size_t k = 0; k < members.size(); ++k) advance_member(members[k], history(members[k]).back(), from, to, boxes_[k]);
+  for (std::size_t k = 0; k < members.size(); ++k)
+    advance_member(members[k], history(members[k]).back(), from, to, boxes_[k]);
   // The process advances at most to its first known impact; later ones are searched again if that
   // one is cancelled. Where another worker owns that impact, the advance is deferred too.
   for (const Due& due : found_) to = std::min(to, due.key.time);
@@ -128,19 +140,25 @@ void Worker::advance_or_defer(int body) {
 }
 
 void Worker::push(const Due& due, std::size_t owner) {
-  if (is_alone() || owner == owner_) all_.domains[owner].queue.push(due);
-  else deferred.due.push_back(due);
+  if (is_alone() || owner == owner_)
+    all_.domains[owner].queue.push(due);
+  else
+    deferred.due.push_back(due);
 }
 
-void Worker::advance_member(int body, const Flight& flight, double from, double to, const Box& box) {
+void Worker::advance_member(int body, const Flight& flight, double from, double to,
+                            const Box& box) {
   ++counters.steps;
   ++counters.integrations;
-  const std::uint64_t before = all_.work_loads.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
+  const std::uint64_t before =
+      all_.work_loads.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
   enter_box(body, box);
   find_obstacles(body, flight, from, to);
   for_each_partner(body, box, [&](int other) { check(body, flight, from, to, other); });
   if (all_.work_loads.empty()) return;
-  const double checks = static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.segment < 0 ? kStepChecks : kSegmentChecks);
+  const double checks =
+      static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) +
+      (flight.segment < 0 ? kStepChecks : kSegmentChecks);
   all_.work_loads[static_cast<std::size_t>(body)] += checks;
   work_load += checks;
 }
@@ -153,7 +171,9 @@ bool Worker::may_enter(const Box& box) const {
   if (!holds(all_.domains[owner_].region, box)) return false;
   if (!world().processes()) return true;
   bool stands_still = true;
-  all_.domains[kBoundary].pairs.for_each_in(box, [&](int other) { stands_still = stands_still && (!world().can_move(other) || has_only_flown(other)); });
+  all_.domains[kBoundary].pairs.for_each_in(box, [&](int other) {
+    stands_still = stands_still && (!world().can_move(other) || has_only_flown(other));
+  });
   return stands_still;
 }
 
@@ -177,7 +197,8 @@ void Worker::enter_box(int body, const Box& box) {
 void Worker::shrink_box(int body) {
   const double to = process(body).horizon;
   Box box = swept_box(body, std::min(to, global_virtual_time()), to);
-  if (!is_alone()) {   // not out of the region, whatever rounding does: the previous box contains all that it sweeps
+  // not out of the region, whatever rounding does: the previous box contains all that it sweeps
+  if (!is_alone()) {
     const Box& had = all_.domains[owner_].pairs.box(body);
     box = {box.low.cwiseMax(had.low), box.high.cwiseMin(had.high)};
   }
@@ -210,8 +231,10 @@ void Worker::move(int body, double t) {
   double& horizon = process(body).horizon;
   if (all_.is_recorded && t != horizon && moves.size() < engines::kMostMoves) {
     const auto until_end = [&](double time) { return std::min(time, all_.run.duration()); };
-    const auto row = std::lower_bound(world().movers().begin(), world().movers().end(), body) - world().movers().begin();
-    moves.push_back({static_cast<int>(row), until_end(horizon), until_end(t), until_end(global_virtual_time())});
+    const auto row = std::lower_bound(world().movers().begin(), world().movers().end(), body) -
+                     world().movers().begin();
+    moves.push_back({static_cast<int>(row), until_end(horizon), until_end(t),
+                     until_end(global_virtual_time())});
   }
   horizon = t;
 }
@@ -237,18 +260,20 @@ void Worker::find_obstacles(int body, const Flight& flight, double from, double 
     for (const int plane : all_.planes) {
       if (!world().may_collide(body, plane)) continue;
       if (!all_.run.impacts().has_closed_form(body, flight, plane, all_.immovable(plane))) {
-        mine.obstacle_version = kAfterAll;   // a moving plane: query again
+        mine.obstacle_version = kAfterAll;  // a moving plane: query again
         check(body, flight, from, to, plane);
         continue;
       }
-      const double time = all_.run.impacts().first_impact(body, flight, plane, all_.immovable(plane), from, to, cost);
+      const double time = all_.run.impacts().first_impact(body, flight, plane,
+                                                          all_.immovable(plane), from, to, cost);
       if (time < mine.obstacle_time) {
         mine.obstacle_time = time;
         mine.obstacle = plane;
       }
     }
   }
-  if (mine.obstacle_time >= from && mine.obstacle_time <= to) offer(body, flight, mine.obstacle, all_.immovable(mine.obstacle), mine.obstacle_time, nullptr);
+  if (mine.obstacle_time >= from && mine.obstacle_time <= to)
+    offer(body, flight, mine.obstacle, all_.immovable(mine.obstacle), mine.obstacle_time, nullptr);
 }
 
 // Establishes the invariant for the later body: of every two bodies all impacts up to the lesser of
@@ -256,11 +281,14 @@ void Worker::find_obstacles(int body, const Flight& flight, double from, double 
 void Worker::check(int body, const Flight& flight, double from, double to, int other) {
   if (!world().may_collide(body, other)) return;
   if (!world().can_move(other)) {
-    const double time = all_.run.impacts().first_impact(body, flight, other, all_.immovable(other), from, to, cost);
-    if (time >= from && time <= to) offer(body, flight, other, all_.immovable(other), time, nullptr);
+    const double time =
+        all_.run.impacts().first_impact(body, flight, other, all_.immovable(other), from, to, cost);
+    if (time >= from && time <= to)
+      offer(body, flight, other, all_.immovable(other), time, nullptr);
     return;
   }
-  if (flight.segment >= 0 && history(other).back().segment == flight.segment) {   // two members of one process: checked once
+  // two members of one process: checked once
+  if (flight.segment >= 0 && history(other).back().segment == flight.segment) {
     if (other < body) return;
     const Flight& its = history(other).back();
     const double time = all_.run.impacts().first_impact(body, flight, other, its, from, to, cost);
@@ -274,20 +302,25 @@ void Worker::check(int body, const Flight& flight, double from, double to, int o
   if (until < from) return;
   const FlightHistory& flights = history(other);
   std::size_t first = flights.at(from);
-  while (first > 0 && flights[first].begin == from) --first;   // all flights at this instant: an earlier impact may have to precede a later one
+  // all flights at this instant: an earlier impact may have to precede a later one
+  while (first > 0 && flights[first].begin == from) --first;
   for (std::size_t k = first; k < flights.size() && flights[k].begin <= until; ++k) {
     const Flight& its = flights[k];
     // A flight that ended at this instant is not continued beyond it: it would penetrate the body
     // that stopped it, where a search is costly.
     const double last = k + 1 < flights.size() && flights[k + 1].begin == from ? from : until;
-    const double time = all_.run.impacts().first_impact(body, flight, other, its, std::max(from, its.begin), last, cost);
-    if (time >= from && time <= last) offer(body, flight, other, its, time, k + 1 < flights.size() ? &flights[k + 1] : nullptr);
+    const double time = all_.run.impacts().first_impact(body, flight, other, its,
+                                                        std::max(from, its.begin), last, cost);
+    if (time >= from && time <= last)
+      offer(body, flight, other, its, time, k + 1 < flights.size() ? &flights[k + 1] : nullptr);
   }
 }
 
-void Worker::offer(int body, const Flight& flight, int other, const Flight& its, double time, const Flight* its_next) {
+void Worker::offer(int body, const Flight& flight, int other, const Flight& its, double time,
+                   const Flight* its_next) {
   const EventStamp key = engines::key_of_impact(body, flight, other, its, time);
-  if (its_next != nullptr && !(key < all_.begin_of(other, *its_next))) return;   // the other was hit earlier
+  // the other was hit earlier
+  if (its_next != nullptr && !(key < all_.begin_of(other, *its_next))) return;
   const bool is_a = key.body_a == body;
   found_.push_back({key, is_a ? flight.version : its.version, is_a ? its.version : flight.version});
 }

@@ -14,7 +14,8 @@
 namespace tumble::a4 {
 namespace {
 
-constexpr std::size_t kMostOfABody = 256;   // states: a search back over an epoch visits all of them each time, and they are kept to its end
+// states: a search back over an epoch visits all of them each time, and they are kept to its end
+constexpr std::size_t kMostOfABody = 256;
 
 }  // namespace
 
@@ -29,14 +30,17 @@ bool Worker::look_up(const Due& due, int side, std::size_t& place) {
   if (process(body).horizon < due.key.time) return false;
   const FlightHistory& flights = history(body);
   place = flights.find(side == 0 ? due.version_a : due.version_b);
-  if (place == flights.size()) return false;   // rolled back
+  if (place == flights.size()) return false;  // rolled back
   if (place + 1 == flights.size()) return true;
-  return due.key < all_.begin_of(body, flights[place + 1]);   // otherwise hit earlier, or a duplicate
+  // otherwise hit earlier, or a duplicate
+  return due.key < all_.begin_of(body, flights[place + 1]);
 }
 
 bool Worker::is_to_come(const Due& due) {
   if (due.key.kind == StampKind::kCallback) return !all_.called[due.key.microstep];
-  if (is_advance(due)) return process(due.key.body_a).version == due.version_a && all_.first_member(due.key.body_a) == due.key.body_a;
+  if (is_advance(due))
+    return process(due.key.body_a).version == due.version_a &&
+           all_.first_member(due.key.body_a) == due.key.body_a;
   std::size_t place = 0;
   return look_up(due, 0, place) && look_up(due, 1, place);
 }
@@ -44,7 +48,8 @@ bool Worker::is_to_come(const Due& due) {
 void Worker::count_by_region(const Due& due) {
   if (!is_alone()) ++counters.impacts_at_home;
   if (!world().can_move(due.key.body_a) || !world().can_move(due.key.body_b)) return;
-  const std::uint8_t a = all_.last_region[static_cast<std::size_t>(due.key.body_a)], b = all_.last_region[static_cast<std::size_t>(due.key.body_b)];
+  const std::uint8_t a = all_.last_region[static_cast<std::size_t>(due.key.body_a)],
+                     b = all_.last_region[static_cast<std::size_t>(due.key.body_b)];
   if (a != kBoundary && b != kBoundary && a != b) ++counters.impacts_across;
 }
 
@@ -63,18 +68,27 @@ void Worker::collide(const Due& due) {
     if (process(body).horizon > due.key.time) ++counters.undone_integrations;
   }
   // The response, and the flights that begin with it.
-  const auto flight_of = [&](int side) -> const Flight& { return world().can_move(bodies[side]) ? history(bodies[side])[history(bodies[side]).find(versions[side])] : all_.immovable(bodies[side]); };
-  if (due.key.kind == StampKind::kProcess) return begin_flights(due, all_.run.end_of_segment(due.key, flight_of(0)));
+  const auto flight_of = [&](int side) -> const Flight& {
+    return world().can_move(bodies[side])
+               ? history(bodies[side])[history(bodies[side]).find(versions[side])]
+               : all_.immovable(bodies[side]);
+  };
+  if (due.key.kind == StampKind::kProcess)
+    return begin_flights(due, all_.run.end_of_segment(due.key, flight_of(0)));
   if (all_.threads > 1) count_by_region(due);
-  engines::Discontinuity discontinuity = all_.run.resolve_impact(due.key, flight_of(0), flight_of(1), counters);
+  engines::Discontinuity discontinuity =
+      all_.run.resolve_impact(due.key, flight_of(0), flight_of(1), counters);
   if (!discontinuity.begun.empty()) return begin_flights(due, std::move(discontinuity));
-  const std::uint32_t version_a = world().can_move(bodies[0]) ? process(bodies[0]).next_version++ : 0;
-  const std::uint32_t version_b = world().can_move(bodies[1]) ? process(bodies[1]).next_version++ : 0;
+  const std::uint32_t version_a =
+      world().can_move(bodies[0]) ? process(bodies[0]).next_version++ : 0;
+  const std::uint32_t version_b =
+      world().can_move(bodies[1]) ? process(bodies[1]).next_version++ : 0;
   discontinuity.a.partner_version = version_b;
   discontinuity.b.partner_version = version_a;
   if (world().can_move(bodies[0])) begin_flight(bodies[0], discontinuity.a, version_a);
   if (world().can_move(bodies[1])) begin_flight(bodies[1], discontinuity.b, version_b);
-  executed.push_back({due.key, version_a, version_b, discontinuity.first, std::move(discontinuity.more)});
+  executed.push_back(
+      {due.key, version_a, version_b, discontinuity.first, std::move(discontinuity.more)});
   for (const int body : bodies)
     if (world().can_move(body)) advance_or_defer(body);
 }
@@ -91,7 +105,8 @@ void Worker::call(const Due& due) {
   if (all_.called[due.key.microstep]) return;
   bool is_early = false;
   for (const int body : all_.run.receivers(due.key))
-    if (process(body).horizon < due.key.time) {   // executed out of order: its bodies first have to advance to its time
+    // executed out of order: its bodies first have to advance to its time
+    if (process(body).horizon < due.key.time) {
       advance(all_.first_member(body));
       is_early = true;
     }
@@ -103,7 +118,9 @@ void Worker::call(const Due& due) {
     if (place < flights.size()) roll_back(body, place);
   }
   all_.called[due.key.microstep] = true;
-  begin_flights(due, all_.run.call(due.key, [this](int body) -> const Flight& { return history(body).back(); }));
+  begin_flights(due, all_.run.call(due.key, [this](int body) -> const Flight& {
+    return history(body).back();
+  }));
 }
 
 // All flights that an event on processes begins are recorded as one change, so that a rollback
@@ -119,7 +136,8 @@ void Worker::begin_flights(const Due& due, engines::Discontinuity discontinuity)
     all_.changes.note(change, begun.body, version);
     begin_flight(begun.body, begun.flight, version);
   }
-  executed.push_back({due.key, versions[0], versions[1], discontinuity.first, std::move(discontinuity.more), discontinuity.is_silent});
+  executed.push_back({due.key, versions[0], versions[1], discontinuity.first,
+                      std::move(discontinuity.more), discontinuity.is_silent});
   for (const engines::BegunFlight& begun : discontinuity.begun)
     if (all_.first_member(begun.body) == begun.body) advance_or_defer(begun.body);
 }
@@ -155,8 +173,10 @@ bool Worker::has_room(const Due& due) {
   bool has_room = true;
   for_each_member(due, [&](int body) {
     const Flight& last = history(body).back();
-    const std::size_t steps = last.segment < 0 ? 0 : world().all_processes().segments().kept(last.segment);
-    has_room = has_room && std::max(history(body).size(), steps) < static_cast<std::size_t>(all_.most_states);
+    const std::size_t steps =
+        last.segment < 0 ? 0 : world().all_processes().segments().kept(last.segment);
+    has_room = has_room &&
+               std::max(history(body).size(), steps) < static_cast<std::size_t>(all_.most_states);
   });
   return has_room;
 }
@@ -172,7 +192,7 @@ void Worker::forget(const Flight& flight) {
 
 void Worker::roll_back_from(int body, std::uint32_t version) {
   const std::size_t place = history(body).find(version);
-  if (place == history(body).size()) return;   // already rolled back
+  if (place == history(body).size()) return;  // already rolled back
   ++counters.anti_messages;
   roll_back(body, place);
 }
@@ -181,7 +201,7 @@ void Worker::roll_back_from(int body, std::uint32_t version) {
 void Worker::cancel(int body, std::uint32_t version) {
   if (!is_mine(body)) return deferred.anti_messages.push_back({body, version});
   const std::size_t effect = history(body).find(version);
-  if (effect == history(body).size()) return;   // already rolled back
+  if (effect == history(body).size()) return;  // already rolled back
   ++counters.anti_messages;
   to_drop_.emplace_back(body, effect);
 }
@@ -206,8 +226,10 @@ void Worker::roll_back(int body, std::size_t keep) {
       move(now_at, std::min(process(now_at).horizon, dropped.begin));
       // Anti-messages to all other flights of the same event.
       if (dropped.change >= 0) {
-        if (all_.changes.key(dropped.change).kind == StampKind::kCallback) cancel_callback(all_.changes.key(dropped.change));
-        for (const auto& [other, version] : all_.changes.began(dropped.change)) cancel(other, version);
+        if (all_.changes.key(dropped.change).kind == StampKind::kCallback)
+          cancel_callback(all_.changes.key(dropped.change));
+        for (const auto& [other, version] : all_.changes.began(dropped.change))
+          cancel(other, version);
         forget(dropped);
       } else if (world().can_move(dropped.partner)) {
         cancel(dropped.partner, dropped.partner_version);
@@ -219,19 +241,26 @@ void Worker::roll_back(int body, std::size_t keep) {
 }
 
 void Worker::cancel_callback(const EventStamp& key) {
-  if (!is_alone()) deferred.cancelled_callbacks.push_back(key);
-  else if (all_.called[key.microstep]) expect_callback(key);
+  if (!is_alone())
+    deferred.cancelled_callbacks.push_back(key);
+  else if (all_.called[key.microstep])
+    expect_callback(key);
 }
 
 // ---- Event loop ------------------------------------------------------------------------------
 
 void Worker::work_at(const Due& due) {
   now = due.key.time;
-  if (due.key.kind == StampKind::kCallback) call(due);
-  else if (!is_advance(due)) collide(due);
+  if (due.key.kind == StampKind::kCallback)
+    call(due);
+  else if (!is_advance(due))
+    collide(due);
   else if (is_to_come(due)) {
-    if (process(due.key.body_a).horizon >= all_.run.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
-    else advance(due.key.body_a);
+    // nothing is left to find
+    if (process(due.key.body_a).horizon >= all_.run.duration())
+      set_horizon(due.key.body_a, kInfinity);
+    else
+      advance(due.key.body_a);
   }
   now = kInfinity;
 }
@@ -243,13 +272,17 @@ double Worker::work_before(double end) {
   const double last = all_.run.duration();
   // Events in order, to `end` or to the end of the run.
   engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
-  const auto is_to_do = [&] { return !queue.empty() && queue.front().key.time < end && queue.front().key.time <= last; };
+  const auto is_to_do = [&] {
+    return !queue.empty() && queue.front().key.time < end && queue.front().key.time <= last;
+  };
   longest = 0;
   while (is_to_do()) {
     if (all_.threads == 1 && longest > kMostOfABody) break;
     if (all_.faults.delay_s > 0) delay();
     if (all_.faults.rollback_every > 0) disturb();
-    const Due due = all_.faults.disorder_s > 0 ? next_legal(std::min(last, std::nextafter(end, 0.0))) : queue.pop();
+    const Due due = all_.faults.disorder_s > 0
+                        ? next_legal(std::min(last, std::nextafter(end, 0.0)))
+                        : queue.pop();
     if (!queue.empty()) fetch(queue.front());
     if (all_.owner_of(due.key) != owner_) {
       deferred.due.push_back(due);
@@ -298,10 +331,12 @@ void Worker::fetch(const Due& due) const {
 // A random event that is not too far ahead of global virtual time.
 Due Worker::next_legal(double last) {
   engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
-  const double latest = std::min(last, queue.front().key.time + std::min(all_.faults.disorder_s, all_.optimism_window));
+  const double latest = std::min(
+      last, queue.front().key.time + std::min(all_.faults.disorder_s, all_.optimism_window));
   std::vector<Due> taken;
   const std::uint64_t most = 1 + random_.below(256);
-  while (taken.size() < most && !queue.empty() && queue.front().key.time <= latest) taken.push_back(queue.pop());
+  while (taken.size() < most && !queue.empty() && queue.front().key.time <= latest)
+    taken.push_back(queue.pop());
   const std::size_t chosen = random_.below(taken.size());
   for (std::size_t k = 0; k < taken.size(); ++k)
     if (k != chosen) queue.push(taken[k]);
@@ -314,7 +349,8 @@ void Worker::disturb() {
   const int body = movers[random_.below(movers.size())];
   const double back = random_.between(0.0, all_.faults.rollback_s);
   if (!is_mine(body)) return;
-  const double back_to = std::max(global_virtual_time(), std::min(process(body).horizon, all_.run.duration()) - back);
+  const double back_to =
+      std::max(global_virtual_time(), std::min(process(body).horizon, all_.run.duration()) - back);
   if (back_to < process(body).horizon) roll_back_to(body, back_to);
 }
 
@@ -329,8 +365,10 @@ void Worker::roll_back_to(int body, double t) {
 }
 
 void Worker::delay() {
-  constexpr std::uint64_t kOneIn = 16;   // events
-  if (random_.below(kOneIn) == 0) std::this_thread::sleep_for(std::chrono::duration<double>(random_.between(0.0, all_.faults.delay_s)));
+  constexpr std::uint64_t kOneIn = 16;  // events
+  if (random_.below(kOneIn) == 0)
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(random_.between(0.0, all_.faults.delay_s)));
 }
 
 }  // namespace tumble::a4

@@ -4,19 +4,14 @@
 
 namespace tumble::a4 {
 
-bool comes_before(const Stamp&, const Stamp&) {
-  return true;
-}
+bool comes_before(const Stamp&, const Stamp&) { return true; }
 
-double next_check_time(double, double, double, double, double) {
-  return kUnset;
-}
+double next_check_time(double, double, double, double, double) { return kUnset; }
 
-CheckDecision on_collision_check(const ScheduledEvent&, const CheckFinding&, double) {
-  return {};
-}
+CheckDecision on_collision_check(const ScheduledEvent&, const CheckFinding&, double) { return {}; }
 
-std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>&, const std::vector<GroupContact>&) {
+std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>&,
+                                                      const std::vector<GroupContact>&) {
   return {};
 }
 
@@ -28,28 +23,20 @@ std::vector<Rollback> on_callback(const ScheduledEvent&, const std::vector<Local
   return {};
 }
 
-std::vector<Rollback> anti_messages(const std::vector<Effect>&, const Rollback&) {
-  return {};
-}
+std::vector<Rollback> anti_messages(const std::vector<Effect>&, const Rollback&) { return {}; }
 
 std::vector<Rollback> plan_rollback(const std::vector<Effect>&, const std::vector<Rollback>&) {
   return {};
 }
 
-ScheduledEvent after_rollback(const ScheduledEvent&, const std::vector<Rollback>&) {
-  return {};
-}
+ScheduledEvent after_rollback(const ScheduledEvent&, const std::vector<Rollback>&) { return {}; }
 
 double global_virtual_time(const std::vector<LocalTime>&, const std::vector<ScheduledEvent>&) {
   return kUnset;
 }
 
-bool may_commit(const Stamp&, double) {
-  return true;
-}
+bool may_commit(const Stamp&, double) { return true; }
 
-std::uint32_t states_to_purge(const std::vector<double>&, double) {
-  return 4000000000u;
-}
+std::uint32_t states_to_purge(const std::vector<double>&, double) { return 4000000000u; }
 
 }  // namespace tumble::a4

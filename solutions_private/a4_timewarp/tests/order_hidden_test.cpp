@@ -7,13 +7,20 @@ namespace tumble::a4_testing {
 namespace {
 
 Stamp random_stamp(Random& random) {
-  const std::int32_t a = static_cast<std::int32_t>(random.below(3)), b = a + 1 + static_cast<std::int32_t>(random.below(3));
-  return {0.5 * static_cast<double>(random.below(3)), static_cast<std::uint32_t>(random.below(3)), static_cast<WorkKind>(1 + random.below(4)), a, b};
+  const std::int32_t a = static_cast<std::int32_t>(random.below(3)),
+                     b = a + 1 + static_cast<std::int32_t>(random.below(3));
+  return {0.5 * static_cast<double>(random.below(3)), static_cast<std::uint32_t>(random.below(3)),
+          static_cast<WorkKind>(1 + random.below(4)), a, b};
 }
 
 // By digits of one number, most significant first.
 long rank_of(const Stamp& stamp) {
-  return ((((static_cast<long>(2 * stamp.time) * 3 + stamp.microstep) * 5 + static_cast<long>(stamp.kind)) * 10 + stamp.body_a) * 10) + stamp.body_b;
+  return ((((static_cast<long>(2 * stamp.time) * 3 + stamp.microstep) * 5 +
+            static_cast<long>(stamp.kind)) *
+               10 +
+           stamp.body_a) *
+          10) +
+         stamp.body_b;
 }
 
 TEST(ComesBefore, IsOneTotalOrder) {
@@ -21,8 +28,13 @@ TEST(ComesBefore, IsOneTotalOrder) {
   for (int i = 0; i < 500; ++i) {
     const Stamp x = random_stamp(random), y = random_stamp(random);
     const bool expected = rank_of(x) < rank_of(y);
-    expect_true(a4_module().comes_before(x, y) == expected, expected ? "x before y" : "not x before y", expected ? "not x before y" : "x before y",
-                {.scene = "x: " + show(x) + "; y: " + show(y), .slip = "time, microstep, kind, body_a, body_b: the first in which they differ decides, and nothing after it", .handout = equation(1)});
+    expect_true(a4_module().comes_before(x, y) == expected,
+                expected ? "x before y" : "not x before y",
+                expected ? "not x before y" : "x before y",
+                {.scene = "x: " + show(x) + "; y: " + show(y),
+                 .slip = "time, microstep, kind, body_a, body_b: the first in which they differ "
+                         "decides, and nothing after it",
+                 .handout = equation(1)});
   }
 }
 
@@ -43,9 +55,13 @@ TEST(ContactGroups, AreThoseOfRandomContacts) {
     for (bool changes = true; changes;) {
       changes = false;
       for (const GroupContact& contact : contacts) {
-        const auto a = std::find(bodies.begin(), bodies.end(), contact.body_a) - bodies.begin(), b = std::find(bodies.begin(), bodies.end(), contact.body_b) - bodies.begin();
-        if (b == static_cast<std::ptrdiff_t>(bodies.size()) || label[static_cast<std::size_t>(a)] == label[static_cast<std::size_t>(b)]) continue;
-        label[static_cast<std::size_t>(a)] = label[static_cast<std::size_t>(b)] = std::min(label[static_cast<std::size_t>(a)], label[static_cast<std::size_t>(b)]);
+        const auto a = std::find(bodies.begin(), bodies.end(), contact.body_a) - bodies.begin(),
+                   b = std::find(bodies.begin(), bodies.end(), contact.body_b) - bodies.begin();
+        if (b == static_cast<std::ptrdiff_t>(bodies.size()) ||
+            label[static_cast<std::size_t>(a)] == label[static_cast<std::size_t>(b)])
+          continue;
+        label[static_cast<std::size_t>(a)] = label[static_cast<std::size_t>(b)] =
+            std::min(label[static_cast<std::size_t>(a)], label[static_cast<std::size_t>(b)]);
         changes = true;
       }
     }
@@ -59,7 +75,12 @@ TEST(ContactGroups, AreThoseOfRandomContacts) {
         }
     }
     const auto found = a4_module().contact_groups(bodies, contacts);
-    expect_true(found == expected, show(expected), show(found), {.scene = std::to_string(n) + " bodies, " + std::to_string(contacts.size()) + " contacts drawn by lot", .slip = "connected components: each body once, each group ascending, groups by their lowest member", .handout = equation(4)});
+    expect_true(found == expected, show(expected), show(found),
+                {.scene = std::to_string(n) + " bodies, " + std::to_string(contacts.size()) +
+                          " contacts drawn by lot",
+                 .slip = "connected components: each body once, each group ascending, groups by "
+                         "their lowest member",
+                 .handout = equation(4)});
   }
 }
 

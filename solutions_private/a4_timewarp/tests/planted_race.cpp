@@ -1,5 +1,5 @@
-// Two threads count in one place without a lock. Under the flags of test_threads_sanitized this must be reported: a sanitizer that is
-// silent here would be silent there.
+// Two threads count in one place without a lock. Under the flags of test_threads_sanitized this
+// must be reported: a sanitizer that is silent here would be silent there.
 #include <cstdio>
 #include <thread>
 

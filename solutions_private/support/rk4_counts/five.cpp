@@ -1,5 +1,5 @@
-// The reference of a2 but for a Runge-Kutta step that evaluates the derivative five times: the judge, which answers and counts
-// these evaluations, must call it wrong.
+// The reference of a2 but for a Runge-Kutta step that evaluates the derivative five times: the
+// judge, which answers and counts these evaluations, must call it wrong.
 #include "assignments/a2_integration/a2_integration.h"
 
 #define rk4_step rk4_step_of_the_reference

@@ -25,33 +25,38 @@ namespace tumble::peers {
 ///   step, ratio, bench   a step costs at most so many times one of that step in the other case
 struct Goal {
   std::string words;
-  double error = std::numeric_limits<double>::quiet_NaN(), step = std::numeric_limits<double>::quiet_NaN();   // step [s]
-  double price_s = std::numeric_limits<double>::quiet_NaN(), ratio = std::numeric_limits<double>::quiet_NaN();
+  // step [s]
+  double error = std::numeric_limits<double>::quiet_NaN(),
+         step = std::numeric_limits<double>::quiet_NaN();
+  double price_s = std::numeric_limits<double>::quiet_NaN(),
+         ratio = std::numeric_limits<double>::quiet_NaN();
   std::string peer = {}, bench = {};
 };
 
 struct BenchCase {
-  std::string id;                     // "S3-100": unique, a file's name
-  std::string name, title;            // a few words for tables, and a line
-  std::string error_name, error_unit; // of the one number that is drawn
-  std::string truth;                  // where the truth comes from, for the page
+  std::string id;                      // "S3-100": unique, a file's name
+  std::string name, title;             // a few words for tables, and a line
+  std::string error_name, error_unit;  // of the one number that is drawn
+  std::string truth;                   // where the truth comes from, for the page
   std::vector<Goal> goals;
-  std::string note;                   // what to know when reading the picture
+  std::string note;  // what to know when reading the picture
   scene::Scene scene;
-  std::vector<double> sample_times;   // [s], ascending, ends of steps of every ladder; the last is the end of the run
-  std::vector<double> steps;          // the ladder, from coarse to fine [s]
-  bool watches_first_body = false;    // the error is in the instants at which it bounces
+  // [s], ascending, ends of steps of every ladder; the last is the end of the run
+  std::vector<double> sample_times;
+  std::vector<double> steps;        // the ladder, from coarse to fine [s]
+  bool watches_first_body = false;  // the error is in the instants at which it bounces
 };
 
 /// @param quick  fewer and coarser steps, and no scene that takes an engine more than a few seconds
 std::vector<BenchCase> all_cases(bool quick);
 
 // Sizes that the judge needs again.
-inline constexpr double kGravity = 9.81;           // m/s^2
-inline constexpr double kChainLink = 0.25;         // m, S2: eight of them
-inline constexpr double kBobLink = 0.1;            // m, S6: ten of them
-inline constexpr double kBallRadius = 0.05;        // m, S3
-inline constexpr double kBulletRadius = 0.05, kBulletStart = -10.0, kBulletWall = 0.01;   // m, S7: wall about x = 0, so thick
+inline constexpr double kGravity = 9.81;     // m/s^2
+inline constexpr double kChainLink = 0.25;   // m, S2: eight of them
+inline constexpr double kBobLink = 0.1;      // m, S6: ten of them
+inline constexpr double kBallRadius = 0.05;  // m, S3
+// m, S7: wall about x = 0, so thick
+inline constexpr double kBulletRadius = 0.05, kBulletStart = -10.0, kBulletWall = 0.01;
 /// Speed of the bullet of a case of S7. [m/s]
 double bullet_speed(const BenchCase& bench);
 

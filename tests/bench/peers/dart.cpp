@@ -22,7 +22,8 @@ namespace {
 
 namespace dd = dart::dynamics;
 
-constexpr double kWallReach = 20.0, kWallDepth = 1.0;   // m: half-spaces are boxes of this half size, so deep
+// m: half-spaces are boxes of this half size, so deep
+constexpr double kWallReach = 20.0, kWallDepth = 1.0;
 
 Eigen::Isometry3d transform_of(const RigidBodyState& state) {
   Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
@@ -33,10 +34,12 @@ Eigen::Isometry3d transform_of(const RigidBodyState& state) {
 
 class DartWorld final : public PeerWorld {
  public:
-  DartWorld(const BenchCase& bench, const World& world, const Setting& setting) : world_(dart::simulation::World::create()), chain_(dd::Skeleton::create("chain")) {
+  DartWorld(const BenchCase& bench, const World& world, const Setting& setting)
+      : world_(dart::simulation::World::create()), chain_(dd::Skeleton::create("chain")) {
     world_->setGravity(world.gravity_world.value_or(Vector3d::Zero()));
     world_->setTimeStep(setting.step);
-    world_->getConstraintSolver()->setCollisionDetector(dart::collision::DARTCollisionDetector::create());
+    world_->getConstraintSolver()->setCollisionDetector(
+        dart::collision::DARTCollisionDetector::create());
     world_->getConstraintSolver()->getCollisionOption().maxNumContacts = 20000;
     for (const WorldBody& body : world.bodies) add_body(bench, world, body);
     if (chain_->getNumBodyNodes() > 0) world_->addSkeleton(chain_);
@@ -47,12 +50,16 @@ class DartWorld final : public PeerWorld {
   BodyPose pose(int body) override {
     const dd::BodyNode& node = *nodes_[body];
     const Eigen::Isometry3d& there = node.getWorldTransform();
-    return {there.translation(), Quaterniond(there.linear()), node.getLinearVelocity(), node.getAngularVelocity()};
+    return {there.translation(), Quaterniond(there.linear()), node.getLinearVelocity(),
+            node.getAngularVelocity()};
   }
 
  private:
   static dd::BodyNode::Properties properties_of(const WorldBody& body) {
-    const dd::Inertia inertia = body.immovable() ? dd::Inertia() : dd::Inertia(body.inertia.mass, Eigen::Vector3d::Zero(), body.inertia.inertia_body);
+    const dd::Inertia inertia =
+        body.immovable()
+            ? dd::Inertia()
+            : dd::Inertia(body.inertia.mass, Eigen::Vector3d::Zero(), body.inertia.inertia_body);
     return dd::BodyNode::Properties(dd::BodyNode::AspectProperties(body.name, inertia));
   }
 
@@ -63,9 +70,12 @@ class DartWorld final : public PeerWorld {
     if (body.immovable()) {
       dd::WeldJoint::Properties weld;
       weld.mT_ParentBodyToJoint = transform_of(body.state);
-      nodes_.push_back(skeleton->createJointAndBodyNodePair<dd::WeldJoint>(nullptr, weld, properties_of(body)).second);
+      nodes_.push_back(
+          skeleton->createJointAndBodyNodePair<dd::WeldJoint>(nullptr, weld, properties_of(body))
+              .second);
     } else {
-      const auto [joint, node] = skeleton->createJointAndBodyNodePair<dd::FreeJoint>(nullptr, dd::FreeJoint::Properties(), properties_of(body));
+      const auto [joint, node] = skeleton->createJointAndBodyNodePair<dd::FreeJoint>(
+          nullptr, dd::FreeJoint::Properties(), properties_of(body));
       joint->setPositions(dd::FreeJoint::convertToPositions(transform_of(body.state)));
       joint->setLinearVelocity(body.state.momentum_world * body.inertia.inverse_mass);
       joint->setAngularVelocity(omega_of(body.state, body.inertia));
@@ -78,15 +88,19 @@ class DartWorld final : public PeerWorld {
 
   void add_hinged(const World& world, const WorldBody& body, const effects::JointSpec& joint) {
     dd::BodyNode* carrier = nullptr;
-    Eigen::Isometry3d world_from_carrier = Eigen::Isometry3d::Identity(), world_from_joint = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d world_from_carrier = Eigen::Isometry3d::Identity(),
+                      world_from_joint = Eigen::Isometry3d::Identity();
     for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (world.bodies[i].name == joint.body_b) carrier = nodes_[i], world_from_carrier = transform_of(world.bodies[i].state);
+      if (world.bodies[i].name == joint.body_b)
+        carrier = nodes_[i], world_from_carrier = transform_of(world.bodies[i].state);
     world_from_joint.translation() = joint.point_m;
     dd::RevoluteJoint::Properties hinge;
     hinge.mAxis = joint.axis;
     hinge.mT_ParentBodyToJoint = world_from_carrier.inverse() * world_from_joint;
     hinge.mT_ChildBodyToJoint = transform_of(body.state).inverse() * world_from_joint;
-    nodes_.push_back(chain_->createJointAndBodyNodePair<dd::RevoluteJoint>(carrier, hinge, properties_of(body)).second);
+    nodes_.push_back(
+        chain_->createJointAndBodyNodePair<dd::RevoluteJoint>(carrier, hinge, properties_of(body))
+            .second);
   }
 
   void add_shape(const WorldBody& body, dd::BodyNode& node) {
@@ -97,13 +111,15 @@ class DartWorld final : public PeerWorld {
     } else if (const auto* box = std::get_if<Box>(&body.shape)) {
       shape = std::make_shared<dd::BoxShape>(2 * box->half_extents_body);
     } else {
-      shape = std::make_shared<dd::BoxShape>(Eigen::Vector3d(2 * kWallReach, 2 * kWallReach, kWallDepth));
+      shape = std::make_shared<dd::BoxShape>(
+          Eigen::Vector3d(2 * kWallReach, 2 * kWallReach, kWallDepth));
       in_body.translation().z() = -kWallDepth / 2;
     }
     dd::ShapeNode* made = node.createShapeNodeWith<dd::CollisionAspect, dd::DynamicsAspect>(shape);
     made->setRelativeTransform(in_body);
     made->getDynamicsAspect()->setFrictionCoeff(body.friction);
-    made->getDynamicsAspect()->setRestitutionCoeff(body.immovable() ? 1.0 : body.restitution);   // of a pair it takes the product
+    // of a pair it takes the product
+    made->getDynamicsAspect()->setRestitutionCoeff(body.immovable() ? 1.0 : body.restitution);
   }
 
   dart::simulation::WorldPtr world_;
@@ -113,7 +129,8 @@ class DartWorld final : public PeerWorld {
 
 std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
   const std::string scene = bench.id.substr(0, 2);
-  if (scene == "S8" || bench.id == "S3-1000") return {};   // no hulls; 6,000 coordinates beyond any cap
+  // no hulls; 6,000 coordinates beyond any cap
+  if (scene == "S8" || bench.id == "S3-1000") return {};
   return step_ladders(bench, {"semi-implicit Euler"});
 }
 
@@ -125,8 +142,13 @@ int main(int argc, char** argv) {
   Engine engine;
   engine.name = "DART";
   engine.version = TUMBLE_PEER_VERSION;
-  engine.settings = "defaults (Dantzig's method, ERP 0.01), its own collision detector, which knows balls and boxes only: half-spaces are thick boxes, rocks are not run";
+  engine.settings =
+      "defaults (Dantzig's method, ERP 0.01), its own collision detector, which knows balls and "
+      "boxes only: half-spaces are thick boxes, rocks are not run";
   engine.ladders = ladders;
-  engine.build = [](const BenchCase& bench, const tumble::World& world, const Setting& setting) -> std::unique_ptr<PeerWorld> { return std::make_unique<DartWorld>(bench, world, setting); };
+  engine.build = [](const BenchCase& bench, const tumble::World& world,
+                    const Setting& setting) -> std::unique_ptr<PeerWorld> {
+    return std::make_unique<DartWorld>(bench, world, setting);
+  };
   return peer_main(argc, argv, engine);
 }

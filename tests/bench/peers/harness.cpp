@@ -27,20 +27,20 @@ struct Options {
   std::string out, cases;
   bool quick = false;
   int runs = 3;
-  double cap_s = 60.0;          // CPU of one run
+  double cap_s = 60.0;  // CPU of one run
 };
 
 /// What a child process leaves for its parent.
 struct Outcome {
   double cpu_s, error, reached_s;
-  double stop_at_s;             // CPU time of the process at which the run is given up
+  double stop_at_s;  // CPU time of the process at which the run is given up
   bool done;
-  char words[1000];             // parts of the error, or why there is none
+  char words[1000];  // parts of the error, or why there is none
 };
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kLongRun = 0.5;      // s: not repeated
-constexpr double kShortRun = 0.02;    // s: repeated three times as often
+constexpr double kLongRun = 0.5;    // s: not repeated
+constexpr double kShortRun = 0.02;  // s: repeated three times as often
 
 /// When a ball that falls from this state meets its floor; negative times are past. [s]
 double time_to_floor(const BodyPose& pose, double height) {
@@ -50,7 +50,8 @@ double time_to_floor(const BodyPose& pose, double height) {
 
 long steps_between(double from, double to, double h) { return std::lround((to - from) / h); }
 
-Observed run_world(const BenchCase& bench, const World& world, const Engine& engine, const Setting& setting, double& reached) {
+Observed run_world(const BenchCase& bench, const World& world, const Engine& engine,
+                   const Setting& setting, double& reached) {
   const std::unique_ptr<PeerWorld> peer = engine.build(bench, world, setting);
   const int bodies = static_cast<int>(world.bodies.size());
   Observed run;
@@ -59,11 +60,15 @@ Observed run_world(const BenchCase& bench, const World& world, const Engine& eng
     run.samples.emplace_back();
     for (int i = 0; i < bodies; ++i) {
       const RigidBodyState& still = world.bodies[i].state;
-      run.samples.back().push_back(world.bodies[i].immovable() ? BodyPose{still.com_world, still.world_from_body, Vector3d::Zero(), Vector3d::Zero()} : peer->pose(i));
+      run.samples.back().push_back(
+          world.bodies[i].immovable()
+              ? BodyPose{still.com_world, still.world_from_body, Vector3d::Zero(), Vector3d::Zero()}
+              : peer->pose(i));
     }
   };
   look();
-  const double floor = bench.watches_first_body ? std::get<Sphere>(world.bodies[0].shape).radius : 0.0;
+  const double floor =
+      bench.watches_first_body ? std::get<Sphere>(world.bodies[0].shape).radius : 0.0;
   double before = 0.0;
   for (const double sample : bench.sample_times) {
     const double start = cpu_seconds();
@@ -75,7 +80,8 @@ Observed run_world(const BenchCase& bench, const World& world, const Engine& eng
         if (!bench.watches_first_body) continue;
         const BodyPose now = peer->pose(0);
         // The bounce is where the ball's last flight, as the engine had it, reaches the floor.
-        if (last.velocity_world.z() < 0 && now.velocity_world.z() > 0) run.bounces.push_back(before + k * setting.step + time_to_floor(last, floor));
+        if (last.velocity_world.z() < 0 && now.velocity_world.z() > 0)
+          run.bounces.push_back(before + k * setting.step + time_to_floor(last, floor));
         last = now;
       }
     }
@@ -86,16 +92,20 @@ Observed run_world(const BenchCase& bench, const World& world, const Engine& eng
   return run;
 }
 
-void say(Outcome& outcome, const std::string& words) { std::snprintf(outcome.words, sizeof outcome.words, "%s", words.c_str()); }
+void say(Outcome& outcome, const std::string& words) {
+  std::snprintf(outcome.words, sizeof outcome.words, "%s", words.c_str());
+}
 
-void measure(const BenchCase& bench, const Engine& engine, const Setting& setting, const Options& options, Outcome& outcome) {
+void measure(const BenchCase& bench, const Engine& engine, const Setting& setting,
+             const Options& options, Outcome& outcome) {
   const World world = build_world(bench.scene);
   std::vector<double> prices;
   Observed first;
   for (int k = 0, runs = options.runs; k < runs; ++k) {
     outcome.stop_at_s = cpu_seconds() + options.cap_s;
-    Observed run = engine.run ? engine.run(bench, setting, outcome.reached_s) : run_world(bench, world, engine, setting, outcome.reached_s);
-    outcome.stop_at_s = kNever;   // judging takes its time
+    Observed run = engine.run ? engine.run(bench, setting, outcome.reached_s)
+                              : run_world(bench, world, engine, setting, outcome.reached_s);
+    outcome.stop_at_s = kNever;  // judging takes its time
     prices.push_back(run.cpu_s);
     if (k == 0) first = std::move(run);
     if (prices.back() > kLongRun) break;
@@ -104,7 +114,8 @@ void measure(const BenchCase& bench, const Engine& engine, const Setting& settin
   std::sort(prices.begin(), prices.end());
   const Judgement judgement = judge(bench, world, first);
   std::string parts;
-  for (const auto& [name, value] : judgement.parts) parts += fmt::format("{}{}={:.3g}", parts.empty() ? "" : "; ", name, value);
+  for (const auto& [name, value] : judgement.parts)
+    parts += fmt::format("{}{}={:.3g}", parts.empty() ? "" : "; ", name, value);
   outcome.cpu_s = prices[prices.size() / 2];
   outcome.error = judgement.error;
   say(outcome, parts);
@@ -124,7 +135,8 @@ Ending wait_for(pid_t child, const volatile double& stop_at_s) {
   for (int status = 0;;) {
     if (waitpid(child, &status, WNOHANG) == child) return {status, false};
     timespec used{};
-    if (has_clock && clock_gettime(clock, &used) == 0 && static_cast<double>(used.tv_sec) > stop_at_s) {
+    if (has_clock && clock_gettime(clock, &used) == 0 &&
+        static_cast<double>(used.tv_sec) > stop_at_s) {
       kill(child, SIGKILL);
       waitpid(child, &status, 0);
       return {status, true};
@@ -134,14 +146,16 @@ Ending wait_for(pid_t child, const volatile double& stop_at_s) {
 }
 
 /// One setting in a process of its own: an engine that aborts or never ends costs its own row only.
-Outcome measured_apart(const BenchCase& bench, const Engine& engine, const Setting& setting, const Options& options) {
-  void* memory = mmap(nullptr, sizeof(Outcome), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+Outcome measured_apart(const BenchCase& bench, const Engine& engine, const Setting& setting,
+                       const Options& options) {
+  void* memory =
+      mmap(nullptr, sizeof(Outcome), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::runtime_error("no memory to share with the run");
   Outcome& shared = *new (memory) Outcome{std::nan(""), std::nan(""), 0.0, kNever, false, ""};
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child == 0) {
-    for (std::FILE* stream : {stdout, stderr})   // engines talk
+    for (std::FILE* stream : {stdout, stderr})  // engines talk
       if (std::freopen("/dev/null", "w", stream) == nullptr) _exit(1);
     try {
       measure(bench, engine, setting, options, shared);
@@ -154,8 +168,11 @@ Outcome measured_apart(const BenchCase& bench, const Engine& engine, const Setti
   Outcome outcome = shared;
   munmap(memory, sizeof(Outcome));
   if (!outcome.done && WIFSIGNALED(status)) {
-    say(outcome, capped ? fmt::format("did not finish: {:g} s of CPU were over at t = {:g} s of {:g} s", options.cap_s, outcome.reached_s, bench.sample_times.back())
-                        : fmt::format("ended by signal {} ({}) after t = {:g} s", WTERMSIG(status), strsignal(WTERMSIG(status)), outcome.reached_s));
+    say(outcome,
+        capped ? fmt::format("did not finish: {:g} s of CPU were over at t = {:g} s of {:g} s",
+                             options.cap_s, outcome.reached_s, bench.sample_times.back())
+               : fmt::format("ended by signal {} ({}) after t = {:g} s", WTERMSIG(status),
+                             strsignal(WTERMSIG(status)), outcome.reached_s));
   }
   return outcome;
 }
@@ -166,22 +183,35 @@ std::string cleaned(std::string words) {
   return words;
 }
 
-void write_row(std::ostream& file, const BenchCase& bench, const Engine& engine, const Setting& setting, const Outcome& outcome) {
-  file << fmt::format("{}\t{}\t{}\t{:.17g}\t{:.17g}\t{:.6g}\t{:.6g}\t{}\t{}\n", bench.id, engine.name, setting.method, setting.step, setting.tolerance, outcome.cpu_s, outcome.error,
-                      outcome.done ? "done" : "failed", cleaned(outcome.words)) << std::flush;
-  const std::string fineness = std::isfinite(setting.tolerance) ? fmt::format("tol {:g}", setting.tolerance) : std::isfinite(setting.step) ? fmt::format("1/{:g} s", 1 / setting.step) : "no step";
-  fmt::print(stderr, "{:8} {:8} {:34} {:10} {:>10.4g} s  error {:<10.3g} {}\n", bench.id, engine.name, setting.method, fineness, outcome.cpu_s, outcome.error, cleaned(outcome.words));
+void write_row(std::ostream& file, const BenchCase& bench, const Engine& engine,
+               const Setting& setting, const Outcome& outcome) {
+  file << fmt::format("{}\t{}\t{}\t{:.17g}\t{:.17g}\t{:.6g}\t{:.6g}\t{}\t{}\n", bench.id,
+                      engine.name, setting.method, setting.step, setting.tolerance, outcome.cpu_s,
+                      outcome.error, outcome.done ? "done" : "failed", cleaned(outcome.words))
+       << std::flush;
+  const std::string fineness =
+      std::isfinite(setting.tolerance) ? fmt::format("tol {:g}", setting.tolerance)
+      : std::isfinite(setting.step)    ? fmt::format("1/{:g} s", 1 / setting.step)
+                                       : "no step";
+  fmt::print(stderr, "{:8} {:8} {:34} {:10} {:>10.4g} s  error {:<10.3g} {}\n", bench.id,
+             engine.name, setting.method, fineness, outcome.cpu_s, outcome.error,
+             cleaned(outcome.words));
 }
 
-void run_ladder(const BenchCase& bench, const Engine& engine, const std::vector<Setting>& ladder, const Options& options, std::ostream& file) {
+void run_ladder(const BenchCase& bench, const Engine& engine, const std::vector<Setting>& ladder,
+                const Options& options, std::ostream& file) {
   double last = 0.0;
   for (const Setting& setting : ladder) {
     Outcome outcome{std::nan(""), std::nan(""), 0.0, kNever, false, ""};
     // A finer rung costs about twice the last: what would pass the cap is not begun.
-    if (last > 0.6 * options.cap_s) say(outcome, "not run: it would take more than the cap");
-    else outcome = measured_apart(bench, engine, setting, options);
-    if (std::isfinite(outcome.cpu_s)) last = outcome.cpu_s;
-    else if (std::strstr(outcome.words, "did not finish") != nullptr) last = options.cap_s;
+    if (last > 0.6 * options.cap_s)
+      say(outcome, "not run: it would take more than the cap");
+    else
+      outcome = measured_apart(bench, engine, setting, options);
+    if (std::isfinite(outcome.cpu_s))
+      last = outcome.cpu_s;
+    else if (std::strstr(outcome.words, "did not finish") != nullptr)
+      last = options.cap_s;
     write_row(file, bench, engine, setting, outcome);
   }
 }
@@ -191,12 +221,20 @@ Options read_words(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const auto value = [&]() -> std::string { return i + 1 < argc ? argv[++i] : ""; };
-    if (word == "--quick") options.quick = true;
-    else if (word == "--out") options.out = value();
-    else if (word == "--cases") options.cases = value();
-    else if (word == "--runs") options.runs = std::max(1, std::atoi(value().c_str()));
-    else if (word == "--cap-s") options.cap_s = std::max(1.0, std::atof(value().c_str()));
-    else throw std::runtime_error("unknown word " + word + "; there are --out FILE, --quick, --cases S1,S5, --runs N, --cap-s S");
+    if (word == "--quick")
+      options.quick = true;
+    else if (word == "--out")
+      options.out = value();
+    else if (word == "--cases")
+      options.cases = value();
+    else if (word == "--runs")
+      options.runs = std::max(1, std::atoi(value().c_str()));
+    else if (word == "--cap-s")
+      options.cap_s = std::max(1.0, std::atof(value().c_str()));
+    else
+      throw std::runtime_error(
+          "unknown word " + word +
+          "; there are --out FILE, --quick, --cases S1,S5, --runs N, --cap-s S");
   }
   if (options.out.empty()) throw std::runtime_error("--out FILE is missing");
   return options;
@@ -221,7 +259,8 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-std::vector<std::vector<Setting>> step_ladders(const BenchCase& bench, const std::vector<std::string>& methods) {
+std::vector<std::vector<Setting>> step_ladders(const BenchCase& bench,
+                                               const std::vector<std::string>& methods) {
   std::vector<std::vector<Setting>> ladders;
   for (const std::string& method : methods) {
     ladders.emplace_back();
@@ -231,14 +270,15 @@ std::vector<std::vector<Setting>> step_ladders(const BenchCase& bench, const std
 }
 
 int peer_main(int argc, char** argv, const Engine& engine) try {
-  keep_freed_memory();   // for all engines alike
+  keep_freed_memory();  // for all engines alike
   const Options options = read_words(argc, argv);
   std::ofstream file(options.out);
   if (!file) throw std::runtime_error(options.out + ": cannot be written");
   file << "#\t" << engine.name << '\t' << engine.version << '\t' << engine.settings << '\n';
   for (const BenchCase& bench : all_cases(options.quick)) {
     if (!wanted(options.cases, bench.id)) continue;
-    for (const auto& ladder : engine.ladders(bench)) run_ladder(bench, engine, ladder, options, file);
+    for (const auto& ladder : engine.ladders(bench))
+      run_ladder(bench, engine, ladder, options, file);
   }
   return EXIT_SUCCESS;
 } catch (const std::exception& error) {

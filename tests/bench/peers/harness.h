@@ -20,16 +20,16 @@ namespace tumble::peers {
 
 /// One way to run an engine: a method and how finely.
 struct Setting {
-  std::string method;                                        // a curve
-  double step = std::numeric_limits<double>::quiet_NaN();    // [s]
+  std::string method;                                      // a curve
+  double step = std::numeric_limits<double>::quiet_NaN();  // [s]
   double tolerance = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What a run shows: the bodies at the samples, and the instants of the first body's bounces where
 /// the case asks for them.
 struct Observed {
-  std::vector<std::vector<BodyPose>> samples;   // the first at the start
-  std::vector<double> bounces;                  // [s]
+  std::vector<std::vector<BodyPose>> samples;  // the first at the start
+  std::vector<double> bounces;                 // [s]
   double cpu_s = 0.0;
 };
 
@@ -63,7 +63,8 @@ struct Engine {
 double cpu_seconds();
 
 /// The steps of the case as ladders of these methods.
-std::vector<std::vector<Setting>> step_ladders(const BenchCase& bench, const std::vector<std::string>& methods);
+std::vector<std::vector<Setting>> step_ladders(const BenchCase& bench,
+                                               const std::vector<std::string>& methods);
 
 /// Command line: --out FILE [--quick] [--cases S1,S3-100] [--runs N] [--cap-s S]
 int peer_main(int argc, char** argv, const Engine& engine);

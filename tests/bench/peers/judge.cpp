@@ -13,14 +13,19 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-truths::Case truth_named(const std::string& name) { return cli::read_truth(std::string(TUMBLE_SOURCE_DIR) + "/tests/truths/" + name + ".json"); }
+truths::Case truth_named(const std::string& name) {
+  return cli::read_truth(std::string(TUMBLE_SOURCE_DIR) + "/tests/truths/" + name + ".json");
+}
 
 std::vector<RigidBodyState> states_of(const World& world, const std::vector<BodyPose>& poses) {
   std::vector<RigidBodyState> states;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const WorldBody& body = world.bodies[i];
     RigidBodyState state = body.state;
-    if (!body.immovable()) state = {poses[i].com_world, poses[i].world_from_body, body.inertia.mass * poses[i].velocity_world, angular_momentum_of(poses[i].omega_world, poses[i].world_from_body, body.inertia)};
+    if (!body.immovable())
+      state = {poses[i].com_world, poses[i].world_from_body,
+               body.inertia.mass * poses[i].velocity_world,
+               angular_momentum_of(poses[i].omega_world, poses[i].world_from_body, body.inertia)};
     states.push_back(state);
   }
   return states;
@@ -34,7 +39,9 @@ double energy_of(const World& world, const std::vector<BodyPose>& poses) {
 bool finite(const Observed& run) {
   for (const auto& poses : run.samples)
     for (const BodyPose& pose : poses)
-      if (!pose.com_world.allFinite() || !pose.world_from_body.coeffs().allFinite() || !pose.velocity_world.allFinite()) return false;
+      if (!pose.com_world.allFinite() || !pose.world_from_body.coeffs().allFinite() ||
+          !pose.velocity_world.allFinite())
+        return false;
   return true;
 }
 
@@ -42,55 +49,70 @@ bool finite(const Observed& run) {
 double energy_error(const World& world, const Observed& run) {
   const double start = energy_of(world, run.samples.front());
   double worst = 0.0;
-  for (const auto& poses : run.samples) worst = std::max(worst, std::abs(energy_of(world, poses) - start));
+  for (const auto& poses : run.samples)
+    worst = std::max(worst, std::abs(energy_of(world, poses) - start));
   return worst;
 }
 
 Vector3d place_of(const Anchor& anchor, const std::vector<BodyPose>& poses) {
-  return anchor.body < 0 ? anchor.point_body : Vector3d(poses[anchor.body].com_world + poses[anchor.body].world_from_body * anchor.point_body);
+  return anchor.body < 0 ? anchor.point_body
+                         : Vector3d(poses[anchor.body].com_world +
+                                    poses[anchor.body].world_from_body * anchor.point_body);
 }
 
 /// Largest distance of two points that a joint should hold together. [m]
 double joint_opening(const World& world, const Observed& run) {
   double worst = 0.0;
   for (const auto& poses : run.samples)
-    for (const effects::JointLink& joint : world.effects.of<effects::JointLink>()) worst = std::max(worst, (place_of(joint.a, poses) - place_of(joint.b, poses)).norm());
+    for (const effects::JointLink& joint : world.effects.of<effects::JointLink>())
+      worst = std::max(worst, (place_of(joint.a, poses) - place_of(joint.b, poses)).norm());
   return worst;
 }
 
 double overlap(const World& world, const Observed& run) {
   double worst = 0.0;
-  for (const auto& poses : run.samples) worst = std::max(worst, testing::deepest_overlap(world, poses));
+  for (const auto& poses : run.samples)
+    worst = std::max(worst, testing::deepest_overlap(world, poses));
   return worst;
 }
 
-Judgement worse_of(const std::string& a, double value_a, const std::string& b, double value_b) { return {std::max(value_a, value_b), {{a, value_a}, {b, value_b}}}; }
+Judgement worse_of(const std::string& a, double value_a, const std::string& b, double value_b) {
+  return {std::max(value_a, value_b), {{a, value_a}, {b, value_b}}};
+}
 
 Judgement judge_top(const Observed& run) {
-  const VectorXd wxyz = truth_named("free_top_asymmetric__dzhanibekov_123").output("q_t60").vector();   // scalar first
-  const Quaterniond turn = Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).conjugate() * run.samples.back()[0].world_from_body.normalized();
+  // scalar first
+  const VectorXd wxyz =
+      truth_named("free_top_asymmetric__dzhanibekov_123").output("q_t60").vector();
+  const Quaterniond turn = Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).conjugate() *
+                           run.samples.back()[0].world_from_body.normalized();
   const double angle = 2 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
   return {angle, {{"angle [rad]", angle}}};
 }
 
 Judgement judge_chain(const World& world, const Observed& run, double link) {
-  double fall = 0.0;   // m g times the height above hanging: from where it was let go to the lowest that joints allow
+  // m g times the height above hanging: from where it was let go to the lowest that joints allow
+  double fall = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const Vector3d& place = run.samples.front()[i].com_world;
     fall += world.bodies[i].inertia.mass * kGravity * (place.z() + place.norm());
   }
-  return worse_of("energy", energy_error(world, run) / fall, "joints over link", joint_opening(world, run) / link);
+  return worse_of("energy", energy_error(world, run) / fall, "joints over link",
+                  joint_opening(world, run) / link);
 }
 
 Judgement judge_balls(const World& world, const Observed& run) {
-  return worse_of("energy", energy_error(world, run) / energy_of(world, run.samples.front()), "overlap over radius", overlap(world, run) / kBallRadius);
+  return worse_of("energy", energy_error(world, run) / energy_of(world, run.samples.front()),
+                  "overlap over radius", overlap(world, run) / kBallRadius);
 }
 
 Judgement judge_bounces(const Observed& run) {
   const VectorXd times = truth_named("bouncing_ball__e0.8").output("impact_times").vector();
   constexpr int kBounces = 10;
   const double rest = std::abs(run.samples.back()[0].com_world.z() - 0.1);
-  if (static_cast<int>(run.bounces.size()) < kBounces) return {kNothing, {{"bounces", static_cast<double>(run.bounces.size())}, {"height at rest [m]", rest}}};
+  if (static_cast<int>(run.bounces.size()) < kBounces)
+    return {kNothing,
+            {{"bounces", static_cast<double>(run.bounces.size())}, {"height at rest [m]", rest}}};
   double worst = 0.0;
   for (int k = 0; k < kBounces; ++k) worst = std::max(worst, std::abs(run.bounces[k] - times[k]));
   return {worst, {{"bounces [s]", worst}, {"height at rest [m]", rest}}};
@@ -98,13 +120,18 @@ Judgement judge_bounces(const Observed& run) {
 
 Judgement judge_stack(const Observed& run) {
   double drift = 0.0;
-  const auto top = [](const auto& poses) -> const Vector3d& { return poses[poses.size() - 2].com_world; };   // the floor is the last body
-  for (const auto& poses : run.samples) drift = std::max(drift, (top(poses) - top(run.samples.front())).norm());
+  // the floor is the last body
+  const auto top = [](const auto& poses) -> const Vector3d& {
+    return poses[poses.size() - 2].com_world;
+  };
+  for (const auto& poses : run.samples)
+    drift = std::max(drift, (top(poses) - top(run.samples.front())).norm());
   return {drift, {{"drift [m]", drift}}};
 }
 
 Judgement judge_bullet(const BenchCase& bench, const Observed& run) {
-  const double speed = bullet_speed(bench), meets = -kBulletWall / 2 - kBulletRadius, time_to_wall = (meets - kBulletStart) / speed;
+  const double speed = bullet_speed(bench), meets = -kBulletWall / 2 - kBulletRadius,
+               time_to_wall = (meets - kBulletStart) / speed;
   const Vector3d expected(meets - speed * (bench.sample_times.back() - time_to_wall), 0, 0);
   const double error = (run.samples.back()[0].com_world - expected).norm();
   return {error, {{"place [m]", error}}};

@@ -9,8 +9,8 @@
 namespace tumble::peers {
 
 struct Judgement {
-  double error;                            // what is drawn; NaN where the run left the numbers
-  std::map<std::string, double> parts;     // what it is made of, with units in the names
+  double error;                         // what is drawn; NaN where the run left the numbers
+  std::map<std::string, double> parts;  // what it is made of, with units in the names
 };
 
 Judgement judge(const BenchCase& bench, const World& world, const Observed& run);

@@ -14,7 +14,8 @@
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/bench/peers/harness.h"
 #include "tests/engines/reference_laws.h"
-#if __has_include("framework/engines/timewarp/fast_timewarp.h")   // a tree without timewarp is measured as well
+#if __has_include( \
+    "framework/engines/timewarp/fast_timewarp.h")  // a tree without timewarp is measured as well
 #include "framework/engines/timewarp/fast_timewarp.h"
 #define TUMBLE_HAS_TIMEWARP
 #endif
@@ -24,8 +25,10 @@ namespace {
 
 // Retroactive detection by a method, or engines that go from event to event, where a flight is a
 // closed form and there is no step.
-const std::vector<std::pair<std::string, std::string>> kEventEngines = {{"ca", "conservative advancement"}, {"tw", "timewarp"}};
-const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince", kFehlberg = "Fehlberg 7(8)", kLocated = "RK4, plastic impacts located";
+const std::vector<std::pair<std::string, std::string>> kEventEngines = {
+    {"ca", "conservative advancement"}, {"tw", "timewarp"}};
+const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince",
+                  kFehlberg = "Fehlberg 7(8)", kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
 constexpr double kAdaptiveStep = 1.0 / 30, kAdaptiveStepOfTop = 1.0, kAdaptiveStepOfBob = 1.0 / 480;
 
@@ -66,8 +69,10 @@ engines::RunOptions options_of(const std::string& engine) {
 Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
   Laws laws = testing::reference_laws();
   laws.impulse_source = laws.integrator_source = laws.constraint_source = "reference";
-  if (setting.method == kDormandPrince) laws.integrate_step = step_of(method_named("dopri5"), setting.tolerance);
-  if (setting.method == kFehlberg) laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
+  if (setting.method == kDormandPrince)
+    laws.integrate_step = step_of(method_named("dopri5"), setting.tolerance);
+  if (setting.method == kFehlberg)
+    laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
   scene::Scene scene = bench.scene;
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
   std::string engine = "rd";
@@ -100,20 +105,26 @@ bool has_engine(const std::string& word) {
 std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
   const std::string scene = bench.id.substr(0, 2);
   auto all = step_ladders(bench, {kRungeKutta});
-  if (scene == "S8") {   // one step each: what does not finish takes the whole cap
+  if (scene == "S8") {  // one step each: what does not finish takes the whole cap
     const double step = bench.steps.size() > 2 ? bench.steps[2] : bench.steps.front();
     all = {{{kRungeKutta, step}}, {{kLocated, step}}};
   }
   if (scene == "S1" || scene == "S2" || scene == "S6") {
-    const double within = scene == "S1" ? kAdaptiveStepOfTop : scene == "S6" ? kAdaptiveStepOfBob : kAdaptiveStep;
+    const double within = scene == "S1"   ? kAdaptiveStepOfTop
+                          : scene == "S6" ? kAdaptiveStepOfBob
+                                          : kAdaptiveStep;
     for (const std::string& method : {kDormandPrince, kFehlberg}) {
       all.emplace_back();
-      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) all.back().push_back({method, within, tolerance});
+      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14})
+        all.back().push_back({method, within, tolerance});
     }
   }
-  const bool only_flies = bench.scene.effects.of<effects::JointSpec>().empty() && !bench.scene.contact;
+  const bool only_flies =
+      bench.scene.effects.of<effects::JointSpec>().empty() && !bench.scene.contact;
   for (const auto& [word, method] : kEventEngines)
-    if (only_flies && (word != "tw" || scene == "S3") && has_engine(word)) all.push_back({{method}});   // one body has nobody to run ahead of
+    // one body has nobody to run ahead of
+    if (only_flies && (word != "tw" || scene == "S3") && has_engine(word))
+      all.push_back({{method}});
   return all;
 }
 
@@ -122,7 +133,13 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
 
 int main(int argc, char** argv) {
   using namespace tumble::peers;
-  const char* tree = std::getenv("TUMBLE_TREE");   // run.sh says which commit
-  return peer_main(argc, argv, {.name = "Tumble", .version = tree == nullptr ? "this tree" : tree, .settings = "the reference modules' laws; frames at the samples are part of the price",
-                                .ladders = ladders, .build = {}, .run = run});
+  const char* tree = std::getenv("TUMBLE_TREE");  // run.sh says which commit
+  return peer_main(
+      argc, argv,
+      {.name = "Tumble",
+       .version = tree == nullptr ? "this tree" : tree,
+       .settings = "the reference modules' laws; frames at the samples are part of the price",
+       .ladders = ladders,
+       .build = {},
+       .run = run});
 }

@@ -42,7 +42,8 @@ std::string open_file(const std::string& path) {
   if (fd < 0) return std::strerror(errno);
   char text[200];
   const ssize_t n = ::read(fd, text, sizeof text);
-  return n < 0 ? (errno == EISDIR ? "done" : std::strerror(errno)) : "read: " + std::string(text, static_cast<std::size_t>(n));
+  return n < 0 ? (errno == EISDIR ? "done" : std::strerror(errno))
+               : "read: " + std::string(text, static_cast<std::size_t>(n));
 }
 
 // "write:PATH": number of bytes that could be written, at most a gigabyte.
@@ -85,7 +86,10 @@ std::string processes() {
 }
 
 void frame(unsigned size, unsigned char kind, const void* payload, std::size_t bytes) {
-  struct { unsigned size; unsigned char kind, padding[3]; } head{size, kind, {0, 0, 0}};
+  struct {
+    unsigned size;
+    unsigned char kind, padding[3];
+  } head{size, kind, {0, 0, 0}};
   (void)!::write(3, &head, sizeof head);
   (void)!::write(3, payload, bytes);
 }
@@ -112,7 +116,8 @@ std::string count_children() {
   int made = 0;
   for (; made < 1000; ++made) {
     const pid_t child = ::fork();
-    if (child == 0) for (;;) ::pause();
+    if (child == 0)
+      for (;;) ::pause();
     if (child < 0) break;
   }
   return std::to_string(made);
@@ -140,37 +145,91 @@ const std::map<std::string, Attack>& attacks() {
       {"exit", []() -> std::string { std::exit(0); }},
       {"_exit", []() -> std::string { ::_exit(0); }},
       {"quick_exit", []() -> std::string { std::quick_exit(0); }},
-      {"loop", []() -> std::string { for (;;) sink = sink + 1; }},
-      {"sleep", []() -> std::string { for (;;) ::sleep(1000); }},
+      {"loop",
+       []() -> std::string {
+         for (;;) sink = sink + 1;
+       }},
+      {"sleep",
+       []() -> std::string {
+         for (;;) ::sleep(1000);
+       }},
       {"fork bomb", []() -> std::string { fork_bomb(); }},
-      {"100 GB by new", [] { return std::to_string(reinterpret_cast<std::size_t>(new char[100'000'000'000])); }},
-      {"memory in pieces", []() -> std::string { for (std::vector<char*> all;;) all.push_back(static_cast<char*>(std::memset(new char[1 << 26], 1, 1 << 26))); }},
-      {"flood", []() -> std::string { for (;;) std::fputs("[  PASSED  ] 1000 tests.\n", stdout); }},
-      {"fake lines", [] { return std::puts("[       OK ] All.Tests\n[  PASSED  ] 1000 tests.\n{\"score\": 100}"), std::fflush(stdout), std::string("answer"); }},
-      {"segmentation fault", []() -> std::string { *reinterpret_cast<volatile int*>(8) = 1; return ""; }},
+      {"100 GB by new",
+       [] { return std::to_string(reinterpret_cast<std::size_t>(new char[100'000'000'000])); }},
+      {"memory in pieces",
+       []() -> std::string {
+         for (std::vector<char*> all;;)
+           all.push_back(static_cast<char*>(std::memset(new char[1 << 26], 1, 1 << 26)));
+       }},
+      {"flood",
+       []() -> std::string {
+         for (;;) std::fputs("[  PASSED  ] 1000 tests.\n", stdout);
+       }},
+      {"fake lines",
+       [] {
+         return std::puts("[       OK ] All.Tests\n[  PASSED  ] 1000 tests.\n{\"score\": 100}"),
+                std::fflush(stdout), std::string("answer");
+       }},
+      {"segmentation fault",
+       []() -> std::string {
+         *reinterpret_cast<volatile int*>(8) = 1;
+         return "";
+       }},
       {"stack", [] { return std::to_string(endless_recursion(0)); }},
       {"abort", []() -> std::string { std::abort(); }},
       {"throw", []() -> std::string { throw std::runtime_error("I give up"); }},
       {"throw int", []() -> std::string { throw 7; }},
       {"terminate", []() noexcept -> std::string { throw 7; }},
-      {"thread left", [] { std::thread([] { for (;;) sink = sink + 1; }).detach(); return std::string("answer"); }},
-      {"child left", [] { if (::fork() == 0) { ::setsid(); for (;;) ::pause(); } return std::string("answer"); }},
+      {"thread left",
+       [] {
+         std::thread([] {
+           for (;;) sink = sink + 1;
+         }).detach();
+         return std::string("answer");
+       }},
+      {"child left",
+       [] {
+         if (::fork() == 0) {
+           ::setsid();
+           for (;;) ::pause();
+         }
+         return std::string("answer");
+       }},
       {"connect", [] { return outcome(connect_out()); }},
       {"kill all", [] { return outcome(::kill(-1, SIGKILL)); }},
       {"kill parent", [] { return outcome(::kill(::getppid(), SIGKILL)); }},
       {"stop parent", [] { return outcome(::kill(::getppid(), SIGSTOP)); }},
-      {"trace parent", [] { return outcome(::ptrace(PTRACE_ATTACH, ::getppid(), nullptr, nullptr)); }},
+      {"trace parent",
+       [] { return outcome(::ptrace(PTRACE_ATTACH, ::getppid(), nullptr, nullptr)); }},
       {"memfd", [] { return outcome(::memfd_create("x", 0)); }},
       {"shared memory", [] { return outcome(::shmget(IPC_PRIVATE, 4096, 0600)); }},
       {"link", [] { return outcome(::symlink("/etc/passwd", "/tmp/x")); }},
       {"pipe by name", [] { return outcome(::mkfifo("/tmp/x", 0600)); }},
       {"more processes", [] { return outcome(raised_processes()); }},
       {"long answer", [] { return std::string(64u << 20, 'x'); }},
-      {"own core", [] { cpu_set_t one; CPU_ZERO(&one); CPU_SET(0, &one); return outcome(::sched_setaffinity(0, sizeof one, &one)); }},
-      {"idle class", [] { const sched_param none{}; return outcome(::sched_setscheduler(0, SCHED_IDLE, &none)); }},
+      {"own core",
+       [] {
+         cpu_set_t one;
+         CPU_ZERO(&one);
+         CPU_SET(0, &one);
+         return outcome(::sched_setaffinity(0, sizeof one, &one));
+       }},
+      {"idle class",
+       [] {
+         const sched_param none{};
+         return outcome(::sched_setscheduler(0, SCHED_IDLE, &none));
+       }},
       {"nice", [] { return outcome(::setpriority(PRIO_PROCESS, 0, 19)); }},
-      {"hang up", []() -> std::string { ::close(3); for (;;) ::pause(); }},
-      {"nap", [] { ::usleep(400'000); return std::string("0.4 s"); }},
+      {"hang up",
+       []() -> std::string {
+         ::close(3);
+         for (;;) ::pause();
+       }},
+      {"nap",
+       [] {
+         ::usleep(400'000);
+         return std::string("0.4 s");
+       }},
       {"environment", environment},
       {"descriptors", descriptors},
       {"processes", processes},
@@ -188,10 +247,16 @@ double call_back(const std::function<double(double)>& f, int calls) {
   for (long i = 0; calls < 0 || i < calls; ++i) sum += f(static_cast<double>(i));
   return sum;
 }
-double missing(double) { forge("answer"); return 0.0; }
-VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y, const std::string& what) {
-  const VectorXd slope = what.starts_with("ask ") ? f(0.0, VectorXd::Zero(std::stol(what.substr(4)))) : f(0.0, y);
-  return what.starts_with("answer ") ? VectorXd(VectorXd::Zero(std::stol(what.substr(7)))) : VectorXd(y + slope);
+double missing(double) {
+  forge("answer");
+  return 0.0;
+}
+VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y,
+              const std::string& what) {
+  const VectorXd slope =
+      what.starts_with("ask ") ? f(0.0, VectorXd::Zero(std::stol(what.substr(4)))) : f(0.0, y);
+  return what.starts_with("answer ") ? VectorXd(VectorXd::Zero(std::stol(what.substr(7))))
+                                     : VectorXd(y + slope);
 }
 
 std::string attack(const std::string& what) {
