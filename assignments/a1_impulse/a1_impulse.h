@@ -102,8 +102,7 @@ RelativeMotion classify_relative_motion(double normal_velocity, double tolerance
 
 // ---- Contact normals of polygons in the plane: all unit, all from B to A ------------------------
 
-/// A corner of A on an edge of B: the perpendicular of the edge, on the side where the corner is.
-///                                                                                          (A1.7a)
+/// A corner of A on an edge of B: the edge's perpendicular, on the side of the corner.      (A1.7a)
 /// @param vertex_a_world                        (2), world [m]
 /// @param edge_start_b_world, edge_end_b_world  (2), world [m], distinct
 /// @return n, (2), unit, from B to A [-]. A corner exactly on the edge's line has no side: then the
@@ -114,8 +113,7 @@ Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world,
                                     const Vector2d& edge_start_b_world,
                                     const Vector2d& edge_end_b_world);
 
-/// An edge of A flat on an edge of B: the perpendicular of B's edge, on the side of A's centre.
-///                                                                                          (A1.7b)
+/// An edge of A flat on an edge of B: B's perpendicular, on the side of A's centre.         (A1.7b)
 /// @param edge_start_b_world, edge_end_b_world  (2), world [m], distinct, in either order
 /// @param com_a_world                           (2), world [m], not on the edge's line
 /// @return n, (2), unit, from B to A [-]

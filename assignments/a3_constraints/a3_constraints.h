@@ -10,8 +10,8 @@
 /// turns with the body. Six numbers of a body are (linear, angular), world frame: velocity u = (v,
 /// omega), force (F, tau about the centre of mass). Units SI. A body of infinite mass (the ceiling,
 /// the floor) has inverse mass 0 and zero inverse inertia: use these two and every formula below
-/// holds for it; it may be driven (a lift: then its
-/// free_acceleration is the drive's), but no force moves it.
+/// holds for it; it may be driven (a lift: then its free_acceleration is the drive's), but no
+/// force moves it.
 /// Types: framework/dynamics/constraint.h and body.h.
 /// Sources, cited below by name:
 ///   Witkin    A. Witkin, "Constrained dynamics", SIGGRAPH course notes, 1997
@@ -19,7 +19,7 @@
 ///   Baraff94  D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies",
 ///             SIGGRAPH 1994
 ///   Baumgarte J. Baumgarte, "Stabilization of constraints and integrals of motion", Comput.
-///   Methods Appl. Mech. Eng. 1, 1972
+///             Methods Appl. Mech. Eng. 1, 1972
 ///   Cottle    R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992
 #pragma once
 

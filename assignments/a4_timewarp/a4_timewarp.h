@@ -95,8 +95,8 @@ std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int
 /// time]?
 ///   none:             safe_time' = time,      time' = time + h,   the group stays, no rollback
 ///   the first at tc:  safe_time' = time' = tc,
-///       every member rolls back to tc, and the group becomes the components of the
-///                     contacts that are still closed after tc                               (A4.5)
+///       every member rolls back to tc, and the group becomes the components of
+///       the contacts that are still closed after tc                                         (A4.5)
 /// Contacts that open later are ignored: after tc everything is different.
 /// @param event     kind kGroup; receivers: the members, ascending
 /// @param contacts  the group's; `opens` at or after safe_time
@@ -108,8 +108,7 @@ GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<Grou
                              double step);
 
 /// A callback (a control law, a kick) was at the front of the queue, and may change its receivers
-/// from its time on. Receivers that
-/// are already later must roll back; the others need not.                                    (A4.6)
+/// from its time on. Receivers that are later must roll back; the others need not.           (A4.6)
 /// @param event        kind kCallback
 /// @param local_times  of all processes, in any order
 /// @return a rollback to event.stamp for each receiver whose local virtual time is later than the
@@ -122,9 +121,8 @@ std::vector<Rollback> on_callback(const ScheduledEvent& event,
 
 /// The anti-messages of a rollback: the body discards its effects at the rollback's stamp and
 /// later, so every process that shares one of them must discard it too.
-///   for each effect of the body with not (effect.stamp before rollback.stamp): each other process
-///   of it rolls back to effect.stamp
-///                                                                                                            (A4.7)
+///   for each effect of the body with not (effect.stamp before rollback.stamp):
+///       each other process of it rolls back to effect.stamp                                 (A4.7)
 /// @param effects   executed and not committed, in any order
 /// @param rollback  of one body
 /// @return the anti-messages, in the order of `effects`; only the direct ones

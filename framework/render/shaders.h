@@ -68,16 +68,21 @@ inline const std::string kLightShare = R"(
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_world;
 uniform float shadow_texel;
-float lit(vec3 s, float i, float j) { return textureLod(shadow_map, s + vec3(1.4 * shadow_texel * vec2(i, j), 0.0), 0.0); }
+float lit(vec3 s, float i, float j) {
+  return textureLod(shadow_map, s + vec3(1.4 * shadow_texel * vec2(i, j), 0.0), 0.0);
+}
 float light_share(vec3 p) {
   vec3 s = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(s.xy, vec2(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
-  s.z = clamp(s.z, 0.0, 1.0);  // points beyond the range of the map along the light, such as the ground, receive shadow too
-  float corners = lit(s, 0.0, 0.0) + lit(s, -1.0, -1.0) + lit(s, 1.0, -1.0) + lit(s, -1.0, 1.0) + lit(s, 1.0, 1.0);
+  // Points beyond the range of the map along the light, such as the ground, receive shadow too.
+  s.z = clamp(s.z, 0.0, 1.0);
+  float corners = lit(s, 0.0, 0.0) + lit(s, -1.0, -1.0) + lit(s, 1.0, -1.0) +
+                  lit(s, -1.0, 1.0) + lit(s, 1.0, 1.0);
   // A loop, because software rendering runs both branches of an "if" for all pixels.
   int asked = corners > 0.0 && corners < 5.0 ? 4 : 0;
   float sides = 0.0;
-  for (int k = 0; k < asked; ++k) sides += lit(s, k == 0 ? -1.0 : k == 1 ? 1.0 : 0.0, k == 2 ? -1.0 : k == 3 ? 1.0 : 0.0);
+  for (int k = 0; k < asked; ++k)
+    sides += lit(s, k == 0 ? -1.0 : k == 1 ? 1.0 : 0.0, k == 2 ? -1.0 : k == 3 ? 1.0 : 0.0);
   return asked == 0 ? corners / 5.0 : (corners + sides) / 9.0;
 }
 )";
@@ -111,7 +116,9 @@ void main() {
   // ground below, sky above
   vec3 ambient = mix(vec3(0.20, 0.19, 0.18), vec3(0.30, 0.32, 0.35), n.z * 0.5 + 0.5);
   vec3 light = ambient + vec3(0.74, 0.72, 0.68) * key + vec3(0.10, 0.115, 0.14) * fill;
-  float gloss = key > 0.0 ? 0.22 * pow(max(dot(n, normalize(to_light + v)), 0.0), 48.0) * min(1.0, key * 3.0) : 0.0;
+  float gloss = 0.0;
+  if (key > 0.0)
+    gloss = 0.22 * pow(max(dot(n, normalize(to_light + v)), 0.0), 48.0) * min(1.0, key * 3.0);
   float rim = pow(1.0 - max(dot(n, v), 0.0), 3.0);
   // Glass is more opaque at grazing angles, so that its edges are visible.
   float opacity = body_color.a < 1.0 ? mix(body_color.a, min(1.0, body_color.a * 2.5), rim) : 1.0;
@@ -168,7 +175,8 @@ uniform vec3 centre;
 uniform float reach;
 out vec3 at_world;
 void main() {
-  vec2 corner = vec2(gl_VertexID == 1 || gl_VertexID == 2 || gl_VertexID == 4 ? 1.0 : -1.0, gl_VertexID >= 2 && gl_VertexID != 3 ? 1.0 : -1.0);
+  vec2 corner = vec2(gl_VertexID == 1 || gl_VertexID == 2 || gl_VertexID == 4 ? 1.0 : -1.0,
+                     gl_VertexID >= 2 && gl_VertexID != 3 ? 1.0 : -1.0);
   at_world = centre + vec3(reach * corner, 0.0);
   gl_Position = clip_from_world * vec4(at_world, 1.0);
 }
@@ -195,7 +203,8 @@ void main() {
   float fade = 1.0 - smoothstep(0.35, 1.0, length(at_world.xy - centre.xy) / reach);
   vec3 color = vec3(0.80, 0.81, 0.81);
   if (spacing > 0.0) {
-    float line = max(0.50 * lines(at_world.xy, spacing, 1.0), 0.85 * lines(at_world.xy, 5.0 * spacing, 1.5));
+    float line = max(0.50 * lines(at_world.xy, spacing, 1.0),
+                     0.85 * lines(at_world.xy, 5.0 * spacing, 1.5));
     color = mix(color, vec3(0.36, 0.42, 0.48), line);
   }
   color *= mix(0.36, 1.0, light_share(at_world));

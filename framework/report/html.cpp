@@ -19,35 +19,58 @@ constexpr std::size_t kManyColumns = 7;
 // Colours have a contrast of at least 4.5:1 to their background and differ in lightness, not only
 // in hue.
 constexpr const char* kStyle = R"(
-:root { --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b; --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
+:root { --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b;
+  --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var(--ink); background: #fff;
+body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var(--ink);
+  background: #fff;
   font: 16px/1.5 "DejaVu Sans", "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
 header { border-bottom: 3px solid var(--ink); margin-bottom: 1.4rem; }
-h1 { font-size: 1.75rem; margin: 0 0 .2rem; } header p { margin: 0 0 .8rem; color: var(--soft); overflow-wrap: anywhere; }
-h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line); } h3 { font-size: 1.02rem; margin: 1.5rem 0 .4rem; }
-p { max-width: 52rem; } a { color: var(--link); } nav { margin: .8rem 0 1.1rem; } nav a { margin-right: 1.2rem; }
-.wide { overflow-x: auto; margin: .8rem 0 1.2rem; } table { border-collapse: collapse; font-size: .93rem; }
+h1 { font-size: 1.75rem; margin: 0 0 .2rem; }
+header p { margin: 0 0 .8rem; color: var(--soft); overflow-wrap: anywhere; }
+h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line); }
+h3 { font-size: 1.02rem; margin: 1.5rem 0 .4rem; }
+p { max-width: 52rem; } a { color: var(--link); } nav { margin: .8rem 0 1.1rem; }
+nav a { margin-right: 1.2rem; }
+.wide { overflow-x: auto; margin: .8rem 0 1.2rem; }
+table { border-collapse: collapse; font-size: .93rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: .3rem; }
-th, td { padding: .32rem .8rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+th, td { padding: .32rem .8rem; border-bottom: 1px solid var(--line); text-align: left;
+  vertical-align: top; }
 .many { font-size: .86rem; } .many th, .many td { padding: .3rem .45rem; }
-thead th { border-bottom: 2px solid var(--ink); white-space: nowrap; } tbody tr:nth-child(even) { background: var(--wash); }
+thead th { border-bottom: 2px solid var(--ink); white-space: nowrap; }
+tbody tr:nth-child(even) { background: var(--wash); }
 .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.muted { color: var(--soft); } .good { color: var(--good); font-weight: 600; } .warning { color: var(--warn); font-weight: 600; }
+.muted { color: var(--soft); } .good { color: var(--good); font-weight: 600; }
+.warning { color: var(--warn); font-weight: 600; }
 .bad { color: var(--bad); font-weight: 700; }
-pre { background: var(--wash); border-left: 4px solid var(--line); padding: .7rem 1rem; overflow-x: auto;
-  font: .84rem/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; white-space: pre-wrap; overflow-wrap: anywhere; }
+pre { background: var(--wash); border-left: 4px solid var(--line); padding: .7rem 1rem;
+  overflow-x: auto; white-space: pre-wrap; overflow-wrap: anywhere;
+  font: .84rem/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; }
 details { margin: .5rem 0; } summary { cursor: pointer; font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: 1rem 0; }
-figure { margin: 0; flex: 1 1 20rem; max-width: 100%; } figure img, figure video { width: 100%; height: auto; display: block; border: 1px solid var(--line); }
-figure .label { font-weight: 600; margin: 0 0 .3rem; } figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
-.tiles { display: flex; flex-wrap: wrap; gap: 1rem; } .tile { border: 1px solid var(--line); border-top: 4px solid var(--ink); padding: .6rem 1.1rem; min-width: 8rem; }
-.tile b { display: block; font-size: 1.5rem; font-variant-numeric: tabular-nums; } .tile span { color: var(--soft); font-size: .86rem; }
-.plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; } svg.plot { width: 100%; height: auto; display: block; }
-footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .8rem; overflow-wrap: anywhere; }
-@media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; } th, td { padding: .3rem .5rem; } .plot-figure { overflow-x: auto; } .plot-figure svg { min-width: 35rem; } }
-@media print { .wide { overflow: visible; } table { font-size: 9pt; } body { padding: 0; max-width: none; font-size: 11pt; } a { color: inherit; text-decoration: none; }
-  tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; } details > * { display: block; } }
+figure { margin: 0; flex: 1 1 20rem; max-width: 100%; }
+figure img, figure video { width: 100%; height: auto; display: block;
+  border: 1px solid var(--line); }
+figure .label { font-weight: 600; margin: 0 0 .3rem; }
+figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
+.tiles { display: flex; flex-wrap: wrap; gap: 1rem; }
+.tile { border: 1px solid var(--line); border-top: 4px solid var(--ink); padding: .6rem 1.1rem;
+  min-width: 8rem; }
+.tile b { display: block; font-size: 1.5rem; font-variant-numeric: tabular-nums; }
+.tile span { color: var(--soft); font-size: .86rem; }
+.plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; }
+svg.plot { width: 100%; height: auto; display: block; }
+footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft);
+  font-size: .8rem; overflow-wrap: anywhere; }
+@media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
+  th, td { padding: .3rem .5rem; } .plot-figure { overflow-x: auto; }
+  .plot-figure svg { min-width: 35rem; } }
+@media print { .wide { overflow: visible; } table { font-size: 9pt; }
+  body { padding: 0; max-width: none; font-size: 11pt; }
+  a { color: inherit; text-decoration: none; }
+  tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; }
+  details > * { display: block; } }
 )";
 
 const char* class_of(Look look) {

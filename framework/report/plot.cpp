@@ -253,7 +253,8 @@ std::vector<double> ticks_of(double low, double high, Scale scale) {
 const char* plot_style() {
   return R"(
 svg.plot { font: 11.5px "DejaVu Sans", Arial, sans-serif; fill: #1c2733; }
-svg.plot .grid { stroke: #d9e0e6; stroke-width: .8; } svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
+svg.plot .grid { stroke: #d9e0e6; stroke-width: .8; }
+svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 )";
 }
 

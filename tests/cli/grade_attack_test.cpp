@@ -42,7 +42,8 @@ TEST_F(GradeAttack, ResultsPlantedAmongSubmissionsDestroyNothingAndEarnNothing) 
   // The best forgery: another student's perfect record, with everything that makes it look
   // complete.
   put("alice/record.json",
-      R"({"assignment": "a1", "folder": "alice", "name": "alice", "state": "judged", "score": 100, "possible": 100, "mac": ""})");
+      R"({"assignment": "a1", "folder": "alice", "name": "alice", "state": "judged", "score": 100,
+        "possible": 100, "mac": ""})");
   put("alice/results.json", R"({"score": 100})");
   put(".tumble-grade.json", R"({"assignment": "a1", "folders": ["alice", "bob"]})");
   const auto before = files("in");

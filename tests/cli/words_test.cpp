@@ -248,8 +248,10 @@ TEST_F(CommandLine, CountsAreATableOfWhatHappened) {
 // Two balls of radius 0.5 whose centres are 0.8 apart overlap by 0.2 m.
 TEST_F(CommandLine, BodiesThatOverlapAtTheStartAreRefusedByNameDepthAndRemedy) {
   write_whole(folder_ / "deep.json", R"({"title": "t", "duration_s": 1, "bodies": [
-    {"name": "left", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0, 0, 0], "velocity_m_s": [1, 0, 0]},
-    {"name": "right", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0.8, 0, 0]}]})");
+    {"name": "left", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0, 0, 0],
+      "velocity_m_s": [1, 0, 0]},
+    {"name": "right", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0.8, 0,
+      0]}]})");
   const Said said = type("run deep.json --modules reference --png p.png");
   EXPECT_EQ(said.code, 2) << said.out << said.err;
   EXPECT_TRUE(holds(said.err, "left") && holds(said.err, "right") && holds(said.err, "overlap") &&
@@ -446,9 +448,9 @@ TEST_F(CommandLine, InspectSaysHowToSeeAModelMove) {
 
 // A number would be compared as metres whatever its label.
 TEST_F(CommandLine, ACheckInAUnitThatIsNotItsKindsIsRefusedAtItsLine) {
-  write_whole(
-      folder_ / "cm.json",
-      R"({"title": "t", "duration_s": 1, "bodies": [{"name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}],
+  write_whole(folder_ / "cm.json",
+              R"({"title": "t", "duration_s": 1, "bodies": [{"name": "b",
+        "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}],
     "checks": [{"kind": "final_position", "body": "b", "expected": [0, 0, 0], "tolerance": 1,
                 "unit": "cm", "why": "w"}]})");
   const Said said = type("run cm.json --modules library");

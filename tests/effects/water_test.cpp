@@ -247,7 +247,8 @@ TEST(Water, GoesInNoClosedFormAndIsAbsentWhereNobodyAsks) {
 scene::Scene said(const std::string& water, const std::string& gravity) {
   return scene::parse_scene(
       R"({ "title": "t", "duration_s": 1, "gravity_m_s2": )" + gravity + R"(, "water": )" + water +
-          R"(, "bodies": [{ "name": "b", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 }] })",
+          R"(, "bodies": [{ "name": "b", "shape": { "sphere": { "radius_m": 0.1 } },
+            "mass_kg": 1 }] })",
       "s.json");
 }
 

@@ -41,7 +41,8 @@ TEST(Fuzz, FiftyQuickScenesEndRightOrWithAReason) {
 /// A ball that falls for a second.
 Json falling() {
   return Json::parse(
-      R"({"title": "t", "duration_s": 1, "gravity_m_s2": [0, 0, -9.81], "bodies": [{"name": "b", "shape": {"sphere": {"radius_m": 0.1}}, "mass_kg": 1}]})");
+      R"({"title": "t", "duration_s": 1, "gravity_m_s2": [0, 0, -9.81],
+        "bodies": [{"name": "b", "shape": {"sphere": {"radius_m": 0.1}}, "mass_kg": 1}]})");
 }
 
 TEST(Fuzz, ARunIsJudgedFromItsPlaces) {

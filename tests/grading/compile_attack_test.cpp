@@ -37,7 +37,8 @@ Everything echo(const Everything& value) { return value; }
 double call_back(const std::function<double(double)>&, int) { return 0.0; }
 std::string attack(const std::string& what) { return what; }
 double missing(double) { return 0.0; }
-VectorXd step(const std::function<VectorXd(double, const VectorXd&)>&, const VectorXd& y, const std::string&) { return y; }
+VectorXd step(const std::function<VectorXd(double, const VectorXd&)>&, const VectorXd& y,
+              const std::string&) { return y; }
 }
 )";
 

@@ -74,9 +74,13 @@ TEST_F(PlayerInBrowser, BodiesAreDrawnAtTheirPositions) {
 TEST_F(PlayerInBrowser, DataAreRestored) {
   const std::string script = R"(
     const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
-      const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion(), found = [];
-      for (const [body, t] of [[0, 0], [0, 0.5], [1, 0.5]]) { run.pose(body, run.frameAt(t), place, turn); found.push(...place.toArray(), turn.x, turn.y, turn.z, turn.w); }
-      found.push(run.events.time[0], run.events.impulse[0], run.events.before[0], Number.isNaN(run.events.before[1]) ? 1 : 0, run.series.find(s => s.name === 'total').values[30], run.contacts[7][0]);
+      const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion(),
+        found = [];
+      for (const [body, t] of [[0, 0], [0, 0.5], [1, 0.5]]) { run.pose(body, run.frameAt(t), place,
+        turn); found.push(...place.toArray(), turn.x, turn.y, turn.z, turn.w); }
+      found.push(run.events.time[0], run.events.impulse[0], run.events.before[0],
+        Number.isNaN(run.events.before[1]) ? 1 : 0,
+        run.series.find(s => s.name === 'total').values[30], run.contacts[7][0]);
       document.body.dataset.found = found.join(' '); };
     wait();)";
   const std::string elements = browser.elements(
@@ -118,7 +122,8 @@ TEST_F(PlayerInBrowser, BodyIsAtTheWallWhenItHitsIt) {
   const std::string script = R"(
     const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
       const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion();
-      document.body.dataset.found = [0.3, 0.6, 0.8].map(k => (run.pose(0, run.frameAt(k / 60), place, turn), place.x)).join(' '); };
+      document.body.dataset.found = [0.3, 0.6, 0.8].map(k => (run.pose(0, run.frameAt(k / 60),
+        place, turn), place.x)).join(' '); };
     wait();)";
   std::istringstream found(body_data(
       browser.elements(browser.serve(player_page(thrown_ball(), {{bullet, ""}}), script) + "#t=0"),
@@ -134,10 +139,13 @@ TEST_F(PlayerInBrowser, BodyIsAtTheWallWhenItHitsIt) {
 
 TEST_F(PlayerInBrowser, KeysPlayStepAndJump) {
   const std::string script = R"(
-    const key = (k, shiftKey = false) => window.dispatchEvent(new KeyboardEvent('keydown', { key: k, shiftKey })), said = [];
-    const say = () => { const p = tumble.player; said.push(p.time.toFixed(4), p.isPlaying, p.speed); };
+    const key = (k, shiftKey = false) => window.dispatchEvent(new KeyboardEvent('keydown', { key: k,
+      shiftKey })), said = [];
+    const say = () => { const p = tumble.player; said.push(p.time.toFixed(4), p.isPlaying, p.speed);
+      };
     const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
-      for (const [k, shift] of [['Home'], ['ArrowRight'], ['ArrowRight', true], ['ArrowLeft'], ['n'], ['p'], ['End'], ['ArrowDown'], [' ']]) { key(k, shift); say(); }
+      for (const [k, shift] of [['Home'], ['ArrowRight'], ['ArrowRight', true], ['ArrowLeft'],
+        ['n'], ['p'], ['End'], ['ArrowDown'], [' ']]) { key(k, shift); say(); }
       document.body.dataset.said = said.join(' '); };
     wait();)";
   const std::string elements = browser.elements(

@@ -12,7 +12,8 @@ Scene scene_with(const std::string& ball_more, const std::string& more) {
   return parse_scene(R"({ "title": "t", "duration_s": 1, "bodies": [
     { "name": "floor", "shape": { "plane": {} }, "immovable": true )" +
                          ball_more + R"( },
-    { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 1] )" +
+    { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } },
+      "mass_kg": 1, "position_m": [0, 0, 1] )" +
                          ball_more + " }]" + more + " }",
                      "s.json");
 }
@@ -34,15 +35,16 @@ TEST(Effects, OnlyWhatAnEntryAsksForIsOn) {
       (Names{"gravity", "collision", "lasting contact", "sleep"}));
   EXPECT_EQ(names_on(scene_with(R"(, "friction": 0.4)", R"(, "contact": {})")),
             (Names{"collision", "lasting contact", "friction"}));
-  EXPECT_EQ(
-      names_on(scene_with(
-          "",
-          R"(, "drag": [{ "body": "ball", "linear_n_s_m": 1 }], "springs": [{ "a": { "body": "ball" }, "b": { "body": "floor" }, "stiffness_n_m": 1 }])")),
-      (Names{"spring", "drag", "collision"}));
+  EXPECT_EQ(names_on(scene_with("",
+                                R"(, "drag": [{ "body": "ball", "linear_n_s_m": 1 }],
+            "springs": [{ "a": { "body": "ball" }, "b": { "body": "floor" },
+            "stiffness_n_m": 1 }])")),
+            (Names{"spring", "drag", "collision"}));
   EXPECT_EQ(
       names_on(scene_with(
           R"(, "collides": false)",
-          R"(, "joints": [{ "name": "h", "kind": "hinge", "body_a": "ball", "point_m": [0, 0, 2], "axis": [1, 0, 0] }], "motors": [{ "joint": "h", "damping_n_m_s_rad": 1 }],
+          R"(, "joints": [{ "name": "h", "kind": "hinge", "body_a": "ball", "point_m": [0, 0, 2],
+            "axis": [1, 0, 0] }], "motors": [{ "joint": "h", "damping_n_m_s_rad": 1 }],
     "rods": [{ "a": { "body": "ball" }, "b": { "point_world_m": [0, 0, 2] } }])")),
       (Names{"rod", "joint", "motor"}));
 }

@@ -12,8 +12,10 @@ const std::string kStart = R"({
 "title": "t", "duration_s": 1, "bodies": [
   { "name": "wall", "shape": { "plane": {} }, "immovable": true },
   { "name": "rail", "shape": { "box": { "size_m": [1, 1, 1] } }, "immovable": true },
-  { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 2] },
-  { "name": "bob", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 1] }
+  { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } },
+    "mass_kg": 1, "position_m": [0, 0, 2] },
+  { "name": "bob", "shape": { "sphere": { "radius_m": 0.1 } },
+    "mass_kg": 1, "position_m": [0, 0, 1] }
 ],
 )";  // the next text is in line 8
 
@@ -146,10 +148,14 @@ TEST(LinkRefusals, FrictionDragAndStabilisationThatWouldDoNothing) {
   expect_words(R"("drag": [{ "body": "wall", "linear_n_s_m": 1 }])", {"/drag/0/body", "immovable"});
   expect_words(R"("drag": [{ "body": "ball" }])", {"/drag/0", "would do nothing"});
   expect_words(
-      R"("repeat": [{ "counts": [2, 1, 1], "spacing_m": [1, 0, 0], "body": { "name": "b", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "friction": 0.5 } }])",
+      R"("repeat": [{ "counts": [2, 1, 1], "spacing_m": [1, 0, 0],
+        "body": { "name": "b", "shape": { "sphere": { "radius_m": 0.1 } },
+        "mass_kg": 1, "friction": 0.5 } }])",
       {"/repeat/0/body/friction", "persistent contact only", "Add \"contact\": {}"});
   expect_words(
-      R"("repeat": [{ "counts": [2, 1, 1], "spacing_m": [1, 0, 0], "body": { "name": "b", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "friction": -0.5 } }])",
+      R"("repeat": [{ "counts": [2, 1, 1], "spacing_m": [1, 0, 0],
+        "body": { "name": "b", "shape": { "sphere": { "radius_m": 0.1 } },
+        "mass_kg": 1, "friction": -0.5 } }])",
       {"/repeat/0/body/friction", "found -0.5", "at least 0"});
 }
 
@@ -168,11 +174,10 @@ TEST(LinkRefusals, AChainThatCannotBeLaid) {
                {"/chains/0/stiffness_n_m", "choose \"springs\""});
   expect_words(chain(R"("kind": "hinges", "to": { "body": "bob" })"),
                {"/chains/0", "needs the key 'axis'"});
-  expect_words(
-      chain(
-          R"("kind": "rods", "to": { "body": "bob" })",
-          R"({ "name": "bead", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 0] })"),
-      {"/chains/0/link/position_m", "determines the positions of its links"});
+  expect_words(chain(R"("kind": "rods", "to": { "body": "bob" })",
+                     R"({ "name": "bead", "shape": { "sphere": { "radius_m": 0.1 } },
+            "mass_kg": 1, "position_m": [0, 0, 0] })"),
+               {"/chains/0/link/position_m", "determines the positions of its links"});
 }
 
 }  // namespace

@@ -16,8 +16,10 @@ namespace tumble::scene::links_test {
 namespace {
 
 const std::string kBodies = R"("bodies": [
-  { "name": "box", "shape": { "box": { "size_m": [2, 2, 2] } }, "mass_kg": 1, "position_m": [0, 0, 5], "orientation": { "euler_deg": [90, 0, 0] } },
-  { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [3, 0, 5] }
+  { "name": "box", "shape": { "box": { "size_m": [2, 2, 2] } },
+    "mass_kg": 1, "position_m": [0, 0, 5], "orientation": { "euler_deg": [90, 0, 0] } },
+  { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } },
+    "mass_kg": 1, "position_m": [3, 0, 5] }
 ])";
 
 Scene scene_with(const std::string& more, const std::string& bodies = kBodies) {
@@ -42,9 +44,12 @@ TEST(Links, ASceneThatNamesNoneHasNone) {
 TEST(Links, AnchorsAreFoundInTheBodysOwnFrame) {
   // The box is rotated by 90 degrees about z: its own +x points along the world's +y.
   const Scene scene = scene_with(R"("springs": [
-    { "a": { "body": "box", "point_world_m": [0, 1, 5] }, "b": { "body": "ball" }, "stiffness_n_m": 10 },
-    { "a": { "body": "box", "point_body_m": [0, 1, 0] }, "b": { "point_world_m": [-1, 0, 7] }, "stiffness_n_m": 10, "damping_n_s_m": 2, "rest_length_m": 0.5 },
-    { "name": "corner", "a": { "body": "box", "vertex_towards": [1, 1, 1] }, "b": { "body": "ball", "point_body_m": [0, 0, 0.1] }, "stiffness_n_m": 10 }])");
+    { "a": { "body": "box", "point_world_m": [0, 1, 5] }, "b": { "body": "ball" },
+      "stiffness_n_m": 10 },
+    { "a": { "body": "box", "point_body_m": [0, 1, 0] }, "b": { "point_world_m": [-1, 0, 7] },
+      "stiffness_n_m": 10, "damping_n_s_m": 2, "rest_length_m": 0.5 },
+    { "name": "corner", "a": { "body": "box", "vertex_towards": [1, 1, 1] },
+      "b": { "body": "ball", "point_body_m": [0, 0, 0.1] }, "stiffness_n_m": 10 }])");
   ASSERT_EQ(scene.effects.of<effects::SpringSpec>().size(), 3u);
   EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[0].name, "spring 1");
   EXPECT_LE((scene.effects.of<effects::SpringSpec>()[0].a.point_m - Vector3d(1, 0, 0)).norm(),
@@ -62,7 +67,8 @@ TEST(Links, AnchorsAreFoundInTheBodysOwnFrame) {
 
 TEST(Links, AVertexOfAModelIsTakenByItsNumber) {
   const std::string bodies =
-      R"("bodies": [{ "name": "pawn", "shape": { "model": { "file": "chess_pawn.3ds", "metres_per_unit": 0.1 } }, "density_kg_m3": 700 }])";
+      R"("bodies": [{ "name": "pawn", "shape": { "model": { "file": "chess_pawn.3ds",
+        "metres_per_unit": 0.1 } }, "density_kg_m3": 700 }])";
   const std::string file = TUMBLE_SOURCE_DIR "/models/s.json";
   const auto scene_at = [&](const std::string& vertex) {
     return parse_scene(R"({ "title": "t", "duration_s": 1, )" + bodies +
@@ -92,7 +98,8 @@ TEST(Links, RodsAndJointsBringStabilisationByProjection) {
   ASSERT_TRUE(scene.stabilisation.has_value());
   EXPECT_EQ(scene.stabilisation->kind, StabilisationKind::kProjection);
   const Scene chosen = scene_with(
-      R"("joints": [{ "kind": "hinge", "body_a": "ball", "point_m": [3, 0, 6], "axis": [0, 2, 0] }], "stabilisation": { "kind": "baumgarte", "time_constant_s": 0.05 })");
+      R"("joints": [{ "kind": "hinge", "body_a": "ball", "point_m": [3, 0, 6], "axis": [0, 2, 0] }],
+        "stabilisation": { "kind": "baumgarte", "time_constant_s": 0.05 })");
   EXPECT_EQ(chosen.effects.of<effects::JointSpec>()[0].body_b, "");
   EXPECT_EQ(chosen.effects.of<effects::JointSpec>()[0].axis, Vector3d(0, 1, 0));
   EXPECT_EQ(chosen.stabilisation->kind, StabilisationKind::kBaumgarte);
@@ -101,9 +108,13 @@ TEST(Links, RodsAndJointsBringStabilisationByProjection) {
 
 TEST(Links, DragMotorsContactFrictionAndPairsApartAreRead) {
   const Scene scene = scene_with(R"("drag": [{ "body": "ball", "linear_n_s_m": 0.5 }],
-    "joints": [{ "name": "shoulder", "kind": "hinge", "body_a": "box", "body_b": "ball", "point_m": [1, 0, 5], "axis": [0, 0, 1] }],
-    "motors": [{ "joint": "shoulder", "amplitude_rad": 0.5, "frequency_hz": 2, "stiffness_n_m_rad": 10, "damping_n_m_s_rad": 1, "largest_torque_n_m": 3, "period_s": 0.002 }],
-    "contact": { "impact_law": "simultaneous", "plastic_impacts": "in_step", "sleep": true }, "apart": [["ball", "box"]])");
+    "joints": [{ "name": "shoulder", "kind": "hinge", "body_a": "box", "body_b": "ball",
+      "point_m": [1, 0, 5], "axis": [0, 0, 1] }],
+    "motors": [{ "joint": "shoulder", "amplitude_rad": 0.5, "frequency_hz": 2,
+      "stiffness_n_m_rad": 10, "damping_n_m_s_rad": 1, "largest_torque_n_m": 3,
+      "period_s": 0.002 }],
+    "contact": { "impact_law": "simultaneous", "plastic_impacts": "in_step", "sleep": true },
+      "apart": [["ball", "box"]])");
   EXPECT_EQ(scene.effects.of<effects::DragSpec>()[0].linear_n_s_m, 0.5);
   EXPECT_EQ(scene.effects.of<effects::DragSpec>()[0].angular_n_m_s, 0.0);
   EXPECT_EQ(scene.effects.of<effects::MotorSpec>()[0].joint, "shoulder");
@@ -117,8 +128,10 @@ TEST(Links, DragMotorsContactFrictionAndPairsApartAreRead) {
 
 TEST(Links, AChainOfRodsHangsFromItsAnchorAndHoldsAnotherBody) {
   const Scene scene = scene_with(
-      R"("chains": [{ "kind": "rods", "links": 100, "from": { "point_world_m": [3, 0, 15.1] }, "direction": [0, 0, -2], "spacing_m": 0.1,
-    "link": { "name": "bead", "shape": { "sphere": { "radius_m": 0 } }, "mass_kg": 0.01, "collides": false } }],
+      R"("chains": [{ "kind": "rods", "links": 100, "from": { "point_world_m": [3, 0, 15.1] },
+        "direction": [0, 0, -2], "spacing_m": 0.1,
+    "link": { "name": "bead", "shape": { "sphere": { "radius_m": 0 } },
+      "mass_kg": 0.01, "collides": false } }],
     "rods": [{ "a": { "body": "bead_100" }, "b": { "body": "ball" } }])");
   ASSERT_EQ(scene.bodies.size(), 102u);
   ASSERT_EQ(scene.effects.of<effects::RodSpec>().size(), 101u);
@@ -136,8 +149,10 @@ TEST(Links, AChainOfRodsHangsFromItsAnchorAndHoldsAnotherBody) {
 
 TEST(Links, AChainOfBallJointsBetweenTwoPointsIsABridge) {
   const Scene scene = scene_with(
-      R"("chains": [{ "kind": "ball_joints", "links": 4, "from": { "point_world_m": [0, 0, 0] }, "to": { "body": "ball", "point_world_m": [3, 4, 0] }, "along": "z",
-    "link": { "name": "plank", "shape": { "box": { "size_m": [0.1, 0.1, 1] } }, "mass_kg": 1 } }])");
+      R"("chains": [{ "kind": "ball_joints", "links": 4, "from": { "point_world_m": [0, 0, 0] },
+        "to": { "body": "ball", "point_world_m": [3, 4, 0] }, "along": "z",
+    "link": { "name": "plank", "shape": { "box": { "size_m": [0.1, 0.1, 1] } },
+      "mass_kg": 1 } }])");
   ASSERT_EQ(scene.effects.of<effects::JointSpec>().size(), 5u);
   EXPECT_LE((scene.bodies[2].position_m - Vector3d(0.375, 0.5, 0)).norm(), kRounding);
   EXPECT_LE((scene.bodies[2].world_from_body * Vector3d::UnitZ() - Vector3d(0.6, 0.8, 0)).norm(),
@@ -152,7 +167,9 @@ TEST(Links, AChainOfBallJointsBetweenTwoPointsIsABridge) {
 
 TEST(Links, AChainOfSpringsIsAsLongAsItIsLaidUnlessSaidOtherwise) {
   const Scene scene = scene_with(
-      R"("chains": [{ "kind": "springs", "links": 3, "from": { "body": "box" }, "direction": [0, 0, -1], "spacing_m": 1.5, "stiffness_n_m": 7, "damping_n_s_m": 0.1, "neighbours_apart": true,
+      R"("chains": [{ "kind": "springs", "links": 3, "from": { "body": "box" },
+        "direction": [0, 0, -1],
+        "spacing_m": 1.5, "stiffness_n_m": 7, "damping_n_s_m": 0.1, "neighbours_apart": true,
     "link": { "name": "bead", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 } }])");
   ASSERT_EQ(scene.effects.of<effects::SpringSpec>().size(), 3u);
   EXPECT_NEAR(scene.effects.of<effects::SpringSpec>()[2].rest_length_m, 1.5, kRounding);

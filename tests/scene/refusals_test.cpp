@@ -76,16 +76,17 @@ TEST(SceneRefusals, AVectorOfTwoNumbersIsCounted) {
 }
 
 TEST(SceneRefusals, AMissingModelNamesTheFile) {
-  expect_words(
-      refusal(scene_with(
-          R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } }, "mass_kg": 1 })")),
-      {"s.json:5: /bodies/0/shape/model", "pawn", "chess_prawn.3ds",
-       "Did you mean 'chess_pawn.3ds'"});
+  expect_words(refusal(scene_with(
+                   R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } },
+            "mass_kg": 1 })")),
+               {"s.json:5: /bodies/0/shape/model", "pawn", "chess_prawn.3ds",
+                "Did you mean 'chess_pawn.3ds'"});
 }
 
 TEST(SceneRefusals, AnUnknownBodyInACheckListsTheBodies) {
   const std::string checks =
-      R"(, "checks": [{ "kind": "event_count", "body": "bal", "expected": [1], "tolerance": 0, "why": "w" }])";
+      R"(, "checks": [{ "kind": "event_count", "body": "bal", "expected": [1],
+        "tolerance": 0, "why": "w" }])";
   expect_words(refusal(scene_with(kBall, checks)),
                {"/checks/0/body", "no body is named 'bal'", "Did you mean 'ball'"});
 }
@@ -113,7 +114,8 @@ TEST(SceneRefusals, AKeyThatStandsTwiceIsRefused) {
 
 TEST(SceneRefusals, AnEllipsoidMeetsPlanesOnlyAndSaysWhatElseItMayMeet) {
   const std::string egg =
-      R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1] } }, "mass_kg": 1, "position_m": [0, 0, 1] })";
+      R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1] } },
+        "mass_kg": 1, "position_m": [0, 0, 1] })";
   const std::string floor = R"({ "name": "floor", "shape": { "plane": {} }, "immovable": true })";
   EXPECT_EQ(refusal(scene_with(egg + ",\n" + floor)), "");
   expect_words(refusal(scene_with(kBall + ",\n" + egg)),
@@ -125,15 +127,16 @@ TEST(SceneRefusals, AnEllipsoidMeetsPlanesOnlyAndSaysWhatElseItMayMeet) {
 TEST(SceneRefusals, AnEllipsoidBesideItsCentreOfMassNeedsMomentsOfItsOwn) {
   const auto egg = [](const std::string& more) {
     return scene_with(
-        R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1], "center_m": [0, 0, 0.05] } }, )" +
+        R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1],
+          "center_m": [0, 0, 0.05] } }, )" +
         more + " }");
   };
   expect_words(refusal(egg(R"("mass_kg": 1)")),
                {"/bodies/0/shape/ellipsoid/center_m", "not of one density", "inertia_body_kg_m2"});
-  EXPECT_EQ(
-      refusal(egg(
-          R"("mass_kg": 1, "inertia_body_kg_m2": [[2e-4, -2e-5, 0], [-2e-5, 16e-4, 0], [0, 0, 17e-4]])")),
-      "");
+  EXPECT_EQ(refusal(egg(
+                R"("mass_kg": 1, "inertia_body_kg_m2": [[2e-4, -2e-5, 0], [-2e-5, 16e-4, 0],
+            [0, 0, 17e-4]])")),
+            "");
 }
 
 TEST(SceneRefusals, WhatIsNoObjectSaysThatASceneIs) {

@@ -319,8 +319,9 @@ std::optional<ImpactProblem> impact_problem(const Case& truth, double window_s) 
     return problem_between(truth, rod_of(truth), plane(Vector3d::UnitZ(), 0.0), window_s);
   if (truth.family == "toi_boxes")
     return problem_between(truth, box_of(truth, "A"), box_of(truth, "B"), window_s);
-  return std::
-      nullopt;  // a grazing impact is a double root, and a bullet has passed the wall at the end of a step: no bracket
+  // A grazing impact is a double root, and a bullet has passed the wall at the end of a step: no
+  // bracket.
+  return std::nullopt;
 }
 
 void compare_times_of_impact(const Case& truth, const Laws& laws, Comparison& comparison) {
