@@ -75,12 +75,14 @@ std::vector<Stage> stages_of(const std::vector<EffectUse>& effects) {
        colliding,
        {"candidate_pairs", "gap_evaluations", "root_findings"}},
       {"impacts", "impulses of collisions", colliding,
-       sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"}
-                : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges",
-                                           "bodies_put_to_rest", "bodies_woken"}},
+       sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts",
+                                           "position_corrections"}
+                : std::vector<std::string>{"impacts", "impulses", "micro_impacts",
+                                           "position_corrections", "bodies_put_to_rest",
+                                           "bodies_woken"}},
       {"contacts",
        "forces of resting, sliding and rolling contacts",
-       is_on(effects, "lasting contact"),
+       is_on(effects, "persistent contact"),
        {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations",
         "contact_unsolved", "contacts_begun", "contacts_ended", "friction_points"}},
       {"sleep",

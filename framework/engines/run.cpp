@@ -52,8 +52,8 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
       for (const effects::NeededLaw& law : effect->needed_laws(scene, laws))
         need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
   if (scene.contact) {
-    need(laws.ends_in_contact, scene, "the beginning of a lasting contact", "a3");
-    need(laws.contact_forces, scene, "the forces of lasting contacts", "a3");
+    need(laws.ends_in_contact, scene, "the beginning of a persistent contact", "a3");
+    need(laws.contact_forces, scene, "the forces of persistent contacts", "a3");
   }
   if (may_meet(scene)) {
     need(laws.relative_normal_velocity, scene, "the relative normal velocity of two bodies", "a1");

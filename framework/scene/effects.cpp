@@ -29,7 +29,7 @@ EffectUse collision(const Scene& scene) {
 }
 
 EffectUse contact(const Scene& scene) {
-  EffectUse effect{"lasting contact", "contacts", "contact_solves", {}, ""};
+  EffectUse effect{"persistent contact", "contacts", "contact_solves", {}, ""};
   if (!scene.contact) return effect;
   if (colliding_bodies(scene).empty()) {
     effect.note = "/contact asks for it, but no two bodies can collide";

@@ -265,7 +265,8 @@ const std::vector<SizedScene>& sized_scenes() {
        "arm and block are one process; in flight it is one of its own, and no arm waits for "
        "another."},
       {"avalanche", "Avalanche: rocks come down a mountainside", "rocks", 300,
-       "Rocks fall, bounce, slide, roll and pile up. Those in lasting contact move as one process "
+       "Rocks fall, bounce, slide, roll and pile up. Those in persistent contact move as one "
+       "process "
        "until they part."},
       {"dominoes_row", "Dominoes: a row of them", "dominoes", 20,
        "One push, and a wave goes down the row: each domino matters to its neighbours only, one "

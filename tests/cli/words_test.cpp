@@ -455,7 +455,7 @@ TEST_F(CommandLine, ACheckInAUnitThatIsNotItsKindsIsRefusedAtItsLine) {
                 "unit": "cm", "why": "w"}]})");
   const Said said = type("run cm.json --modules library");
   EXPECT_EQ(said.code, 2) << said.out << said.err;
-  for (const char* part : {"cm.json:3", "/checks/0/unit", "'cm'", "in m,"})
+  for (const char* part : {"cm.json:4", "/checks/0/unit", "'cm'", "in m,"})
     EXPECT_TRUE(holds(said.err, part)) << part << " in: " << said.err;
 }
 

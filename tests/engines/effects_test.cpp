@@ -119,7 +119,7 @@ TEST(Effects, BodiesInFlightPayNothingForAStackAndItNothingForThem) {
   const auto alone = counts(true, false), flying = counts(false, true), both = counts(true, true);
   for (const char* counter :
        {"candidate_pairs", "gap_evaluations", "root_findings", "contact_solves", "contact_points",
-        "friction_points", "contact_sweeps", "contact_factorisations", "nudges"}) {
+        "friction_points", "contact_sweeps", "contact_factorisations", "position_corrections"}) {
     EXPECT_EQ(flying.at(counter), 0u) << counter;
     EXPECT_EQ(both.at(counter), alone.at(counter)) << counter;
   }

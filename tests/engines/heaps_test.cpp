@@ -49,7 +49,7 @@ TEST(Heaps, AWaveOfDominoesFallsInAboutTheStepsThatTheSceneAsksFor) {
   const scene::Scene scene = dominoes(20, 1.3, scene::PlasticImpacts::kAutomatic);
   const Trajectory result = run(scene, reference_laws());
   EXPECT_EQ(result.stopped_by, "");
-  EXPECT_GT(result.counters.counts.at("heap_steps"), 0u);
+  EXPECT_GT(result.counters.counts.at("large_island_steps"), 0u);
   // impact by impact it is 5 and more
   EXPECT_LT(result.counters.counts.at("steps"), 2.0 * scene.duration_s / scene.step_s);
   ASSERT_EQ(result.counters.notices.size(), 1u);  // and says so
@@ -74,7 +74,7 @@ TEST(Heaps, StepsAndInstantsGiveTheSameWave) {
   constexpr int kLast = 13;
   const auto arrivals = [&](scene::PlasticImpacts plastic) {
     const Trajectory result = run(dominoes(kLast, 0.52, plastic), reference_laws());
-    EXPECT_EQ(result.counters.counts.at("heap_steps") > 0,
+    EXPECT_EQ(result.counters.counts.at("large_island_steps") > 0,
               plastic == scene::PlasticImpacts::kAutomatic);
     std::vector<double> times;
     for (int i = 1; i <= kLast; ++i) times.push_back(when_leans(result, i, 0.05));
@@ -92,7 +92,7 @@ TEST(Heaps, StepsAndInstantsGiveTheSameWave) {
 TEST(Heaps, AFewBodiesAreSolvedImpactByImpact) {
   const Trajectory result =
       run(dominoes(8, 0.4, scene::PlasticImpacts::kAutomatic), reference_laws());
-  EXPECT_EQ(result.counters.counts.at("heap_steps"), 0u);
+  EXPECT_EQ(result.counters.counts.at("large_island_steps"), 0u);
   EXPECT_TRUE(result.counters.notices.empty());
 }
 

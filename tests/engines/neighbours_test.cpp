@@ -144,7 +144,7 @@ TEST(Neighbours, InRetroactiveDetectionABodyInFlightPaysForCommonTimesAndNothing
   EXPECT_EQ(alone.at("integrations"), kOthers * alone.at("steps"));
   EXPECT_EQ(alone.at("synchronisations"), 0u);
   // the pile has repeated steps
-  EXPECT_GT(both.at("contact_landings") + both.at("contacts_begun"), 10u);
+  EXPECT_GT(both.at("contact_activations") + both.at("contacts_begun"), 10u);
 }
 
 // They rest and fall asleep while the crates are still high above the floor.

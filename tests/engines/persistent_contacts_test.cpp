@@ -267,7 +267,7 @@ TEST(Tipping, EnergyIsKeptToSecondOrderAndTheEdgeStaysOnTheFloor) {
 // and at rest at once.
 TEST(Tipping, LandsWithinAStepAndLies) {
   const Trajectory result = run_it(tipping_board(1.0 / 60));
-  EXPECT_GT(result.counters.counts.at("contact_landings"), 0u);
+  EXPECT_GT(result.counters.counts.at("contact_activations"), 0u);
   EXPECT_LT(result.frames.back().kinetic_energy, 1e-12);
   EXPECT_NEAR(result.frames.back().poses[0].com_world.z(), 0.02, 1e-9);
 }
@@ -305,7 +305,8 @@ TEST(Turning, FramesWithinAStepAreApartAndChangeNothing) {
                    many = run(scene, reference_laws(), 420.0);
   for (const Frame& frame : many.frames) EXPECT_GE(frame.smallest_gap, 0.0) << "t = " << frame.time;
   EXPECT_EQ(few.frames.back().poses[0].com_world, many.frames.back().poses[0].com_world);
-  EXPECT_EQ(few.counters.counts.at("nudges"), many.counters.counts.at("nudges"));
+  EXPECT_EQ(few.counters.counts.at("position_corrections"),
+            many.counters.counts.at("position_corrections"));
 }
 
 // A rod slides on the two corners of its end until friction jams it. One corner could do it alone,

@@ -108,9 +108,9 @@ TEST(Sleeping, CostsNothing) {
     return run_it(stack_of(10, duration)).counters.counts;
   };
   const auto a_while = counts(1.0), longer = counts(4.0);
-  for (const char* counter :
-       {"integrations", "derivative_evaluations", "gravity_calls", "candidate_pairs",
-        "gap_evaluations", "root_findings", "contact_solves", "contact_points", "nudges"})
+  for (const char* counter : {"integrations", "derivative_evaluations", "gravity_calls",
+                              "candidate_pairs", "gap_evaluations", "root_findings",
+                              "contact_solves", "contact_points", "position_corrections"})
     EXPECT_EQ(a_while.at(counter), longer.at(counter)) << counter;
   // 3 s in steps of 1/60 s
   EXPECT_EQ(longer.at("body_steps_asleep") - a_while.at("body_steps_asleep"), 10u * 180u);

@@ -32,9 +32,9 @@ TEST(Effects, OnlyWhatAnEntryAsksForIsOn) {
   EXPECT_EQ(names_on(scene_with(R"(, "collides": false)", "")), Names{});
   EXPECT_EQ(
       names_on(scene_with("", R"(, "gravity_m_s2": [0, 0, -9.81], "contact": { "sleep": true })")),
-      (Names{"gravity", "collision", "lasting contact", "sleep"}));
+      (Names{"gravity", "collision", "persistent contact", "sleep"}));
   EXPECT_EQ(names_on(scene_with(R"(, "friction": 0.4)", R"(, "contact": {})")),
-            (Names{"collision", "lasting contact", "friction"}));
+            (Names{"collision", "persistent contact", "friction"}));
   EXPECT_EQ(names_on(scene_with("",
                                 R"(, "drag": [{ "body": "ball", "linear_n_s_m": 1 }],
             "springs": [{ "a": { "body": "ball" }, "b": { "body": "floor" },
@@ -67,9 +67,9 @@ TEST(Effects, AnAskerIsFoundByItsLine) {
   for (const EffectUse& effect : effects_of(scene))
     if (effect.is_on()) lines[effect.name] = effect.askers.back().line;
   EXPECT_EQ(lines.at("collision"), 3);  // the ball's
-  EXPECT_EQ(lines.at("friction"), 3);
-  EXPECT_EQ(lines.at("lasting contact"), 3);
-  EXPECT_EQ(lines.at("gravity"), 4);
+  EXPECT_EQ(lines.at("friction"), 4);
+  EXPECT_EQ(lines.at("persistent contact"), 4);
+  EXPECT_EQ(lines.at("gravity"), 5);
   Scene in_memory = scene;
   in_memory.lines.clear();
   EXPECT_EQ(effects_of(in_memory)[0].askers[0].line, 0);

@@ -63,7 +63,7 @@ TEST(LinkRefusals, WhatIsRightIsAccepted) {
 
 TEST(LinkRefusals, AMistypedBodyIsNamedWithItsNeighbour) {
   expect_words(spring(R"({ "body": "bal" })", kBob),
-               {"s.json:8", "/springs/0/a/body", "no body is named 'bal'", "Did you mean 'ball'",
+               {"s.json:10", "/springs/0/a/body", "no body is named 'bal'", "Did you mean 'ball'",
                 "Bodies: wall, rail, ball, bob"});
   expect_words(joint(R"("kind": "ball", "body_a": "ball", "body_b": "bobb")"),
                {"/joints/0/body_b", "Did you mean 'bob'"});

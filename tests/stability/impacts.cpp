@@ -62,7 +62,7 @@ void zeno(const Given& given, Findings& findings) {
             (event.kind == EventKind::kRest || event.kind == EventKind::kContact))
           rest = event.time;
       }
-      const std::string name = fmt::format("e = {:g}{}", e, lasting ? ", lasting contact" : "");
+      const std::string name = fmt::format("e = {:g}{}", e, lasting ? ", persistent contact" : "");
       findings.at_most(name + ": time of rest against t_inf", std::abs(rest - t_inf),
                        2 * v_rest * e / (kG * (1 - e)), "s",
                        "what the bounces below the cut-off speed would still have taken, twice");

@@ -128,7 +128,8 @@ void scales(const Given& given, Findings& findings) {
   plot.curves.push_back(curve("x 1e-6, absolute cut-off speed", absolute));
   findings.plot(std::move(plot));
   if (!given.laws.contact_forces)
-    return findings.not_run("lasting contact", "needs the laws of a3, which nobody provides here");
+    return findings.not_run("persistent contact",
+                            "needs the laws of a3, which nobody provides here");
   struct Thing {
     const char* name;
     scene::Scene (*scene)(double);

@@ -19,15 +19,16 @@ namespace tumble::engines {
 struct RunCounters {
   std::uint64_t steps = 0, synchronisations = 0, shortened_steps = 0, integrations = 0,
                 undone_integrations = 0, derivative_evaluations = 0;
-  std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0, nudges = 0,
-                micro_impacts = 0;
+  std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0,
+                position_corrections = 0, micro_impacts = 0;
   std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0;
   std::uint64_t callback_calls = 0;
   std::array<std::uint64_t, effects::kMost> effect_calls{};  // by place in effects::all()
   std::uint64_t constraint_solves = 0, constraint_corrections = 0;
   std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0,
                 contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0,
-                contacts_ended = 0, contact_landings = 0, heap_steps = 0, friction_points = 0;
+                contacts_ended = 0, contact_activations = 0, large_island_steps = 0,
+                friction_points = 0;
   // states_kept: the most at any time
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;

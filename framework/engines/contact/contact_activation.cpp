@@ -238,7 +238,7 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
         angular_momentum_of(solution.velocities[k].angular_world, state.world_from_body, inertia);
     moving_.set_state(body, state);
   }
-  ++counters_.contact_landings;
+  ++counters_.contact_activations;
   // The first event has the energy of all; none is given where links end in, or bodies touch, what
   // is driven in different ways.
   const Vector3d driven = ImpactBodies(moving_, laws_)

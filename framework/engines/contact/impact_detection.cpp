@@ -222,7 +222,7 @@ void ImpactDetection::separate(const std::vector<Pair>& pairs) {
       const double way = -gap.distance + spacing * round;
       state.com_world += (mover == pair.first ? way : -way) * gap.normal_b_to_a_world;
       moving_.set_state(mover, state);
-      ++counters_.nudges;
+      ++counters_.position_corrections;
     }
     if (clean) return;
   }

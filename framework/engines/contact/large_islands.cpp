@@ -34,7 +34,7 @@ bool PersistentContacts::is_large(const ContactIsland& island) const {
 void PersistentContacts::report_large_islands() {
   const std::string words = fmt::format(
       "islands of more than {} bodies with more than {} impacts a step are solved in steps until "
-      "they rest (heap_steps): right to first order in the step. "
+      "they rest (large_island_steps): right to first order in the step. "
       "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every impact at its instant, and "
       "takes longer",
       kContact.few, kContact.most_located_impacts);
@@ -120,7 +120,7 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
   } else {
     options.largest_direct = 0;
   }
-  ++counters_.heap_steps;
+  ++counters_.large_island_steps;
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
   const ContactSolution solution = laws_.friction_impulses

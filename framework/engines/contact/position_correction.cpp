@@ -139,7 +139,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
     const bool open = problem.row_targets.size() > 0 &&
                       problem.row_targets.cwiseAbs().maxCoeff() > kSolverRounding * size;
     if (wrong == 0.0 && !open) return true;
-    ++counters_.nudges;
+    ++counters_.position_corrections;
     // The solver measures its answers by the farthest point, which need not move at all. Active
     // points, rods and joints are drawn together by what is of another size.
     double part = 1.0;
@@ -196,7 +196,7 @@ bool PositionCorrection::correct_large_island(const ContactIsland& island,
         wrong = std::max(wrong, geometry_.large_island_margin(pairs[k]) - gaps[k]);
     }
     if (wrong == 0.0) return true;
-    ++counters_.nudges;
+    ++counters_.position_corrections;
     const ContactSolution correction =
         solve_contacts(corrections_of(island, pairs, states, t, gaps, wrong, way, manifolds),
                        {.tolerance = kContact.correction_left_in_large_island,

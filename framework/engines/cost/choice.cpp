@@ -20,8 +20,6 @@ constexpr double kWorthTrimming = 0.9;  // of the cost: a smaller saving is not 
 // times the best cost: a method that has not fulfilled the goal by then is given up
 constexpr double kHopelessPrice = 3.0;
 constexpr int kMostWorseTrials = 2;  // runs in a row without improvement
-// errors that differ by less count as equal: the cheaper run is better
-constexpr double kAlikeErrors = 1.05;
 
 bool is_right(const CostResult& result) {
   return result.stopped_by.empty() && std::isfinite(result.error_m);

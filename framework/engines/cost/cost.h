@@ -28,6 +28,8 @@ namespace tumble::engines {
 
 /// Of the scale: a run with a larger error is no answer, and does not follow the power law yet.
 inline constexpr double kAnswer = 0.1;
+/// Errors that differ by less, as a ratio, are equal: the cheaper run is better.
+inline constexpr double kAlikeErrors = 1.05;
 /// s: runs that together have taken longer are not repeated.
 inline constexpr double kShort = 0.1;
 /// Expected cost of a run with half the step relative to the last one; and the least, where steps

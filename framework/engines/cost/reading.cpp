@@ -20,7 +20,6 @@ constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;
 constexpr double kStaysBelow = 0.6;
 // of the scale: larger errors mean that the motion was not found
 constexpr double kNoMotion = 0.3;
-constexpr double kSame = 0.02;       // errors that differ by less are equal
 constexpr double kRoundOff = 1e-10;  // of the scale: smaller errors are round-off
 // error floors: an error above this that does not decrease is wrong, not converged
 constexpr double kWrongLimit = 100.0;
@@ -37,7 +36,8 @@ bool stays(const std::vector<CostResult>& results) {
   if (results.size() < 3) return false;
   const double last = results.back().error_m;
   return std::all_of(results.end() - 3, results.end(), [last](const CostResult& result) {
-    return result.stopped_by.empty() && std::abs(result.error_m - last) <= kSame * last;
+    return result.stopped_by.empty() && result.error_m <= kAlikeErrors * last &&
+           last <= kAlikeErrors * result.error_m;
   });
 }
 

@@ -11,6 +11,7 @@
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/scene/words.h"
@@ -18,10 +19,7 @@
 namespace tumble::engines {
 namespace {
 
-// tolerance of the reference: a hundred roundings, below which no method improves
-constexpr double kTight = 1e-13;
-// of the scale: for a worse floor the duration is shortened
-constexpr double kGoodFloor = 1e-6;
+// of the scale: for a worse floor than kSixDigits the duration is shortened
 // of the scale: where half the step lowers the floor 16-fold it is lowered to this, because runs
 // reach it
 constexpr double kFineFloor = 1e-12;
@@ -153,7 +151,7 @@ double farthest(const std::vector<Frame>& found, const std::vector<Frame>& expec
 }
 
 Laws with_method(Laws laws, const std::string& word) {
-  laws.integrate_step = step_of(method_named(word), kTight);
+  laws.integrate_step = step_of(method_named(word), kSolverRounding);  // below, no method improves
   return laws;
 }
 
@@ -185,7 +183,7 @@ std::string two_steps_in_words(long steps, const Window& window) {
   return fmt::format(
       "a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its error floor is the "
       "difference to twice the step",
-      kTight, static_cast<double>(steps * window.samples) / window.duration_s);
+      kSolverRounding, static_cast<double>(steps * window.samples) / window.duration_s);
 }
 
 Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& window) {
@@ -200,7 +198,7 @@ Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& wi
     pair.what = fmt::format(
         "a run by Fehlberg 7(8) with tolerance {:.0e}; its error floor is the difference to "
         "Bulirsch-Stoer with twice the step",
-        kTight);
+        kSolverRounding);
   return pair;
 }
 
@@ -293,7 +291,7 @@ bool is_whole(const CostReference& reference, const Window& window) {
 bool take_either(const Pair& pair, const Window& window, CostReference& reference) {
   CostReference poor = reference;
   const bool is_poor = take(pair, kPoorFloor, window, poor);
-  if (take(pair, kGoodFloor, window, reference) &&
+  if (take(pair, kSixDigits, window, reference) &&
       (is_whole(reference, window) || !is_whole(poor, window)))
     return true;
   reference = poor;
@@ -314,7 +312,7 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
       by_chance || scene::asks_for(scene, [](const scene::Traits& traits) {
         return traits.looks || traits.constrains;
       });
-  const double good_floor = pushed_once_a_step ? kGoodFloor : kFineFloor;
+  const double good_floor = pushed_once_a_step ? kSixDigits : kFineFloor;
   bool confirmed = !by_chance;
   for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
     const bool is_good = confirmed && found && is_whole(reference, window) &&

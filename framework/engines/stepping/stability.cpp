@@ -395,7 +395,7 @@ void EnergyWatch::note_rise(double time, double energy, double kinetic, const Wo
 void EnergyWatch::tell(const World& world, RunCounters& counters) const {
   const double whole =
       available() +
-      (unseen(counters.heap_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) /
+      (unseen(counters.large_island_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) /
           kEnergyRises;
   for (const Rise& rise : rises_)
     counters.watch.note(RunWatch::Kind::kEnergyRises,

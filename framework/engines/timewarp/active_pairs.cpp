@@ -127,7 +127,7 @@ ActivePairs::Entry ActivePairs::entry_of(const Box& box) const {
   Entry entry;
   entry.box = box;
   double cells = 1;
-  constexpr double kFarthest = 1e9;
+  constexpr auto kFarthest = std::numeric_limits<std::int32_t>::max();
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(box.low[axis] / cell_), high = std::floor(box.high[axis] / cell_);
     cells *= high - low + 1;

@@ -91,10 +91,9 @@ double energy_lost(const Incline& incline, const Frame& from, const Frame& to) {
 
 // A flat block: friction at its base, mu m g high at most, does not lift its edge.
 scene::Scene block_on(const Incline& incline, const std::string& name, double duration, double v0) {
-  constexpr double kHalfLength = 0.5;  // m
-  const double half_height = 0.25 * kHalfLength / (1.0 + incline.mu);
+  const double half_length = 0.5, half_height = 0.25 * half_length / (1.0 + incline.mu);  // [m]
   scene::BodySpec block = ball("block", incline.m, 1.0, Vector3d::Zero(), v0 * incline.down(), 0.0);
-  block.shape = scene::BoxSpec{Vector3d(kHalfLength, kHalfLength, half_height)};
+  block.shape = scene::BoxSpec{Vector3d(half_length, half_length, half_height)};
   block.world_from_body = incline.orientation();
   return incline.scene(name, duration, block, half_height);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/engines/truths/refined_run.h"
@@ -192,8 +193,7 @@ scene::Scene CompoundPendulum::scene(const std::string& name) const {
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));
   const double I_com = I_pivot - m * d * d;
   // of I_pivot: a smaller difference is rounding, and all the mass is in one point
-  constexpr double kPoint = 1e-12;
-  const bool is_point = !(I_com > kPoint * I_pivot);
+  const bool is_point = !(I_com > engines::kSolverRounding * I_pivot);
   if (!is_point) body.inertia_body_kg_m2 = I_com * Matrix3d::Identity();
   scene.bodies.push_back(body);
   if (!is_point) {
@@ -267,11 +267,12 @@ Growth growth_to(const CompoundPendulum& pendulum, double t) {
                       pendulum.m * pendulum.g * std::sin(angle) *
                           (1.0 - pendulum.m * pendulum.d * pendulum.d / pendulum.I_pivot));
   };
-  constexpr double kAside = 1e-6;
+  // of a central difference, whose errors h^2 and eps / h are smallest together there
+  const double aside = std::cbrt(kEpsilon);
   const double angle = y(0, 0), rate = y(1, 0);
   const Eigen::RowVector2d of_force(
-      (force(angle + kAside, rate) - force(angle - kAside, rate)) / (2 * kAside),
-      (force(angle, rate + kAside) - force(angle, rate - kAside)) / (2 * kAside));
+      (force(angle + aside, rate) - force(angle - aside, rate)) / (2 * aside),
+      (force(angle, rate + aside) - force(angle, rate - aside)) / (2 * aside));
   Growth squares;
   for (const State& at : way) {
     const Eigen::Matrix2d later = y.rightCols<2>() * at.rightCols<2>().inverse();

@@ -15,12 +15,12 @@ namespace {
 
 /// Equal balls in a row along x that just touch, the first k of them moving.
 scene::Scene cradle(const Case& truth) {
-  constexpr double kRadius = 0.5;  // m: positions at whole metres are exact
   const int n = truth.input("N").integer(), moving = truth.input("k_moving").integer();
   scene::Scene scene = empty_scene(truth.id, 0.1, engines::kNegligibleSpeed);
   for (int i = 0; i < n; ++i) {
     const Vector3d velocity(i < moving ? truth.input("v").number() : 0.0, 0.0, 0.0);
-    scene.bodies.push_back(ball("ball" + std::to_string(i), truth.input("mass").number(), kRadius,
+    // a radius of 0.5 m: positions at whole metres are exact
+    scene.bodies.push_back(ball("ball" + std::to_string(i), truth.input("mass").number(), 0.5,
                                 Vector3d(i, 0, 0), velocity, truth.input("e").number()));
   }
   return scene;

@@ -5,6 +5,7 @@
 
 #include "framework/collision/first_impact.h"
 #include "framework/core/shortest_turn.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/impact_problem.h"
 
@@ -106,10 +107,10 @@ void compare_sphere_plane(const Case& truth, const Laws& laws, Comparison& compa
 // ---- toi_rod_plane -----------------------------------------------------------------------------
 
 Solid rod_of(const Case& truth) {
-  constexpr double kThickness = 1e-25;  // of the length: negligible, and yet a box
   const double half = 0.5 * truth.input("L").number(), phi0 = truth.input("phi0").number(),
                omega = truth.input("omega").number();
-  Solid rod{CollisionShape(Box{Vector3d(half, kThickness * half, kThickness * half)}), {}};
+  const double thickness = 1e-25 * half;  // negligible, and yet a box
+  Solid rod{CollisionShape(Box{Vector3d(half, thickness, thickness)}), {}};
   rod.motion.com0_world = {0.0, 0.0, truth.input("h").number()};
   rod.motion.velocity_world = {0.0, 0.0, truth.input("v_up").number()};
   rod.motion.acceleration_world = gravity(truth);
@@ -139,20 +140,19 @@ void compare_rod_plane(const Case& truth, const Laws& laws, Comparison& comparis
 /// The colliding features, in the files' words, from the separating axis: a face's normal, or the
 /// cross product of two edges.
 std::string feature_pair(const Pose& a, const Pose& b, const Vector3d& normal_world) {
-  constexpr double kParallel =
-      1e-6;  // of unit vectors; no case of the files has edges nearly parallel to faces
+  // No case of the files has edges nearly parallel to faces: six digits tell them apart.
   const Matrix3d A = a.world_from_body.toRotationMatrix(), B = b.world_from_body.toRotationMatrix();
   for (int i = 0; i < 3; ++i) {
     const std::string axis = std::to_string(i);
-    if (A.col(i).cross(normal_world).norm() < kParallel)
+    if (A.col(i).cross(normal_world).norm() < engines::kSixDigits)
       return "vertex of B / face of A with body axis " + axis;
-    if (B.col(i).cross(normal_world).norm() < kParallel)
+    if (B.col(i).cross(normal_world).norm() < engines::kSixDigits)
       return "vertex of A / face of B with body axis " + axis;
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const Vector3d axis = A.col(i).cross(B.col(j)).normalized();
-      if (axis.cross(normal_world).norm() < kParallel)
+      if (axis.cross(normal_world).norm() < engines::kSixDigits)
         return "edge of A along body axis " + std::to_string(i) + " / edge of B along body axis " +
                std::to_string(j);
     }

@@ -32,8 +32,8 @@ scene::BodySpec ball(const std::string& name, double mass, double radius, const 
 
 scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position,
                            const Vector3d& velocity) {
-  constexpr double kRadius = 0.01;  // m: has no effect
-  scene::BodySpec body = ball(name, mass, kRadius, position, velocity, 1.0);
+  const double radius_m = 0.01;  // has no effect: nothing collides
+  scene::BodySpec body = ball(name, mass, radius_m, position, velocity, 1.0);
   body.collides = false;
   return body;
 }
