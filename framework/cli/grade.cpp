@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include "framework/cli/verb.h"
+#include "framework/grading/grades/cluster.h"
 #include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/grades/grade.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/grades/output_folder.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/verdicts/plain_text.h"
 
@@ -21,10 +23,12 @@ namespace fs = std::filesystem;
 
 struct GradeWords {
   std::string id, folder, out;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 0;  // one a core
   double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
   std::string sandbox, accepted_sandbox;
+  std::string shard, on, hosts;
+  int shards = 0;
 };
 
 std::string span_of(double seconds) {
@@ -61,7 +65,55 @@ void print_table(const std::vector<grading::Grade>& grades) {
   }
 }
 
+// The words of this command for a task of a cluster, where paths mean the same from any folder.
+std::vector<std::string> words_of_task(const Context& context, const GradeWords& words,
+                                       const fs::path& out) {
+  std::vector<std::string> all = {(context.build / "bin/tumble").string(),
+                                  "grade",
+                                  words.id,
+                                  fs::canonical(words.folder).string(),
+                                  "--out",
+                                  out.string(),
+                                  "--budget-s",
+                                  fmt::format("{}", words.budget_s)};
+  if (words.no_media) all.push_back("--no-media");
+  if (!words.sandbox.empty()) all.insert(all.end(), {"--sandbox", words.sandbox});
+  if (!words.accepted_sandbox.empty())
+    all.insert(all.end(), {"--accept-sandbox", words.accepted_sandbox});
+  return all;
+}
+
+void grade_shards(const Context& context, const GradeWords& words, std::size_t total,
+                  const grading::GradeOptions& options, const fs::path& out) {
+  grading::ClusterJob job;
+  job.cluster = grading::cluster_of(words.on);
+  job.command = words_of_task(context, words, out);
+  job.root = context.root;
+  job.submissions = fs::canonical(words.folder);
+  job.out = out;
+  job.total = total;
+  job.shards = words.shards;
+  job.hosts = words.hosts;
+  job.per_host = words.jobs;
+  job.progress = options.progress;
+  job.notice = options.notice;
+  { const grading::OutputFolder check(out, words.folder, words.id); }  // refused before any job
+  grading::grade_on(job);
+}
+
+void refuse_contradictions(const GradeWords& words) {
+  if (!words.on.empty() && !words.shard.empty())
+    throw UserError("--shard", "is one part, which --on makes itself", "Leave out one of them.");
+  if (words.on.empty() && (!words.hosts.empty() || words.shards > 0))
+    throw UserError(words.hosts.empty() ? "--shards" : "--hosts", "means something with --on only",
+                    "Add --on parallel or --on slurm.");
+  if (words.on == "slurm" && !words.hosts.empty())
+    throw UserError("--hosts", "are chosen by Slurm",
+                    "Leave it out; SBATCH_PARTITION and SBATCH_NODELIST choose machines.");
+}
+
 void grade(Context& context, const GradeWords& words) {
+  refuse_contradictions(words);
   const modules::ModuleKind& kind = context.registry.find(words.id);
   const grading::Course course{context.root, context.build, &context.registry,
                                context.command_line};
@@ -70,7 +122,9 @@ void grade(Context& context, const GradeWords& words) {
   const grading::GradeProtection protection = grading::protection_of_grades(words.accepted_sandbox);
   const auto found = grading::find_submissions(words.folder, kind);
   grading::GradeOptions options;
-  options.jobs = words.jobs;
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.jobs = words.jobs > 0 ? words.jobs : cores;
+  if (!words.shard.empty()) options.shard = grading::shard_of(words.shard);
   options.budget_s = words.budget_s;
   options.media = !words.no_media;
   options.accepted_sandbox = words.accepted_sandbox;
@@ -83,13 +137,21 @@ void grade(Context& context, const GradeWords& words) {
   for (const std::string& name : found.passed_over)
     fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
   fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}; sandbox: {}\n",
-             found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string(),
-             protection.words);
+             found.all.size(), found.all.size() == 1 ? "" : "s", words.id, options.jobs,
+             out.string(), protection.words);
+  if (!words.on.empty())
+    grade_shards(context, words, found.all.size(), options, fs::weakly_canonical(out));
   const auto grades =
       grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
   print_table(grades);
+  if (options.shard) {
+    fmt::print("shard {}: {} submission{}; grade {} without --shard makes the gradebook\n",
+               words.shard, grades.size(), grades.size() == 1 ? "" : "s", words.id);
+  } else {
+    fmt::print("wrote {} and {}\n", (out / "index.html").string(),
+               (out / "gradebook.csv").string());
+  }
   if (!protection.is_official) fmt::print("{}\n", protection.note);
-  fmt::print("wrote {} and {}\n", (out / "index.html").string(), (out / "gradebook.csv").string());
   for (const auto& grade : grades) {
     if (!grade.is_final())
       context.exit = ExitCode::kOurBug;
@@ -130,6 +192,21 @@ void add_grade(CLI::App& app, Context& context) {
               "Grade in this kind although the policy for grades refuses it; every result says "
               "that it is not official")
       .type_name("KIND");
+  verb.option("--on", words->on,
+              "Grade on other machines: slurm (an array job) or parallel (GNU parallel over ssh). "
+              "Course, submissions, results and key lie in a folder that all share")
+      .type_name("WHAT");
+  verb.option("--shards", words->shards,
+              "With --on: in how many parts; default: ten submissions each, at most 1,000")
+      .between(1, 1000000);
+  verb.option("--hosts", words->hosts,
+              "With --on parallel: its words for --sshlogin, e.g. ta@lab1,ta@lab2; default: this "
+              "machine")
+      .type_name("HOSTS");
+  verb.option("--shard", words->shard,
+              "Grade only this part of the class, e.g. 2/8, into OUT/.shards; the same command "
+              "without it takes over what is finished")
+      .type_name("K/N");
   verb.footer(
       "Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 "
       "something to repair, "

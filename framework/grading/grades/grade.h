@@ -10,6 +10,7 @@
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/grades/media.h"
+#include "framework/grading/grades/shard.h"
 #include "framework/grading/verdicts/verdict.h"
 
 namespace tumble::grading {
@@ -98,6 +99,8 @@ struct GradeProgress {
 };
 
 struct GradeOptions {
+  // only these of the submissions, into OUT/.shards
+  std::optional<Shard> shard;
   double budget_s = 60.0;  // for all tests of a submission together: TimeBudget
   // submissions graded at the same time, each in a separate process
   int jobs = 1;

@@ -42,6 +42,7 @@ struct Work {
   GradeRecord record;  // the final one
   std::vector<std::string> remarks;
   double seconds = 0.0;
+  bool is_of_shard = false;  // graded by a shard, taken over now
 };
 
 class Batch {
@@ -57,16 +58,23 @@ class Batch {
     require_rubric_of_judge(course_, id);
     rubric_ = rubric_of(course_, id);
     refuse_key_in(out);
-    output_.emplace(out, submissions, id);
+    out_ = out;
+    if (options.shard) fs::remove(done_file(out, *options.shard));
+    output_.emplace(options.shard ? shard_folder(out, *options.shard) : out, submissions, id);
     key_ = machine_key();
     if (!key_.notice.empty()) notice(key_.notice);
   }
 
   std::vector<Grade> run(std::vector<Submission> submissions) {
+    std::vector<std::string> folders = folders_for(submissions);
+    if (options_.shard) keep_own(submissions, folders);
     read_once(submissions);
-    plan(submissions);
+    plan(submissions, folders);
     grade_open_ones();
-    return write_overview();
+    if (options_.shard) return end_shard();
+    std::vector<Grade> grades = write_overview();
+    remove_shards(output_->path());
+    return grades;
   }
 
  private:
@@ -105,41 +113,105 @@ class Batch {
     }
   }
 
+  // Names of folders are unique, but a student may have two flat files: each gets its own folder.
+  static std::vector<std::string> folders_for(const std::vector<Submission>& submissions) {
+    std::set<std::string> taken;
+    std::vector<std::string> folders;
+    for (const Submission& submission : submissions) {
+      std::string folder = folder_of(submission.name);
+      for (int again = 2; !taken.insert(folder).second; ++again)
+        folder = folder_of(submission.name + '\0' + std::to_string(again));
+      folders.push_back(folder);
+    }
+    return folders;
+  }
+
+  void keep_own(std::vector<Submission>& submissions, std::vector<std::string>& folders) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < submissions.size(); ++i) {
+      if (!options_.shard->holds(i)) continue;
+      std::swap(submissions[kept], submissions[i]);
+      std::swap(folders[kept++], folders[i]);
+    }
+    submissions.resize(kept);
+    folders.resize(kept);
+  }
+
   // Reuses earlier results that are complete, signed and unchanged.
-  void plan(const std::vector<Submission>& submissions) {
+  void plan(const std::vector<Submission>& submissions, const std::vector<std::string>& folders) {
     const std::string judging = digest(grader_digest(course_, id_, options_.budget_s) +
                                        protection_.words),
                       pictures = pictures_digest(course_, id_, options_);
-    std::set<std::string> folders;
-    for (const Submission& submission : submissions) {
-      // Names of folders are unique, but a student may have two flat files: each gets its own
-      // folder.
-      std::string folder = folder_of(submission.name);
-      for (int again = 2; !folders.insert(folder).second; ++again)
-        folder = folder_of(submission.name + '\0' + std::to_string(again));
+    for (std::size_t i = 0; i < submissions.size(); ++i) {
+      const Submission& submission = submissions[i];
       Work work{&submission,
-                folder,
+                folders[i],
                 {submission_digest(submission), judging, rubric_digest(rubric_), pictures},
                 {},
                 {},
                 {},
                 0.0};
-      if (output_->owns(folder)) work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
+      if (output_->owns(work.folder))
+        work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
+      if (options_.shard && !work.earlier.record) read_result_of_class(work);
       work_.push_back(std::move(work));
     }
-    output_->claim(folders);
+    output_->claim({folders.begin(), folders.end()});
+    if (!options_.shard) take_over_from_shards();
     remark_equal_files();
     report_doubles();
     report_distrusted();
     for (Work& work : work_) {
       if (is_current(work)) {
         work.record = *work.earlier.record;
-        work.record.grade.taken_over = true;
+        work.record.grade.taken_over = !work.is_of_shard;
         ++done_;
       } else {
         open_.push_back(&work);
       }
     }
+  }
+
+  // For a shard the earlier result is that of the class, and where it is current nothing is to be
+  // done.
+  void read_result_of_class(Work& work) const {
+    const fs::path place = out_ / work.folder;
+    if (fs::is_directory(fs::symlink_status(place)))
+      work.earlier = read_earlier_run(place, id_, key_.bytes);
+  }
+
+  // What a shard has finished is put in place as if this process had graded it, changes since the
+  // result before included.
+  void take_over_from_shards() {
+    const std::vector<fs::path> shards = shard_folders(output_->path());
+    for (Work& work : work_) {
+      if (is_current(work)) continue;
+      for (const fs::path& shard : shards) {
+        if (!fs::is_directory(fs::symlink_status(shard / work.folder))) continue;
+        Work made = work;
+        made.earlier = read_earlier_run(shard / work.folder, id_, key_.bytes);
+        if (!is_current(made)) {
+          if (!made.earlier.problem.empty()) work.earlier.problem = made.earlier.problem;
+          continue;
+        }
+        fs::create_directories(draft_of(work));
+        put_in_place(shard / work.folder, place_of(work), draft_of(work) / "old");
+        fs::remove_all(draft_of(work));
+        work.earlier = made.earlier;
+        work.is_of_shard = true;
+        break;
+      }
+    }
+  }
+
+  // A shard has no gradebook: only the class has.
+  std::vector<Grade> end_shard() const {
+    std::vector<Grade> grades;
+    for (const Work& work : work_) grades.push_back(work.record.grade);
+    write_whole(done_file(out_, *options_.shard),
+                fmt::format("{} of {} submissions graded, {} were current\n", fresh_, work_.size(),
+                            work_.size() - fresh_));
+    return grades;
   }
 
   // Identical files under two names get a remark, which students do not see because it names
@@ -268,7 +340,9 @@ class Batch {
   // Keeps the pictures of an earlier run if none are made now: their files always, and on the page
   // if the earlier record describes them.
   void keep_media(const Work& work, Grade& grade, GradeKey& key) const {
-    const fs::path from = place_of(work) / "media", to = made_of(work) / "media";
+    fs::path from = place_of(work) / "media";
+    if (options_.shard && !fs::exists(from)) from = out_ / work.folder / "media";
+    const fs::path to = made_of(work) / "media";
     if (!fs::is_directory(fs::symlink_status(from))) return;
     fs::create_directories(to);
     for (const auto& entry : fs::directory_iterator(from)) {
@@ -420,6 +494,7 @@ class Batch {
   const std::string id_;
   const modules::ModuleKind& kind_;
   const GradeOptions& options_;
+  fs::path out_;  // of the class, also for a shard
   Rubric rubric_;
   std::optional<OutputFolder> output_;
   MachineKey key_;

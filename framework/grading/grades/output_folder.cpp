@@ -186,6 +186,7 @@ void OutputFolder::refuse_foreign_files() const {
     if (has_manifest && fs::is_regular_file(status) &&
         (name == kManifest || is_one_of(name, kOverview)))
       continue;
+    if (fs::is_directory(status) && name == kShards) continue;
     const bool is_drafts =
         name.starts_with(kDraft) && owns(name.substr(std::string_view(kDraft).size()));
     if (fs::is_directory(status) && is_drafts) continue;
@@ -225,6 +226,23 @@ void OutputFolder::sweep_drafts() const {
     const bool is_ours = is_one_of(name, kOverview) || is_draft_of(name, kManifest);
     if (is_ours && name.starts_with('.')) fs::remove(entry.path(), ignored);
   }
+}
+
+void remove_results(const fs::path& out) {
+  std::error_code ignored;
+  try {
+    std::ifstream in(out / kManifest);
+    for (const std::string folder : nlohmann::json::parse(in).at("folders")) {
+      if (!is_one_component(folder) || !is_there(out / folder)) continue;
+      refuse_foreign_in(out / folder);
+      fs::remove_all(out / folder, ignored);
+      fs::remove_all(out / draft_name(folder), ignored);
+    }
+    for (const char* file : {kManifest, kLock}) fs::remove(out / file, ignored);
+  } catch (const std::exception&) {
+    // not ours, or foreign files in it: it stays
+  }
+  fs::remove(out, ignored);  // only when it is empty
 }
 
 void OutputFolder::claim(const std::set<std::string>& folders) {

@@ -3,6 +3,7 @@
 ///   OUT/.tumble-grade.json   the assignment, and the folders that this grader has created here
 ///   OUT/.tumble-lock         held while a grading runs; the kernel releases it when the last of
 ///   its processes has ended
+///   OUT/.shards/             results of parts of the class (shard.h)
 /// If OUT contains any other file, nothing is written.
 #pragma once
 
@@ -51,5 +52,11 @@ class OutputFolder {
 
 /// Name of the draft of a submission's folder, beside it.
 std::string draft_name(const std::string& folder);
+
+/// Folder in OUT where parts of a class are graded (shard.h).
+inline constexpr const char* kShards = ".shards";
+
+/// Removes an output folder and the results in it, but no file that this grader did not write.
+void remove_results(const std::filesystem::path& out);
 
 }  // namespace tumble::grading
