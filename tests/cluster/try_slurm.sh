@@ -72,7 +72,7 @@ grader=$!
 until [ "$(find "$work/lost/.shards" -name record.json 2>/dev/null | wc -l)" -ge $((count / 4)) ]; do sleep 0.2; done
 kill -9 "$(cat "$work/n2.pid")"
 pkill -9 -f "slurmstepd.*" || true   # every task dies as on a machine without power
-pkill -9 -f -- "--out $work/lost .*--shard" || true
+pkill -9 -f -- "--out $work/lost .*--shard [0-9]" || true
 sleep 20
 start_node n2
 wait $grader || true
