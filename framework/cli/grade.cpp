@@ -1,19 +1,14 @@
 // tumble grade a1 FOLDER: a folder of submissions, graded.
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include "framework/cli/verb.h"
+#include "framework/cli/grading_run.h"
 #include "framework/grading/grades/cluster.h"
-#include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/grades/grade.h"
-#include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/grades/output_folder.h"
-#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::cli {
@@ -31,21 +26,6 @@ struct GradeWords {
   int shards = 0;
 };
 
-std::string span_of(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
-void tell(const grading::GradeProgress& progress) {
-  std::string line = fmt::format("[{}/{}]", progress.done, progress.total);
-  if (!progress.finished.empty()) line += ' ' + grading::plain_name(progress.finished);
-  if (progress.done < progress.total)
-    line += progress.left_s >= 0.0 ? " · about " + span_of(progress.left_s) + " left" : " ...";
-  fmt::print(stderr, "{}\n", line);
-  std::fflush(stderr);
-}
-
 void print_table(const std::vector<grading::Grade>& grades) {
   std::size_t widest = 10;
   for (const auto& grade : grades)
@@ -60,9 +40,21 @@ void print_table(const std::vector<grading::Grade>& grades) {
     for (const auto& remark : grade.remarks) fmt::print("  remark: {}", remark);
     fmt::print("\n");
     if (grade.taken_over) continue;
-    for (const auto& c : grade.changes)
-      fmt::print("{:<{}}    {}: {} -> {} ({})\n", "", widest, c.test, c.before, c.after, c.reason);
+    print_changes(grade.changes, widest + 4);
   }
+}
+
+// Nobody is asked here: `regrade` is the verb that may lower.
+bool keep_scores(const std::string& id, const fs::path& out,
+                 const std::vector<grading::Lowering>& lowerings) {
+  for (const grading::Lowering& lowering : lowerings)
+    fmt::print(stderr, "not lowered: {} ({})\n", grading::plain_name(lowering.name),
+               lowering.change);
+  fmt::print(stderr,
+             "These files are the same as before, so their scores stay. To see why, and to decide: "
+             "tumble regrade {} {}\n",
+             id, out.string());
+  return false;
 }
 
 // The words of this command for a task of a cluster, where paths mean the same from any folder.
@@ -114,50 +106,34 @@ void refuse_contradictions(const GradeWords& words) {
 
 void grade(Context& context, const GradeWords& words) {
   refuse_contradictions(words);
-  const modules::ModuleKind& kind = context.registry.find(words.id);
-  const grading::Course course{context.root, context.build, &context.registry,
-                               context.command_line};
-  grading::judge_of(course, words.id);  // refused before any submission is read
-  if (!words.sandbox.empty()) grading::choose_sandbox(words.sandbox);
-  const grading::GradeProtection protection = grading::protection_of_grades(words.accepted_sandbox);
-  const auto found = grading::find_submissions(words.folder, kind);
-  grading::GradeOptions options;
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  options.jobs = words.jobs > 0 ? words.jobs : cores;
-  if (!words.shard.empty()) options.shard = grading::shard_of(words.shard);
-  options.budget_s = words.budget_s;
-  options.media = !words.no_media;
-  options.accepted_sandbox = words.accepted_sandbox;
-  options.progress = tell;
   const fs::path out =
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
-  options.notice = [](const std::string& sentence) {
-    fmt::print(stderr, "{}\n", grading::plain_text(sentence));
-  };
-  for (const std::string& name : found.passed_over)
-    fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
-  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}; sandbox: {}\n",
-             found.all.size(), found.all.size() == 1 ? "" : "s", words.id, options.jobs,
-             out.string(), protection.words);
+  GradingRequest request{words.id, words.folder, out, words.sandbox, {}};
+  request.options.jobs = words.jobs > 0 ? words.jobs : default_jobs();
+  if (!words.shard.empty()) request.options.shard = grading::shard_of(words.shard);
   if (!words.on.empty())
-    grade_shards(context, words, found.all.size(), options, fs::weakly_canonical(out));
-  const auto grades =
-      grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
+    request.before = [&](std::size_t total, const grading::GradeOptions& options) {
+      grade_shards(context, words, total, options, fs::weakly_canonical(fs::absolute(out)));
+    };
+  request.options.budget_s = words.budget_s;
+  request.options.media = !words.no_media;
+  request.options.accepted_sandbox = words.accepted_sandbox;
+  request.options.may_lower = [&](const std::vector<grading::Lowering>& lowerings) {
+    return keep_scores(words.id, out, lowerings);
+  };
+  const auto grades = run_grading(context, request);
   print_table(grades);
-  if (options.shard) {
+  for (const auto& grade : grades)
+    if (!grade.is_official) {
+      fmt::print("These are not official grades: {}\n", grade.sandbox);
+      break;
+    }
+  if (request.options.shard)
     fmt::print("shard {}: {} submission{}; grade {} without --shard makes the gradebook\n",
                words.shard, grades.size(), grades.size() == 1 ? "" : "s", words.id);
-  } else {
+  else
     fmt::print("wrote {} and {}\n", (out / "index.html").string(),
                (out / "gradebook.csv").string());
-  }
-  if (!protection.is_official) fmt::print("{}\n", protection.note);
-  for (const auto& grade : grades) {
-    if (!grade.is_final())
-      context.exit = ExitCode::kOurBug;
-    else if (!grade.has_score() && context.exit == ExitCode::kFine)
-      context.exit = ExitCode::kCheckFailed;
-  }
 }
 
 }  // namespace

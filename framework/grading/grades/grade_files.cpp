@@ -330,29 +330,4 @@ void write_grade(const modules::ModuleKind& kind, const Grade& grade, const Grad
               record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
 }
 
-std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
-  Json ledger;
-  ledger["assignment"] = id;
-  ledger["version"] = kProgramVersion;
-  ledger["submissions"] = Json::array();
-  for (const GradeRecord& record : records) {
-    const auto results = record.files.find("results.json");
-    ledger["submissions"].push_back(
-        {{"name", plain_name(record.grade.name)},
-         {"folder", record.grade.folder},
-         {"submission", record.key.submission},
-         {"judging", record.key.judging},
-         {"rubric", record.key.rubric},
-         {"results", results == record.files.end() ? "missing" : results->second},
-         {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)},
-         {"final", record.grade.is_final()},
-         {"sandbox", record.grade.sandbox},
-         {"official", record.grade.is_official},
-         {"remarks", record.grade.remarks},
-         {"change", record.grade.change},
-         {"changes", changes_json(record.grade.changes)}});
-  }
-  return dumped(ledger);
-}
-
 }  // namespace tumble::grading

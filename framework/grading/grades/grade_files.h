@@ -49,7 +49,4 @@ std::map<std::string, std::string> digests_below(const std::filesystem::path& fo
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
                  const std::filesystem::path& folder, const std::string& machine_key);
 
-/// ledger.json over all submissions.
-std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records);
-
 }  // namespace tumble::grading

@@ -25,8 +25,9 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = ".tumble-grade.json";
 constexpr const char* kLock = ".tumble-lock";
 constexpr const char* kDraft = ".making-";
-constexpr std::array<std::string_view, 4> kOverview = {"index.html", "gradebook.csv", "ledger.json",
-                                                       "times.json"};
+constexpr std::array<std::string_view, 8> kOverview = {
+    "index.html",    "gradebook.csv", "ledger.jsonl",  "times.json",
+    "standing.json", "class.html",    "pictures.html", "similar.html"};
 constexpr std::array<std::string_view, 3> kOfASubmission = {"index.html", "results.json",
                                                             "record.json"};
 const char* const kElsewhere = "Give --out a folder of its own, or one that does not exist yet.";
@@ -108,8 +109,30 @@ bool holder_lives(int lock) {
 
 std::string draft_name(const std::string& folder) { return kDraft + folder; }
 
-OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id)
-    : id_(id) {
+RunSettings settings_of(const fs::path& out) {
+  const fs::path file = out / kManifest;
+  try {
+    std::ifstream in(file);
+    if (!in)
+      throw UserError(shown(out), "is no folder of results: it has no " + std::string(kManifest),
+                      "Name the folder that was given to grade as --out.");
+    const auto json = nlohmann::json::parse(in);
+    RunSettings settings;
+    settings.assignment = json.at("assignment");
+    settings.submissions = json.at("submissions").get<std::string>();
+    settings.budget_s = json.at("budget_s");
+    settings.media = json.at("media");
+    settings.policy = json.at("policy").get<std::string>();
+    return settings;
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(shown(file), "cannot be read as the list of a folder of results",
+                    "Run tumble grade with this folder as --out once.");
+  }
+}
+
+OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id,
+                           const RunSettings& settings)
+    : id_(id), settings_(settings) {
   std::error_code failed;
   path_ = fs::weakly_canonical(fs::absolute(out), failed);
   if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
@@ -249,8 +272,14 @@ void OutputFolder::claim(const std::set<std::string>& folders) {
   for (const std::string& folder : folders)
     if (!owns(folder) && is_there(path_ / folder)) refuse_foreign(path_ / folder);
   folders_.insert(folders.begin(), folders.end());
-  const nlohmann::ordered_json manifest = {{"assignment", id_}, {"folders", folders_}};
-  write_whole(path_ / kManifest, manifest.dump(1) + '\n');
+  const nlohmann::ordered_json manifest = {{"assignment", id_},
+                                           {"submissions", settings_.submissions.string()},
+                                           {"budget_s", settings_.budget_s},
+                                           {"media", settings_.media},
+                                           {"policy", settings_.policy.string()},
+                                           {"folders", folders_}};
+  write_whole(path_ / kManifest,
+              manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
 }  // namespace tumble::grading
