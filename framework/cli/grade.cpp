@@ -19,7 +19,7 @@ struct GradeWords {
   int jobs = default_jobs();
   double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
-  std::string sandbox, accepted_sandbox;
+  std::string sandbox, accepted_sandbox, policy;
 };
 
 void print_table(const std::vector<grading::Grade>& grades) {
@@ -56,7 +56,7 @@ bool keep_scores(const std::string& id, const fs::path& out,
 void grade(Context& context, const GradeWords& words) {
   const fs::path out =
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
-  GradingRequest request{words.id, words.folder, out, words.sandbox, {}};
+  GradingRequest request{words.id, words.folder, out, words.sandbox, words.policy, {}};
   request.options.jobs = words.jobs;
   request.options.budget_s = words.budget_s;
   request.options.media = !words.no_media;
@@ -98,6 +98,11 @@ void add_grade(CLI::App& app, Context& context) {
   verb.flag(
       "--no-media", words->no_media,
       "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.option(
+          "--policy", words->policy,
+          "Due dates, late days, penalties, attempts, groups and the roster; the gradebook then "
+          "has points before and after, and why")
+      .type_name("FILE.json");
   verb.option("--sandbox", words->sandbox,
               "namespaces, landlock or bare; default: the strongest that this machine has (tumble "
               "doctor)")

@@ -14,6 +14,7 @@ struct GradingRequest {
   std::string id;                     // of the assignment
   std::filesystem::path folder, out;  // of submissions, of results
   std::string sandbox;                // a kind; empty: the strongest
+  std::filesystem::path policy;       // policy.json; empty: none
   grading::GradeOptions options;      // progress and notice are set by run_grading
 };
 
