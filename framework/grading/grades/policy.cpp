@@ -143,7 +143,8 @@ double penalty_percent(const Policy& policy, int days, int free) {
 }
 
 double points_after(double points, double percent) {
-  return std::max(0.0, points * (100.0 - std::clamp(percent, 0.0, 100.0)) / 100.0);
+  const double left = points * (100.0 - std::clamp(percent, 0.0, 100.0)) / 100.0;
+  return std::clamp(left, 0.0, std::max(0.0, points));  // rounding may exceed `points`
 }
 
 std::vector<Standing> apply_policy(const Policy& policy, const std::vector<Person>& roster,
