@@ -263,6 +263,12 @@ report::Page similar_page(const modules::ModuleKind& kind, const std::vector<Nam
       "A small assignment has few right answers: what is alike here is a reason to look and to "
       "ask, "
       "and no proof of anything.");
+  if (sources.size() > kMostForEveryPair)
+    page.paragraph(
+        fmt::format("With more than {} submissions each is listed with those that it is most like, "
+                    "not with every other that it is like.",
+                    kMostForEveryPair),
+        Look::kMuted);
   constexpr std::size_t kMost = 100;
   report::Table table{"", {{"Submission"}, {"and"}, {"Alike", true}}, {}};
   for (const SimilarPair& pair : pairs) {
