@@ -21,7 +21,7 @@ struct GradeWords {
   int jobs = 0;  // one a core
   double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
-  std::string sandbox, accepted_sandbox;
+  std::string sandbox, accepted_sandbox, policy;
   std::string shard, on, hosts;
   int shards = 0;
 };
@@ -108,7 +108,7 @@ void grade(Context& context, const GradeWords& words) {
   refuse_contradictions(words);
   const fs::path out =
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
-  GradingRequest request{words.id, words.folder, out, words.sandbox, {}};
+  GradingRequest request{words.id, words.folder, out, words.sandbox, words.policy, {}};
   request.options.jobs = words.jobs > 0 ? words.jobs : default_jobs();
   if (!words.shard.empty()) request.options.shard = grading::shard_of(words.shard);
   if (!words.on.empty())
@@ -160,6 +160,11 @@ void add_grade(CLI::App& app, Context& context) {
   verb.flag(
       "--no-media", words->no_media,
       "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.option(
+          "--policy", words->policy,
+          "Due dates, late days, penalties, attempts, groups and the roster; the gradebook then "
+          "has points before and after, and why")
+      .type_name("FILE.json");
   verb.option("--sandbox", words->sandbox,
               "namespaces, landlock or bare; default: the strongest that this machine has (tumble "
               "doctor)")

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/grading/grades/class_files.h"
 #include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/sandbox/protection.h"
@@ -30,6 +31,13 @@ void tell(const grading::GradeProgress& progress) {
   std::fflush(stderr);
 }
 
+// Nobody gets 0 points in silence: who has no score, and why.
+void tell_standings(const fs::path& out) {
+  for (const std::string& sentence :
+       grading::what_needs_a_look(grading::read_standings(out / grading::kStandingFile)))
+    fmt::print(stderr, "look: {}\n", sentence);
+}
+
 void set_exit(Context& context, const std::vector<grading::Grade>& grades) {
   for (const auto& grade : grades) {
     if (!grade.is_final())
@@ -50,12 +58,19 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   grading::judge_of(course, request.id);  // refused before any submission is read
   if (!request.sandbox.empty()) grading::choose_sandbox(request.sandbox);
   grading::GradeOptions options = request.options;
+  std::optional<grading::PolicyFile> policy;
+  if (!request.policy.empty()) policy = grading::read_policy(request.policy, request.id);
+  if (policy) options.policy = fs::absolute(request.policy);
   const grading::GradeProtection protection =
       grading::protection_of_grades(options.accepted_sandbox);
   const auto found = grading::find_submissions(request.folder, kind);
   options.progress = tell;
   options.notice = [](const std::string& sentence) {
     fmt::print(stderr, "{}\n", grading::plain_text(sentence));
+  };
+  options.overview = [&](const fs::path& out, const std::vector<grading::Grade>& grades) {
+    grading::write_class_files(course, kind, request.folder, policy ? &*policy : nullptr, out,
+                               grades);
   };
   for (const std::string& name : found.passed_over)
     fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
@@ -65,6 +80,7 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   if (request.before) request.before(found.all.size(), options);
   const auto grades =
       grading::grade_submissions(course, request.id, found, fs::absolute(request.out), options);
+  if (policy) tell_standings(request.out);
   set_exit(context, grades);
   return grades;
 }

@@ -15,6 +15,7 @@ struct GradingRequest {
   std::string id;                     // of the assignment
   std::filesystem::path folder, out;  // of submissions, of results
   std::string sandbox;                // a kind; empty: the strongest
+  std::filesystem::path policy;       // policy.json; empty: none
   grading::GradeOptions options;      // progress and notice are set by run_grading
   // what runs before this process grades, such as shards on other machines; may be empty
   std::function<void(std::size_t submissions, const grading::GradeOptions& options)> before = {};

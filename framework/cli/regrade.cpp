@@ -78,11 +78,10 @@ void regrade(Context& context, const RegradeWords& words) {
   if (!fs::is_directory(folder))
     throw UserError(folder.string(), "is where the submissions were, and is no folder now",
                     "Say where they are with --submissions FOLDER.");
-  GradingRequest request{words.id, folder, words.out, words.sandbox, {}};
+  GradingRequest request{words.id, folder, words.out, words.sandbox, before.policy, {}};
   request.options.jobs = words.jobs;
   request.options.budget_s = before.budget_s;
   request.options.media = before.media;
-  request.options.policy = before.policy;
   request.options.accepted_sandbox = words.accepted_sandbox;
   request.options.only = words.only;
   request.options.again = words.again;

@@ -19,6 +19,7 @@ void add_verbs(CLI::App& app, Context& context);
 
 void add_audit(CLI::App& app, Context& context);
 void add_battery(CLI::App& app, Context& context);
+void add_class(CLI::App& app, Context& context);
 void add_cost(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);

@@ -16,6 +16,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_grade(app, context);
   add_regrade(app, context);
   add_ledger(app, context);
+  add_class(app, context);
   add_audit(app, context);
   add_doctor(app, context);
   add_inspect(app, context);

@@ -9,7 +9,7 @@
 
 namespace tumble::grading {
 
-struct Work {
+struct GradedWork {
   const Submission* submission = nullptr;
   std::string folder;
   GradeKey key;
@@ -28,13 +28,13 @@ using Notice = std::function<void(const std::string& sentence)>;
 std::vector<std::string> folders_for(const std::vector<Submission>& submissions);
 
 /// Identical files under two names get a remark, which students do not see because it names others.
-void remark_equal_files(std::vector<Work>& all);
+void remark_equal_files(std::vector<GradedWork>& all);
 
 /// Two submissions of one name, for example a folder and a flat file: two rows of one student, of
 /// which a gradebook keeps the last. They get a remark and a notice.
-void report_doubles(std::vector<Work>& all, const Notice& notice);
+void report_doubles(std::vector<GradedWork>& all, const Notice& notice);
 
 /// A notice for each of the first earlier results that are not reused, with the reason.
-void report_distrusted(const std::vector<Work>& all, const Notice& notice);
+void report_distrusted(const std::vector<GradedWork>& all, const Notice& notice);
 
 }  // namespace tumble::grading

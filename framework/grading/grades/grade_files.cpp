@@ -51,18 +51,6 @@ bool starts_a_formula(const std::string& text) {
   return false;
 }
 
-// A CSV cell: one line, quoted if necessary, and never a formula.
-std::string csv_cell(const std::string& raw) {
-  std::string text = plain_name(raw);
-  if (starts_a_formula(text)) text.insert(0, "'");
-  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') &&
-                        !text.ends_with(' ');
-  if (is_plain) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
 Json media_json(const SceneMedia& media) {
   Json checks = Json::array();
   for (const auto& c : media.checks)
@@ -234,6 +222,21 @@ bool is_points_row(std::string name) {
 
 }  // namespace
 
+std::string csv_cell(const std::string& raw) {
+  std::string text = plain_name(raw);
+  if (starts_a_formula(text)) text.insert(0, "'");
+  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') &&
+                        !text.ends_with(' ');
+  if (is_plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_name(const std::string& name) {
+  return csv_cell(is_points_row(name) ? "folder " + name : name);
+}
+
 std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades) {
   // Another column than that of the official grades: Canvas would enter these there.
   const bool is_official = std::all_of(grades.begin(), grades.end(),
@@ -245,9 +248,7 @@ std::string gradebook_csv(const std::string& assignment_title, const std::vector
   for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
   text += "    Points Possible,,,," + points_text(possible) + "\n";
   for (const Grade& grade : grades) {
-    // The name of such a student would be read as the row of points.
-    const std::string name =
-        csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
+    const std::string name = csv_name(grade.name);
     text += name + "," + grade.student_id + "," + name + ",," +
             (grade.has_score() ? points_text(grade.score) : "") + "\n";
   }

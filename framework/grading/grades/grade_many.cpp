@@ -36,6 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using Work = GradedWork;
 
 class Batch {
  public:
