@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* kHonest = "honest";
+constexpr std::size_t kNamed = 5;                    // attacks that a fault of all of them names
 constexpr double kLongest = 3600.0;                  // s of one grading of many
 constexpr std::uintmax_t kLargestOutput = 8u << 20;  // bytes of a submission's results
 
@@ -97,12 +98,9 @@ class Batch {
 
   void fault(AttackReport& report, const std::string& what) const {
     std::string names;
-    for (const Attack* attack : attacks_) names += (names.empty() ? "" : " ") + attack->name;
-    report.faults.push_back(options_.sandbox + ", " + id() + ": " + what +
-                            (attacks_.size() > 1 ? " (by one of these; tumble attack NAME tries "
-                                                   "them one by one: " +
-                                                       names + ")"
-                                                 : " (by " + names + ")"));
+    for (const Attack* attack : attacks_) names += " " + attack->name;
+    if (attacks_.size() > kNamed) names = fmt::format(" one of {} attacks", attacks_.size());
+    report.faults.push_back(options_.sandbox + ", " + id() + ": " + what + " (by" + names + ")");
   }
 
   void name_places() {
