@@ -113,7 +113,7 @@ grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) 
 }
 
 // A flawed submission is a student's file: its unchanged part is the stub. What CMake says of
-// solutions is harmless.
+// solutions is harmless. Attacks hold no solution, but the same system calls as the sandbox.
 std::vector<grading::PrivateFile> private_files(const Context& context,
                                                 const std::vector<std::string>& published) {
   std::vector<grading::PrivateFile> files;
@@ -122,7 +122,8 @@ std::vector<grading::PrivateFile> private_files(const Context& context,
     const fs::path file = entry.path().lexically_relative(context.root),
                    folder = file.parent_path().filename();
     if (!entry.is_regular_file() || file.filename() == "CMakeLists.txt" ||
-        folder == "flawed_submission" || is_published(context, published, file))
+        folder == "flawed_submission" || *std::next(file.begin()) == "attacks" ||
+        is_published(context, published, file))
       continue;
     // Once a reference is public, the parts that its wrong and alternative versions share with it
     // are public too.

@@ -17,6 +17,7 @@ struct Context : Command {
 /// Declares every verb (verbs.cpp).
 void add_verbs(CLI::App& app, Context& context);
 
+void add_attack(CLI::App& app, Context& context);
 void add_audit(CLI::App& app, Context& context);
 void add_battery(CLI::App& app, Context& context);
 void add_class(CLI::App& app, Context& context);

@@ -18,6 +18,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_ledger(app, context);
   add_class(app, context);
   add_audit(app, context);
+  add_attack(app, context);
   add_doctor(app, context);
   add_inspect(app, context);
   add_handouts(app, context);
