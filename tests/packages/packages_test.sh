@@ -14,11 +14,13 @@ course=$(echo "$folder"/made/tumble-course_*.deb) grader=$(echo "$folder"/made/t
 unset TUMBLE_ROOT
 
 version=$(dpkg-deb -f "$course" Version)
-dpkg-deb -f "$grader" Depends | grep -qF "tumble-course (= $version)" || fail "the grader does not depend on its own course"
-for package in 'g++' libeigen3-dev; do dpkg-deb -f "$course" Depends | grep -qF "$package" || fail "the course does not depend on $package"; done
-dpkg-deb -c "$grader" | awk '{ print $6 }' | grep -vE '^\./(opt/(tumble-grader/.*)?)?$' && fail "the grader has files outside /opt/tumble-grader"
-dpkg-deb -c "$grader" | grep -qE '^drwxr-x--- .* \./opt/tumble-grader/$' || fail "/opt/tumble-grader is open to everybody"
-dpkg-deb -c "$course" | awk '{ print $6 }' | grep -E 'solutions_private|judge_|reference|mutants|hidden|\.slip$' && fail "the course has a private file"
+grep -qF "tumble-course (= $version)" <<<"$(dpkg-deb -f "$grader" Depends)" || fail "the grader does not depend on its own course"
+for package in 'g++' libeigen3-dev; do grep -qF "$package" <<<"$(dpkg-deb -f "$course" Depends)" || fail "the course does not depend on $package"; done
+# Into files: grep -q leaves early, and under pipefail a writer that meets a closed pipe makes a right listing wrong.
+dpkg-deb -c "$grader" >"$folder/grader" && dpkg-deb -c "$course" >"$folder/course"
+awk '{ print $6 }' "$folder/grader" | grep -vE '^\./(opt/(tumble-grader/.*)?)?$' && fail "the grader has files outside /opt/tumble-grader"
+grep -qE '^drwxr-x--- .* \./opt/tumble-grader/$' "$folder/grader" || fail "/opt/tumble-grader is open to everybody"
+awk '{ print $6 }' "$folder/course" | grep -E 'solutions_private|/judge_a|_reference|mutants|hidden|\.slip$' && fail "the course has a private file"
 
 mkdir "$folder/root" && dpkg-deb -x "$course" "$folder/root"
 tumble=$folder/root/usr/bin/tumble
