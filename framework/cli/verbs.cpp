@@ -7,6 +7,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_demo(app, context);
   add_check(app, context);
   add_watch(app, context);
+  add_start(app, context);
   add_run(app, context);
   add_poke(app, context);
   add_engines(app, context);
@@ -23,6 +24,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_inspect(app, context);
   add_handouts(app, context);
   add_release(app, context);
+  add_package(app, context);
   add_truths(app, context);
   add_battery(app, context);
 }
