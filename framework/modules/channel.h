@@ -1,8 +1,8 @@
 /// Messages over a pair of file descriptors, with a deadline and a size limit.
 ///
-/// The judge's end numbers each of its messages by lot, and takes only answers that carry the number
-/// of its latest one. So what a worker sends unasked is refused, however the two are timed against
-/// each other: an answer before its question, or a second one to the same.
+/// The judge's end numbers each of its messages by lot, and takes only answers that carry the
+/// number of its latest one. So what a worker sends unasked is refused, however the two are timed
+/// against each other: an answer before its question, or a second one to the same.
 #pragma once
 
 #include <array>
