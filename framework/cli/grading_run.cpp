@@ -68,9 +68,11 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   options.notice = [](const std::string& sentence) {
     fmt::print(stderr, "{}\n", grading::plain_text(sentence));
   };
+  grading::SlipTally slips(grading::known_slips(course, request.id));
+  options.each = [&](const grading::Grade& grade) { slips.add(grade); };
   options.overview = [&](const fs::path& out, const std::vector<grading::Grade>& grades) {
     grading::write_class_files(course, kind, request.folder, policy ? &*policy : nullptr, out,
-                               grades);
+                               grades, slips);
   };
   for (const std::string& name : found.passed_over)
     fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));

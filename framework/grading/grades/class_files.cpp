@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/grading/compiler/compile.h"
+#include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/class_page.h"
 #include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/grades/scoring.h"
@@ -109,6 +110,17 @@ std::vector<std::string> what_needs_a_look(const std::vector<Standing>& standing
   return sentences;
 }
 
+std::vector<KnownSlip> known_slips(const Course& course, const std::string& id) {
+  std::vector<KnownSlip> known;
+  for (const AuditResult& result : kept_audit(course, id)) {
+    if (result.caught_by.empty() || !result.fault.empty()) continue;
+    KnownSlip slip{plain_name(result.candidate.slip), result.candidate.keyword, {}};
+    for (const TestResult& test : result.caught_by) slip.tests.insert(test.test);
+    known.push_back(std::move(slip));
+  }
+  return known;
+}
+
 std::vector<NamedSource> sources_in(const fs::path& submissions, const modules::ModuleKind& kind) {
   std::vector<NamedSource> sources;
   for (const Submission& submission : find_submissions(submissions, kind).all) {
@@ -126,7 +138,7 @@ std::string starter_of(const Course& course, const modules::ModuleKind& kind) {
 
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const fs::path& submissions, const PolicyFile* policy, const fs::path& out,
-                       const std::vector<Grade>& grades) {
+                       const std::vector<Grade>& grades, const SlipTally& slips) {
   std::vector<Standing> standings;
   if (policy) {
     standings = apply_policy(policy->policy, policy->roster, policy->hand_ins, grades);
@@ -141,7 +153,7 @@ void write_class_files(const Course& course, const modules::ModuleKind& kind,
   } else {
     fs::remove(out / kStandingFile);
   }
-  class_page(kind, grades, standings).write(out / "class.html");
+  class_page(kind, grades, slips, standings).write(out / "class.html");
   pictures_page(kind, grades, out).write(out / "pictures.html");
   const auto sources = sources_in(submissions, kind);
   const bool can = can_compare_sources();
