@@ -105,10 +105,20 @@ class KeptWords {
 
 // The initial value of a global object is computed before main: one that does not end would hang
 // every test.
-bool starts(const fs::path& program) {
-  return grading::run_program({program.string(), "--debug", "--gtest_list_tests"}, Output::kDropped,
-                              kLoadLimit)
-      .in_time;
+bool starts(std::vector<std::string> program) {
+  program.insert(program.end(), {"--debug", "--gtest_list_tests"});
+  return grading::run_program(program, Output::kDropped, kLoadLimit).in_time;
+}
+
+// The public tests by a program that holds the user's own code.
+ExitCode run_own(const Command& command, const CheckWords& words, const fs::path& file,
+                 const std::vector<std::string>& program) {
+  if (starts(program)) return run_tests(command, words, program);
+  fmt::print(
+      "out of time: {}\n\n    does not start within {:g} s: the initial value of a global or "
+      "static variable is a loop that does not end\n\nno test ran\n",
+      file.filename().string(), kLoadLimit);
+  return ExitCode::kCheckFailed;
 }
 
 ExitCode check_own(const Command& command, const CheckWords& words, const fs::path& file,
@@ -119,14 +129,21 @@ ExitCode check_own(const Command& command, const CheckWords& words, const fs::pa
   if (built.code != 0) return does_not_compile(file, header, built.printed);
   print_warnings(file, kept.after_build(built.printed));
   const fs::path program = command.build / "bin" / ("check_" + words.id);
-  if (!starts(program)) {
-    fmt::print(
-        "out of time: {}\n\n    does not start within {:g} s: the initial value of a global or "
-        "static variable is a loop that does not end\n\nno test ran\n",
-        file.filename().string(), kLoadLimit);
-    return ExitCode::kCheckFailed;
-  }
-  return run_tests(command, words, {program.string()});
+  return run_own(command, words, file, {program.string()});
+}
+
+// ---- The student's own file, of an installed course ----
+
+ExitCode check_installed(const Command& command, const CheckWords& words, const fs::path& file,
+                         const fs::path& header) {
+  const PrivateFolder folder;
+  const fs::path object = folder.path() / (words.id + ".so"),
+                 program = command.build / "bin" / ("check_" + words.id);
+  const ProgramOutcome built = grading::run_program(
+      grading::own_compilation(command.root, command.build, file, object), Output::kCaptured);
+  if (built.code != 0) return does_not_compile(file, header, built.printed);
+  print_warnings(file, built.printed);
+  return run_own(command, words, file, {program.string(), object.string()});
 }
 
 // ---- Another file, compiled and called in the sandbox ----
@@ -177,21 +194,19 @@ CheckWords read_check_words(const std::string& id, const std::vector<std::string
 
 fs::path checked_file(const Command& command, const CheckWords& words) {
   const std::string folder = folder_of(words.id);
-  return words.file ? fs::absolute(*words.file)
-                    : command.root / "assignments" / folder / (folder + ".cpp");
+  return words.file ? fs::absolute(*words.file) : own_file(command, folder);
 }
 
 ExitCode check_once(const Command& command, const CheckWords& words) {
   const fs::path file = checked_file(command, words);
-  if (!fs::exists(file))
-    throw UserError(file.string(), "is not there",
-                    "Put your file back, or take it from the starter tree.");
+  if (!fs::exists(file)) throw missing_file(command, words.id, file);
   const std::string folder = folder_of(words.id);
-  const fs::path own = command.root / "assignments" / folder / (folder + ".cpp"),
-                 header = own.parent_path() / (folder + ".h");
+  const fs::path own = own_file(command, folder),
+                 header = command.root / "assignments" / folder / (folder + ".h");
   std::error_code missing;
-  return fs::equivalent(file, own, missing) ? check_own(command, words, file, header)
-                                            : check_foreign(command, words, file, header);
+  if (!fs::equivalent(file, own, missing)) return check_foreign(command, words, file, header);
+  return command.is_installed ? check_installed(command, words, file, header)
+                              : check_own(command, words, file, header);
 }
 
 }  // namespace tumble::cli

@@ -10,18 +10,19 @@
 #include "framework/core/keep_memory.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
+#include "framework/core/program_trees.h"
 #include "framework/core/version.h"
 
 namespace tumble::cli {
 namespace {
 
-// The build tree is that of this program (build/bin/tumble); the source tree is given by the
-// launcher, else it is the parent of the build tree.
-void find_trees(Command& command) {
-  const auto program = std::filesystem::canonical("/proc/self/exe");
-  command.build = program.parent_path().parent_path();
-  const char* told = std::getenv("TUMBLE_ROOT");
-  command.root = told != nullptr ? std::filesystem::path(told) : command.build.parent_path();
+// Programs that a verb starts find the same root.
+void set_trees(Command& command) {
+  const ProgramTrees trees = find_trees();
+  command.root = trees.root;
+  command.build = trees.build;
+  command.is_installed = trees.is_installed;
+  ::setenv("TUMBLE_ROOT", trees.root.c_str(), 1);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -64,7 +65,7 @@ std::string without_digits(const std::string& told) {
 }
 
 int run(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare) {
-  find_trees(command);
+  set_trees(command);
   for (int i = 0; i < argc; ++i)
     command.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "tumble");
 
@@ -89,6 +90,21 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
 }
 
 }  // namespace
+
+std::filesystem::path own_file(const Command& command, const std::string& folder) {
+  const std::string name = folder + ".cpp";
+  return command.is_installed ? std::filesystem::current_path() / name
+                              : command.root / "assignments" / folder / name;
+}
+
+UserError missing_file(const Command& command, const std::string& id,
+                       const std::filesystem::path& file) {
+  return command.is_installed
+             ? UserError(file.string(), "is not there",
+                         "Begin with: tumble start " + id + " FOLDER; then run it in that folder.")
+             : UserError(file.string(), "is not there",
+                         "Put your file back, or take it from the starter tree.");
+}
 
 int run_verbs(int argc, char** argv, Command& command,
               const std::function<void(CLI::App&)>& declare) {

@@ -1,17 +1,14 @@
 // tumble grade a1 FOLDER: a folder of submissions, graded.
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include "framework/cli/verb.h"
-#include "framework/grading/grades/find_submissions.h"
+#include "framework/cli/grading_run.h"
+#include "framework/grading/grades/cluster.h"
 #include "framework/grading/grades/grade.h"
-#include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_pages.h"
-#include "framework/grading/sandbox/protection.h"
+#include "framework/grading/grades/output_folder.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::cli {
@@ -21,26 +18,13 @@ namespace fs = std::filesystem;
 
 struct GradeWords {
   std::string id, folder, out;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 0;  // one a core
   double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
-  std::string sandbox, accepted_sandbox;
+  std::string sandbox, accepted_sandbox, policy;
+  std::string shard, on, hosts;
+  int shards = 0;
 };
-
-std::string span_of(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
-void tell(const grading::GradeProgress& progress) {
-  std::string line = fmt::format("[{}/{}]", progress.done, progress.total);
-  if (!progress.finished.empty()) line += ' ' + grading::plain_name(progress.finished);
-  if (progress.done < progress.total)
-    line += progress.left_s >= 0.0 ? " · about " + span_of(progress.left_s) + " left" : " ...";
-  fmt::print(stderr, "{}\n", line);
-  std::fflush(stderr);
-}
 
 void print_table(const std::vector<grading::Grade>& grades) {
   std::size_t widest = 10;
@@ -56,46 +40,100 @@ void print_table(const std::vector<grading::Grade>& grades) {
     for (const auto& remark : grade.remarks) fmt::print("  remark: {}", remark);
     fmt::print("\n");
     if (grade.taken_over) continue;
-    for (const auto& c : grade.changes)
-      fmt::print("{:<{}}    {}: {} -> {} ({})\n", "", widest, c.test, c.before, c.after, c.reason);
+    print_changes(grade.changes, widest + 4);
   }
 }
 
+// Nobody is asked here: `regrade` is the verb that may lower.
+bool keep_scores(const std::string& id, const fs::path& out,
+                 const std::vector<grading::Lowering>& lowerings) {
+  for (const grading::Lowering& lowering : lowerings)
+    fmt::print(stderr, "not lowered: {} ({})\n", grading::plain_name(lowering.name),
+               lowering.change);
+  fmt::print(stderr,
+             "These files are the same as before, so their scores stay. To see why, and to decide: "
+             "tumble regrade {} {}\n",
+             id, out.string());
+  return false;
+}
+
+// The words of this command for a task of a cluster, where paths mean the same from any folder.
+std::vector<std::string> words_of_task(const Context& context, const GradeWords& words,
+                                       const fs::path& out) {
+  std::vector<std::string> all = {(context.build / "bin/tumble").string(),
+                                  "grade",
+                                  words.id,
+                                  fs::canonical(words.folder).string(),
+                                  "--out",
+                                  out.string(),
+                                  "--budget-s",
+                                  fmt::format("{}", words.budget_s)};
+  if (words.no_media) all.push_back("--no-media");
+  if (!words.sandbox.empty()) all.insert(all.end(), {"--sandbox", words.sandbox});
+  if (!words.accepted_sandbox.empty())
+    all.insert(all.end(), {"--accept-sandbox", words.accepted_sandbox});
+  return all;
+}
+
+void grade_shards(const Context& context, const GradeWords& words, std::size_t total,
+                  const grading::GradeOptions& options, const fs::path& out) {
+  grading::ClusterJob job;
+  job.cluster = grading::cluster_of(words.on);
+  job.command = words_of_task(context, words, out);
+  job.root = context.root;
+  job.submissions = fs::canonical(words.folder);
+  job.out = out;
+  job.total = total;
+  job.shards = words.shards;
+  job.hosts = words.hosts;
+  job.per_host = words.jobs;
+  job.progress = options.progress;
+  job.notice = options.notice;
+  { const grading::OutputFolder check(out, words.folder, words.id); }  // refused before any job
+  grading::grade_on(job);
+}
+
+void refuse_contradictions(const GradeWords& words) {
+  if (!words.on.empty() && !words.shard.empty())
+    throw UserError("--shard", "is one part, which --on makes itself", "Leave out one of them.");
+  if (words.on.empty() && (!words.hosts.empty() || words.shards > 0))
+    throw UserError(words.hosts.empty() ? "--shards" : "--hosts", "means something with --on only",
+                    "Add --on parallel or --on slurm.");
+  if (words.on == "slurm" && !words.hosts.empty())
+    throw UserError("--hosts", "are chosen by Slurm",
+                    "Leave it out; SBATCH_PARTITION and SBATCH_NODELIST choose machines.");
+}
+
 void grade(Context& context, const GradeWords& words) {
-  const modules::ModuleKind& kind = context.registry.find(words.id);
-  const grading::Course course{context.root, context.build, &context.registry,
-                               context.command_line};
-  grading::judge_of(course, words.id);  // refused before any submission is read
-  if (!words.sandbox.empty()) grading::choose_sandbox(words.sandbox);
-  const grading::GradeProtection protection = grading::protection_of_grades(words.accepted_sandbox);
-  const auto found = grading::find_submissions(words.folder, kind);
-  grading::GradeOptions options;
-  options.jobs = words.jobs;
-  options.budget_s = words.budget_s;
-  options.media = !words.no_media;
-  options.accepted_sandbox = words.accepted_sandbox;
-  options.progress = tell;
+  refuse_contradictions(words);
   const fs::path out =
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
-  options.notice = [](const std::string& sentence) {
-    fmt::print(stderr, "{}\n", grading::plain_text(sentence));
+  GradingRequest request{words.id, words.folder, out, words.sandbox, words.policy, {}};
+  request.options.jobs = words.jobs > 0 ? words.jobs : default_jobs();
+  if (!words.shard.empty()) request.options.shard = grading::shard_of(words.shard);
+  if (!words.on.empty())
+    request.before = [&](std::size_t total, const grading::GradeOptions& options) {
+      grade_shards(context, words, total, options, fs::weakly_canonical(fs::absolute(out)));
+    };
+  request.options.budget_s = words.budget_s;
+  request.options.media = !words.no_media;
+  request.options.accepted_sandbox = words.accepted_sandbox;
+  request.options.may_lower = [&](const std::vector<grading::Lowering>& lowerings) {
+    return keep_scores(words.id, out, lowerings);
   };
-  for (const std::string& name : found.passed_over)
-    fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
-  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}; sandbox: {}\n",
-             found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string(),
-             protection.words);
-  const auto grades =
-      grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
+  const auto grades = run_grading(context, request);
   print_table(grades);
-  if (!protection.is_official) fmt::print("{}\n", protection.note);
-  fmt::print("wrote {} and {}\n", (out / "index.html").string(), (out / "gradebook.csv").string());
-  for (const auto& grade : grades) {
-    if (!grade.is_final())
-      context.exit = ExitCode::kOurBug;
-    else if (!grade.has_score() && context.exit == ExitCode::kFine)
-      context.exit = ExitCode::kCheckFailed;
-  }
+  for (const auto& grade : grades)
+    if (!grade.is_official) {
+      fmt::print("These are not official grades: {}\n", grade.sandbox);
+      break;
+    }
+  if (request.options.shard)
+    fmt::print("shard {}: {} submission{}; grade {} without --shard makes the gradebook\n",
+               words.shard, grades.size(), grades.size() == 1 ? "" : "s", words.id);
+  else
+    fmt::print("wrote {} and {}\n", (out / "index.html").string(),
+               (out / "gradebook.csv").string());
 }
 
 }  // namespace
@@ -122,6 +160,11 @@ void add_grade(CLI::App& app, Context& context) {
   verb.flag(
       "--no-media", words->no_media,
       "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.option(
+          "--policy", words->policy,
+          "Due dates, late days, penalties, attempts, groups and the roster; the gradebook then "
+          "has points before and after, and why")
+      .type_name("FILE.json");
   verb.option("--sandbox", words->sandbox,
               "namespaces, landlock or bare; default: the strongest that this machine has (tumble "
               "doctor)")
@@ -130,6 +173,21 @@ void add_grade(CLI::App& app, Context& context) {
               "Grade in this kind although the policy for grades refuses it; every result says "
               "that it is not official")
       .type_name("KIND");
+  verb.option("--on", words->on,
+              "Grade on other machines: slurm (an array job) or parallel (GNU parallel over ssh). "
+              "Course, submissions, results and key lie in a folder that all share")
+      .type_name("WHAT");
+  verb.option("--shards", words->shards,
+              "With --on: in how many parts; default: ten submissions each, at most 1,000")
+      .between(1, 1000000);
+  verb.option("--hosts", words->hosts,
+              "With --on parallel: its words for --sshlogin, e.g. ta@lab1,ta@lab2; default: this "
+              "machine")
+      .type_name("HOSTS");
+  verb.option("--shard", words->shard,
+              "Grade only this part of the class, e.g. 2/8, into OUT/.shards; the same command "
+              "without it takes over what is finished")
+      .type_name("K/N");
   verb.footer(
       "Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 "
       "something to repair, "

@@ -13,6 +13,7 @@
 #include "framework/core/not_implemented.h"
 #include "framework/core/files.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/worker/guarded_calls.h"
 #include "framework/grading/course/run_program.h"
@@ -66,32 +67,36 @@ void compile(const Context& context, const fs::path& source, const fs::path& obj
 }
 
 /// The student's file, for people: from the root of the tree.
-std::string student_file(const ModuleKind& kind) {
-  return "assignments/" + kind.folder + "/" + kind.folder + ".cpp";
+std::string student_file(const Context& context, const ModuleKind& kind) {
+  const std::string name = kind.folder + ".cpp";
+  return context.is_installed ? name : "assignments/" + kind.folder + "/" + name;
 }
 
 /// The student's module, built from the current file.
 /// @throws UserError with the compiler's output: an old object must not replace a file that does
 ///   not compile
 fs::path build_student(const Context& context, const ModuleKind& kind) {
-  const fs::path object = built(context, kind.id, "student"),
-                 source = context.root / student_file(kind);
+  static const PrivateFolder folder;  // where the tree cannot be written
+  const fs::path object = context.is_installed ? folder.path() / (kind.id + ".so")
+                                               : built(context, kind.id, "student"),
+                 source = own_file(context, kind.folder);
   static std::set<std::string> fresh;  // ids, built by this process
   if (fresh.contains(kind.id)) return object;
-  if (!fs::exists(source))
-    throw UserError(source.string(), "is not there",
-                    "Put your file back, or take it from the starter tree.");
+  if (!fs::exists(source)) throw missing_file(context, kind.id, source);
   std::error_code missing;
   const auto made = fs::last_write_time(object, missing);
   if (missing || made < fs::last_write_time(source))
-    std::fprintf(stderr, "compiling %s\n", student_file(kind).c_str());
-  const auto outcome =
-      grading::run_program({"ninja", "-C", context.build.string(), "--quiet", kind.id + "_student"},
-                           grading::Output::kCaptured);
+    std::fprintf(stderr, "compiling %s\n", student_file(context, kind).c_str());
+  const std::vector<std::string> by_ninja = {"ninja", "-C", context.build.string(), "--quiet",
+                                             kind.id + "_student"};
+  const auto outcome = grading::run_program(
+      context.is_installed ? grading::own_compilation(context.root, context.build, source, object)
+                           : by_ninja,
+      grading::Output::kCaptured);
   if (outcome.code != 0) {
-    const fs::path header = source.parent_path() / (kind.folder + ".h");
+    const fs::path header = context.root / grading::header_in(kind.folder);
     throw UserError(
-        student_file(kind),
+        student_file(context, kind),
         "does not compile:\n" + grading::compiler_story(outcome.printed, source, header),
         "Correct it (./tumble check " + kind.id +
             " says the same), or name another file after --modules.");
@@ -108,14 +113,15 @@ AnyModule load_own(const ModuleKind& kind, const fs::path& object, const std::st
 
 /// Whether this tree has the module of a word.
 bool is_there(const Context& context, const ModuleKind& kind, const std::string& word) {
-  return word == "student" ? fs::exists(context.root / student_file(kind))
+  return word == "student" ? fs::exists(own_file(context, kind.folder))
                            : fs::exists(built(context, kind.id, word));
 }
 
 }  // namespace
 
 AnyModule load_word(const Context& context, const ModuleKind& kind, const std::string& word) {
-  if (word == "student") return load_own(kind, build_student(context, kind), student_file(kind));
+  if (word == "student")
+    return load_own(kind, build_student(context, kind), student_file(context, kind));
   if (word == "reference") {
     if (!is_there(context, kind, word))
       throw UserError("--modules " + kind.id + "=reference",

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
+#include "framework/cli/private_files.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/core/version.h"
-#include "framework/grading/course/slip.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/course/release_checks.h"
 #include "framework/grading/course/run_program.h"
@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPrivate = "solutions_private";
 // read by framework/core/CMakeLists.txt: a released tree has no history
 constexpr const char* kVersionFile = ".version";
 constexpr const char* kStudentsReadme = "assignments/README.md";  // in the place of README.md
@@ -36,7 +35,7 @@ struct ReleaseOptions {
 // control's own folder.
 bool is_made_here(const std::string& name) {
   return name == ".git" || name == "out" || name == "build" || name.starts_with("build-") ||
-         name == kPrivate;
+         name == kPrivateFolder;
 }
 
 // What git lists, relative to the root.
@@ -86,56 +85,11 @@ std::vector<fs::path> project_files(const fs::path& root) {
 void publish_solution(const Context& context, const std::string& id, const fs::path& release) {
   const modules::ModuleKind& kind = context.registry.find(id);
   const fs::path file = fs::path(kind.folder) / (kind.folder + ".cpp");
-  const fs::path solution = context.root / kPrivate / file;
+  const fs::path solution = context.root / kPrivateFolder / file;
   if (!fs::exists(solution))
     throw UserError(solution.string(), "there is no reference to publish",
                     "Run the command in the instructor's tree.");
   fs::copy_file(solution, release / "assignments" / file, fs::copy_options::overwrite_existing);
-}
-
-bool is_published(const Context& context, const std::vector<std::string>& published,
-                  const fs::path& file) {
-  return std::any_of(published.begin(), published.end(), [&](const std::string& id) {
-    const std::string folder = context.registry.find(id).folder;
-    return file == fs::path(kPrivate) / folder / (folder + ".cpp");
-  });
-}
-
-// The whole wrong solution of a slip, each line with its position in the slip or in its base.
-grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) {
-  const grading::MadeSolution made = grading::make_solution(slip, slip.parent_path().parent_path());
-  grading::PrivateFile whole{slip.lexically_relative(context.root), made.text};
-  for (const auto& origin : made.origins)
-    whole.places.push_back(
-        (origin.is_of_slip ? whole.file : made.base.lexically_relative(context.root)).string() +
-        ":" + std::to_string(origin.line));
-  return whole;
-}
-
-// A flawed submission is a student's file: its unchanged part is the stub. What CMake says of
-// solutions is harmless.
-std::vector<grading::PrivateFile> private_files(const Context& context,
-                                                const std::vector<std::string>& published) {
-  std::vector<grading::PrivateFile> files;
-  if (!fs::exists(context.root / kPrivate)) return files;
-  for (const auto& entry : fs::recursive_directory_iterator(context.root / kPrivate)) {
-    const fs::path file = entry.path().lexically_relative(context.root),
-                   folder = file.parent_path().filename();
-    if (!entry.is_regular_file() || file.filename() == "CMakeLists.txt" ||
-        folder == "flawed_submission" || is_published(context, published, file))
-      continue;
-    // Once a reference is public, the parts that its wrong and alternative versions share with it
-    // are public too.
-    const bool of_published =
-        std::any_of(published.begin(), published.end(), [&](const std::string& id) {
-          return *std::next(file.begin()) == context.registry.find(id).folder;
-        });
-    if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
-    files.push_back({file, text_of(entry.path()), folder == "tests" || folder == "support"});
-    if (file.extension() == grading::kSlipExtension)
-      files.push_back(made_of_slip(context, entry.path()));
-  }
-  return files;
 }
 
 void refuse(const std::vector<grading::Finding>& findings, const std::string& remedy) {
@@ -153,7 +107,7 @@ void refuse_odd_rubrics(const Context& context) {
   const grading::Course course{context.root, context.build, &context.registry,
                                context.command_line};
   for (const modules::ModuleKind* kind : context.registry.all())
-    if (fs::exists(context.root / kPrivate / kind->folder / "rubric_hidden.json"))
+    if (fs::exists(context.root / kPrivateFolder / kind->folder / "rubric_hidden.json"))
       grading::rubric_of(course, kind->id);
 }
 

@@ -17,15 +17,20 @@ struct Context : Command {
 /// Declares every verb (verbs.cpp).
 void add_verbs(CLI::App& app, Context& context);
 
+void add_attack(CLI::App& app, Context& context);
 void add_audit(CLI::App& app, Context& context);
 void add_battery(CLI::App& app, Context& context);
+void add_class(CLI::App& app, Context& context);
 void add_cost(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_engines(CLI::App& app, Context& context);
 void add_explain(CLI::App& app, Context& context);
 void add_grade(CLI::App& app, Context& context);
+void add_ledger(CLI::App& app, Context& context);
+void add_package(CLI::App& app, Context& context);
 void add_poke(CLI::App& app, Context& context);
+void add_regrade(CLI::App& app, Context& context);
 void add_release(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
 void add_truths(CLI::App& app, Context& context);

@@ -7,6 +7,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_demo(app, context);
   add_check(app, context);
   add_watch(app, context);
+  add_start(app, context);
   add_run(app, context);
   add_poke(app, context);
   add_engines(app, context);
@@ -14,11 +15,16 @@ void add_verbs(CLI::App& app, Context& context) {
   add_plots(app, context);
   add_explain(app, context);
   add_grade(app, context);
+  add_regrade(app, context);
+  add_ledger(app, context);
+  add_class(app, context);
   add_audit(app, context);
+  add_attack(app, context);
   add_doctor(app, context);
   add_inspect(app, context);
   add_handouts(app, context);
   add_release(app, context);
+  add_package(app, context);
   add_truths(app, context);
   add_battery(app, context);
 }

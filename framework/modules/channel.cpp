@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sched.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -16,6 +17,7 @@ struct Header {
   std::uint32_t size;
   std::uint8_t kind;
   std::uint8_t padding[3];
+  std::uint64_t question;
 };
 
 }  // namespace
@@ -38,14 +40,27 @@ void Channel::wait(int fd, short events, Clock::time_point deadline) {
   }
 }
 
+// No number can be known before its message is sent.
+std::uint64_t Channel::draw() {
+  if (lots_left_ == 0) {
+    if (::getrandom(lots_.data(), sizeof lots_, 0) != static_cast<ssize_t>(sizeof lots_))
+      throw ChannelClosed("the system gives no random numbers");
+    lots_left_ = lots_.size();
+  }
+  return lots_[--lots_left_];
+}
+
 void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point deadline) {
   if (payload.size() > kMaxPayload)
     throw WireError("an argument or answer of " + std::to_string(payload.size()) +
                     " bytes, above the limit of " + std::to_string(kMaxPayload) +
                     " (a size that was never set?)");
   Bytes frame(sizeof(Header) + payload.size());
-  const Header header{
-      static_cast<std::uint32_t>(payload.size()), static_cast<std::uint8_t>(kind), {0, 0, 0}};
+  if (side_ == End::kAsks) question_ = draw();
+  const Header header{static_cast<std::uint32_t>(payload.size()),
+                      static_cast<std::uint8_t>(kind),
+                      {0, 0, 0},
+                      question_};
   std::memcpy(frame.data(), &header, sizeof header);
   if (!payload.empty()) std::memcpy(frame.data() + sizeof header, payload.data(), payload.size());
   for (std::size_t sent = 0; sent < frame.size();) {
@@ -117,6 +132,10 @@ Message Channel::receive(Clock::time_point deadline) {
   Header header{};
   read_exactly(&header, sizeof header);
   if (header.size > kMaxPayload) throw WireError("a message larger than the limit");
+  if (side_ == End::kAnswers)
+    question_ = header.question;
+  else if (header.question != question_)
+    throw WireError("an answer to a question that was not asked");
   Message message{static_cast<MessageKind>(header.kind), Bytes(header.size)};
   read_exactly(message.payload.data(), header.size);
   return message;

@@ -1,4 +1,8 @@
 /// Messages over a pair of file descriptors, with a deadline and a size limit.
+///
+/// The judge's end numbers each of its messages by lot, and takes only answers that carry the
+/// number of its latest one. So what a worker sends unasked is refused, however the two are timed
+/// against each other: an answer before its question, or a second one to the same.
 #pragma once
 
 #include <array>
@@ -42,8 +46,11 @@ class Channel {
   // bytes: a state of 10^5 bodies is 10 MB; more is an attack
   static constexpr std::uint32_t kMaxPayload = 16u << 20;
 
+  enum class End { kAsks, kAnswers };  // of the judge, of the worker
+
   /// Does not own the descriptors. Either may be a socket or a pipe.
-  Channel(int read_fd, int write_fd) : read_fd_(read_fd), write_fd_(write_fd) {}
+  Channel(End end, int read_fd, int write_fd)
+      : read_fd_(read_fd), write_fd_(write_fd), side_(end) {}
 
   /// Called when a deadline has passed: returns a later one, or the same one to end the wait.
   using Extension = std::function<Clock::time_point(Clock::time_point passed)>;
@@ -52,7 +59,8 @@ class Channel {
   /// @throws ChannelClosed, ChannelTimeout, WireError (payload above kMaxPayload: nothing is sent)
   void send(MessageKind kind, const Bytes& payload,
             Clock::time_point deadline = Clock::time_point::max());
-  /// @throws ChannelClosed, ChannelTimeout, WireError (size above kMaxPayload)
+  /// @throws ChannelClosed, ChannelTimeout, WireError (size above kMaxPayload, or no answer to the
+  ///   latest question)
   Message receive(Clock::time_point deadline = Clock::time_point::max());
 
  private:
@@ -60,7 +68,13 @@ class Channel {
   ssize_t poll_briefly();
   void fill(Clock::time_point deadline);
 
+  std::uint64_t draw();
+
   int read_fd_, write_fd_;
+  std::uint64_t question_ = 0;  // number of the judge's latest message
+  End side_;
+  std::array<std::uint64_t, 32> lots_{};  // drawn ahead: one system call for many questions
+  std::size_t lots_left_ = 0;
   Extension extension_;
   std::array<std::uint8_t, 1 << 14> ahead_;  // received but not consumed: from at_ to end_
   std::size_t at_ = 0, end_ = 0;

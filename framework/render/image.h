@@ -34,4 +34,11 @@ using ImageNotes = std::vector<std::pair<std::string, std::string>>;
 /// @throws UserError when the file cannot be written
 void write_png(const std::filesystem::path& file, const Image& image, const ImageNotes& notes = {});
 
+/// Reads a picture, as three bytes per pixel whatever the file holds.
+/// @throws UserError when the file is no picture that can be read
+Image read_png(const std::filesystem::path& file);
+
+/// Root mean square difference of two pictures' bytes, in [0, 255]. Where their sizes differ, 255.
+double colour_distance(const Image& a, const Image& b);
+
 }  // namespace tumble::render

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -72,6 +73,32 @@ void write_png(const std::filesystem::path& file, const Image& image, const Imag
   if (!encode(image, texts, rows, bytes))
     throw UserError(file.string(), "cannot be encoded as PNG");
   write_whole(file, bytes);
+}
+
+Image read_png(const std::filesystem::path& file) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  constexpr png_uint_32 kMostPixels = 1u << 14;  // a side: far above any picture made here
+  const bool is_png = png_image_begin_read_from_file(&png, file.c_str()) != 0;
+  png.format = PNG_FORMAT_RGB;
+  if (!is_png || png.width > kMostPixels || png.height > kMostPixels) {
+    png_image_free(&png);
+    throw UserError(file.string(), "cannot be read as PNG");
+  }
+  Image image(static_cast<int>(png.width), static_cast<int>(png.height));
+  if (png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr) == 0)
+    throw UserError(file.string(), "cannot be read as PNG: it ends early");
+  return image;
+}
+
+double colour_distance(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height) return 255.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const double difference = static_cast<double>(a.rgb[i]) - static_cast<double>(b.rgb[i]);
+    sum += difference * difference;
+  }
+  return a.rgb.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(a.rgb.size()));
 }
 
 }  // namespace tumble::render

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/core/program_trees.h"
 #include "tests/a1_impulse/a1_fixtures.h"
 
 namespace tumble::testing {
@@ -29,7 +30,8 @@ Matrix3d matrix(const Json& m) {
 
 std::vector<Json> truths_of_family(const std::string& family) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(TUMBLE_SOURCE_DIR "/tests/truths")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(find_trees().root / "tests/truths")) {
     if (entry.path().filename().string().starts_with(family + "__")) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -109,10 +109,10 @@ TEST_F(GradeAttack, AnyNameOfASubmissionIsGraded) {
   for (const std::string& name : names) put(name + "/a1_impulse.cpp", "int x = ;\n");
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
-  const auto ledger = nlohmann::json::parse(text_of(root / "out/ledger.json"));
-  EXPECT_EQ(ledger["submissions"].size(), names.size());
+  const auto entries = ledger();
+  EXPECT_EQ(entries.size(), names.size());
   std::set<std::string> folders;
-  for (const auto& entry : ledger["submissions"]) {
+  for (const auto& entry : entries) {
     const std::string folder = entry["folder"];
     EXPECT_TRUE(folders.insert(folder).second) << folder << " twice";
     EXPECT_TRUE(fs::exists(root / "out" / folder / "results.json")) << folder;
@@ -141,25 +141,6 @@ TEST_F(GradeAttack, EqualFilesAreRemarkedForTheGraderAlone) {
   EXPECT_EQ(text_of(root / "out/alice/results.json").find("bob"), std::string::npos);
   EXPECT_EQ(text_of(root / "out/alice/index.html").find("bob"), std::string::npos);
 }
-
-// The assignment's rubrics and headers, to be changed; everything else is the tree's.
-class OtherRubric : public GradeAttack {
- protected:
-  OtherRubric() {
-    fs::create_directories(course);
-    fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "assignments", course / "assignments",
-             fs::copy_options::recursive);
-    fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "framework", course / "framework");
-    const fs::path hidden = "solutions_private/a1_impulse/rubric_hidden.json";
-    fs::create_directories((course / hidden).parent_path());
-    fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / hidden, course / hidden);
-    ::setenv("TUMBLE_ROOT", course.c_str(), 1);
-  }
-  fs::path rubric() const { return course / "assignments/a1_impulse/rubric.json"; }
-  nlohmann::ordered_json read() const { return nlohmann::ordered_json::parse(text_of(rubric())); }
-  void write(const nlohmann::ordered_json& json) const { write_whole(rubric(), json.dump(1)); }
-  const fs::path course = root / "course";
-};
 
 TEST_F(OtherRubric, AnEntryWithoutATestAndATestWithoutAnEntryAreNamedBeforeAnythingIsGraded) {
   put("alice/a1_impulse.cpp", text_of(kStub));

@@ -155,6 +155,19 @@ TEST_F(FindSubmissions, LinksAreNotFollowed) {
   EXPECT_NE(only().problem.find("symbolic link"), std::string::npos) << only().problem;
 }
 
+TEST_F(FindSubmissions, AFileWithASecondNameElsewhereIsNotTaken) {
+  // As from an archive that root unpacked: the other name is a file that its author may not read,
+  // and a compiler's message would show it.
+  put("adam/a9_thing.cpp");
+  fs::create_directory(root / "eve");
+  fs::create_hard_link(root / "adam/a9_thing.cpp", root / "eve/a9_thing.cpp");
+  fs::remove_all(root / "adam");
+  EXPECT_FALSE(only().source.empty()) << "it has one name now";
+  fs::create_hard_link(root / "eve/a9_thing.cpp", root / "eve/secret.txt");
+  EXPECT_TRUE(only().source.empty());
+  EXPECT_NE(only().problem.find("hard link"), std::string::npos) << only().problem;
+}
+
 TEST_F(FindSubmissions, AFolderThatIsALinkToItsParentEnds) {
   put("adam/a9_thing.cpp");
   fs::create_directory_symlink(root, root / "adam/again");

@@ -66,6 +66,17 @@ class Grading : public ::testing::Test {
   nlohmann::json results(const std::string& name, const std::string& out = "out") const {
     return nlohmann::json::parse(text_of(root / out / name / "results.json"));
   }
+  /// The entries of the ledger.
+  std::vector<nlohmann::json> ledger(const std::string& out = "out") const {
+    std::vector<nlohmann::json> entries;
+    std::ifstream in(root / out / "ledger.jsonl");
+    for (std::string line; std::getline(in, line);) entries.push_back(nlohmann::json::parse(line));
+    return entries;
+  }
+  ProgramOutcome tumble(std::vector<std::string> words) const {
+    words.insert(words.begin(), kProgram.string());
+    return run_program(words, Output::kCaptured, 580.0);
+  }
   /// Every file except times, by its path below root.
   std::map<std::string, std::string> files(const std::string& out) const {
     std::map<std::string, std::string> all;
@@ -77,6 +88,25 @@ class Grading : public ::testing::Test {
   PrivateFolder scratch_;
   fs::path root = scratch_.path();
   std::string id = "a1";
+};
+
+// The assignment's rubrics and headers, to be changed; everything else is the tree's.
+class OtherRubric : public Grading {
+ protected:
+  OtherRubric() {
+    fs::create_directories(course);
+    fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "assignments", course / "assignments",
+             fs::copy_options::recursive);
+    fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "framework", course / "framework");
+    const fs::path hidden = "solutions_private/a1_impulse/rubric_hidden.json";
+    fs::create_directories((course / hidden).parent_path());
+    fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / hidden, course / hidden);
+    ::setenv("TUMBLE_ROOT", course.c_str(), 1);
+  }
+  fs::path rubric() const { return course / "assignments/a1_impulse/rubric.json"; }
+  nlohmann::ordered_json read() const { return nlohmann::ordered_json::parse(text_of(rubric())); }
+  void write(const nlohmann::ordered_json& json) const { write_whole(rubric(), json.dump(1)); }
+  const fs::path course = root / "course";
 };
 
 }  // namespace tumble::grading

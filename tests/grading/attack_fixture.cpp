@@ -54,10 +54,10 @@ fs::path attack_object(const std::string& file, const std::string& defines) {
   fs::path& object = built[file + defines];
   if (!object.empty()) return object;
   object = scratch() / ("attack" + std::to_string(built.size()) + ".so");
-  const Compiled compiled =
-      compile_source(defines + "\n#line 1\n" +
-                         text_of(fs::path(TUMBLE_SOURCE_DIR) / "tests/grading/attacks" / file),
-                     object);
+  const Compiled compiled = compile_source(
+      defines + "\n#line 1\n" +
+          text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/attacks/calls" / file),
+      object);
   EXPECT_EQ(compiled.outcome, Compiled::Outcome::kBuilt) << compiled.said;
   return object;
 }

@@ -19,7 +19,8 @@ namespace tumble::grading {
 /// fails the test.
 Compiled compile_source(const std::string& text, const std::filesystem::path& object,
                         const CompileLimits& limits = {});
-/// A file of attacks/, with `defines` before its text; compiled once per program.
+/// A file of solutions_private/attacks/calls, with `defines` before its text; compiled once per
+/// program.
 std::filesystem::path attack_object(const std::string& file, const std::string& defines = "");
 /// Number of descendants of this process, after a second in which ending ones may end.
 int descendants_left();

@@ -29,7 +29,8 @@ const std::vector<std::string> kFolders = {
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"engines",
      {"base", "stepping", "contact", "judging", "rd", "events", "timewarp", "truths", "cost"}},
-    {"grading", {"verdicts", "test_program", "sandbox", "compiler", "worker", "course", "grades"}}};
+    {"grading",
+     {"verdicts", "test_program", "sandbox", "compiler", "worker", "course", "grades", "attacks"}}};
 
 int rank_of(const std::string& folder) {
   const auto it = std::find(kFolders.begin(), kFolders.end(), folder);

@@ -116,9 +116,9 @@ class Loop : public modules::Connection {
  public:
   Loop() {
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_), 0);
-    near_ = std::make_unique<Channel>(ends_[0], ends_[0]);
+    near_ = std::make_unique<Channel>(Channel::End::kAsks, ends_[0], ends_[0]);
     worker_ = std::thread([this] {
-      Channel far(ends_[1], ends_[1]);
+      Channel far(Channel::End::kAnswers, ends_[1], ends_[1]);
       modules::serve(module_, far);
     });
   }
@@ -222,7 +222,7 @@ TEST(Proxy, MessagesAboveTheSizeLimitAreRefusedByTheSender) {
 TEST(Channel, DeadlineCanBeExtendedAndThenPasses) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
-  Channel channel(ends[0], ends[0]);
+  Channel channel(Channel::End::kAsks, ends[0], ends[0]);
   int asked = 0;
   channel.extend_by([&](Channel::Clock::time_point passed) {
     return ++asked < 3 ? Channel::Clock::now() + std::chrono::milliseconds(5) : passed;
@@ -233,10 +233,47 @@ TEST(Channel, DeadlineCanBeExtendedAndThenPasses) {
   ::close(ends[1]);
 }
 
+// Both ends in one thread: what the far one sends is there before the near one asks for it.
+struct Sockets {
+  Sockets() { EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, fds), 0); }
+  ~Sockets() { ::close(fds[0]), ::close(fds[1]); }
+  int fds[2];
+};
+struct Ends : Sockets {
+  Channel near{Channel::End::kAsks, fds[0], fds[0]}, far{Channel::End::kAnswers, fds[1], fds[1]};
+};
+
+TEST(Channel, AnAnswerToTheLatestQuestionIsTaken) {
+  Ends ends;
+  for (int i = 0; i < 100; ++i) {
+    ends.near.send(modules::MessageKind::kCall, {});
+    ends.far.receive();
+    ends.far.send(modules::MessageKind::kReturn, {1, 2});
+    EXPECT_EQ(ends.near.receive().payload.size(), 2u);
+  }
+}
+
+TEST(Channel, AnAnswerBeforeItsQuestionIsRefused) {
+  Ends ends;
+  ends.far.send(modules::MessageKind::kReturn, {});
+  ends.near.send(modules::MessageKind::kCall, {});
+  EXPECT_THROW(ends.near.receive(), modules::WireError);
+}
+
+TEST(Channel, ASecondAnswerToOneQuestionIsRefused) {
+  Ends ends;
+  ends.near.send(modules::MessageKind::kCall, {});
+  ends.far.receive();
+  for (int i = 0; i < 2; ++i) ends.far.send(modules::MessageKind::kReturn, {});
+  EXPECT_NO_THROW(ends.near.receive());
+  ends.near.send(modules::MessageKind::kCall, {});
+  EXPECT_THROW(ends.near.receive(), modules::WireError);
+}
+
 TEST(Channel, WaitWithoutAMessageEndsAtTheDeadline) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
-  Channel channel(ends[0], ends[0]);
+  Channel channel(Channel::End::kAsks, ends[0], ends[0]);
   EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)),
                modules::ChannelTimeout);
   ::close(ends[1]);

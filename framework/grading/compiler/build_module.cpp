@@ -1,5 +1,7 @@
 #include "framework/grading/compiler/build_module.h"
 
+#include <sstream>
+
 #include "framework/grading/compiler/compile.h"
 
 namespace tumble::grading {
@@ -7,6 +9,19 @@ namespace fs = std::filesystem;
 
 fs::path header_in(const std::string& folder) {
   return fs::path("assignments") / folder / (folder + ".h");
+}
+
+std::vector<std::string> own_compilation(const fs::path& root, const fs::path& build,
+                                         const fs::path& source, const fs::path& object) {
+  std::vector<std::string> words = {"g++"};
+  std::istringstream flags(TUMBLE_SUBMISSION_FLAGS);
+  for (std::string flag; flags >> flag;) words.push_back(flag);
+  words.insert(words.end(),
+               {"-Wall", "-Wextra", "-Wpedantic", "-fdiagnostics-color=never", "-shared",
+                "-Wl,-z,defs", "-I", root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE, "-include",
+                (build / "submission_sdk" / "precompiled.h").string(), source.string(), "-o",
+                object.string()});
+  return words;
 }
 
 BuiltSubmission build_module(const fs::path& root, const fs::path& build, const std::string& id,

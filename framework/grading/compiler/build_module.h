@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tumble::grading {
 
@@ -20,6 +21,13 @@ BuiltSubmission build_module(const std::filesystem::path& root, const std::files
                              const std::string& id, const std::string& folder,
                              const std::filesystem::path& source,
                              const std::filesystem::path& object);
+
+/// The words of a compilation of the user's own file outside the sandbox, with the same flags and
+/// the same precompiled header: g++ and what follows.
+std::vector<std::string> own_compilation(const std::filesystem::path& root,
+                                         const std::filesystem::path& build,
+                                         const std::filesystem::path& source,
+                                         const std::filesystem::path& object);
 
 /// The header that says what the module of an assignment is, from the root.
 std::filesystem::path header_in(const std::string& folder);

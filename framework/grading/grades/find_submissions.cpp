@@ -103,6 +103,11 @@ std::string why_not(const fs::path& file) {
     return name + " is a symbolic link, which is not followed. Hand in the file itself.";
   if (!fs::is_regular_file(status))
     return name + " is not an ordinary file. Hand in a source file.";
+  if (fs::hard_link_count(file, failed) > 1)
+    // The other name may be that of a file that this user may read and its author may not.
+    return name +
+           " has a second name on this machine (a hard link). Grade a copy of the submissions: "
+           "cp -r --no-preserve=links FOLDER COPY";
   const auto size = fs::file_size(file, failed);
   if (failed) return name + " cannot be read: " + failed.message();
   if (size == 0) return name + " is empty.";

@@ -10,6 +10,7 @@
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/grades/media.h"
+#include "framework/grading/grades/shard.h"
 #include "framework/grading/verdicts/verdict.h"
 
 namespace tumble::grading {
@@ -97,7 +98,15 @@ struct GradeProgress {
   double left_s = 0.0;   // estimated time left; negative: unknown
 };
 
+/// A submission that a regrade would lower.
+struct Lowering {
+  std::string name, change;         // "80 -> 75: the tests changed"
+  std::vector<TestChange> changes;  // test by test
+};
+
 struct GradeOptions {
+  // only these of the submissions, into OUT/.shards
+  std::optional<Shard> shard;
   double budget_s = 60.0;  // for all tests of a submission together: TimeBudget
   // submissions graded at the same time, each in a separate process
   int jobs = 1;
@@ -106,6 +115,18 @@ struct GradeOptions {
   // a kind of sandbox that is used although the policy refuses it; results are marked
   std::string accepted_sandbox;
   std::vector<std::filesystem::path> scenes;  // empty: the assignment's demo scenes
+  // names of submissions; others keep what they have. Empty: all
+  std::vector<std::string> only;
+  bool again = false;  // also what has not changed
+  // Asked once, after all are graded, whether the scores of these may be lowered. Answers no, or is
+  // empty: they keep their earlier results. Where the file changed it is asked only if
+  // `guard_changed_files`.
+  std::function<bool(const std::vector<Lowering>&)> may_lower;
+  bool guard_changed_files = false;
+  std::filesystem::path policy;  // kept in the manifest
+  // called with the folder of results and all grades before the folder is released: writes more
+  // pages
+  std::function<void(const std::filesystem::path&, const std::vector<Grade>&)> overview;
   std::function<void(const GradeProgress&)> progress;
   // called with a sentence for the user; may be empty
   std::function<void(const std::string&)> notice;

@@ -51,18 +51,6 @@ bool starts_a_formula(const std::string& text) {
   return false;
 }
 
-// A CSV cell: one line, quoted if necessary, and never a formula.
-std::string csv_cell(const std::string& raw) {
-  std::string text = plain_name(raw);
-  if (starts_a_formula(text)) text.insert(0, "'");
-  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') &&
-                        !text.ends_with(' ');
-  if (is_plain) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
 Json media_json(const SceneMedia& media) {
   Json checks = Json::array();
   for (const auto& c : media.checks)
@@ -234,6 +222,21 @@ bool is_points_row(std::string name) {
 
 }  // namespace
 
+std::string csv_cell(const std::string& raw) {
+  std::string text = plain_name(raw);
+  if (starts_a_formula(text)) text.insert(0, "'");
+  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') &&
+                        !text.ends_with(' ');
+  if (is_plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_name(const std::string& name) {
+  return csv_cell(is_points_row(name) ? "folder " + name : name);
+}
+
 std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades) {
   // Another column than that of the official grades: Canvas would enter these there.
   const bool is_official = std::all_of(grades.begin(), grades.end(),
@@ -245,9 +248,7 @@ std::string gradebook_csv(const std::string& assignment_title, const std::vector
   for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
   text += "    Points Possible,,,," + points_text(possible) + "\n";
   for (const Grade& grade : grades) {
-    // The name of such a student would be read as the row of points.
-    const std::string name =
-        csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
+    const std::string name = csv_name(grade.name);
     text += name + "," + grade.student_id + "," + name + ",," +
             (grade.has_score() ? points_text(grade.score) : "") + "\n";
   }
@@ -328,31 +329,6 @@ void write_grade(const modules::ModuleKind& kind, const Grade& grade, const Grad
   submission_page(kind, grade, graded_from(grade, key)).write(folder / "index.html");
   write_whole(folder / kRecord,
               record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
-}
-
-std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
-  Json ledger;
-  ledger["assignment"] = id;
-  ledger["version"] = kProgramVersion;
-  ledger["submissions"] = Json::array();
-  for (const GradeRecord& record : records) {
-    const auto results = record.files.find("results.json");
-    ledger["submissions"].push_back(
-        {{"name", plain_name(record.grade.name)},
-         {"folder", record.grade.folder},
-         {"submission", record.key.submission},
-         {"judging", record.key.judging},
-         {"rubric", record.key.rubric},
-         {"results", results == record.files.end() ? "missing" : results->second},
-         {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)},
-         {"final", record.grade.is_final()},
-         {"sandbox", record.grade.sandbox},
-         {"official", record.grade.is_official},
-         {"remarks", record.grade.remarks},
-         {"change", record.grade.change},
-         {"changes", changes_json(record.grade.changes)}});
-  }
-  return dumped(ledger);
 }
 
 }  // namespace tumble::grading

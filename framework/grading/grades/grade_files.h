@@ -21,6 +21,11 @@ std::string gradescope_json(const Grade& grade);
 /// score".
 std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades);
 
+/// A cell of a CSV file: one line, quoted if necessary, and never a formula.
+std::string csv_cell(const std::string& raw);
+/// The cell of a student's name, which is never read as the row of points possible.
+std::string csv_name(const std::string& name);
+
 /// record.json: the grade with its key, and the digest of every other file of its folder.
 struct GradeRecord {
   Grade grade;
@@ -48,8 +53,5 @@ std::map<std::string, std::string> digests_below(const std::filesystem::path& fo
 /// its pictures.
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
                  const std::filesystem::path& folder, const std::string& machine_key);
-
-/// ledger.json over all submissions.
-std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records);
 
 }  // namespace tumble::grading

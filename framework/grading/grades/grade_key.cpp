@@ -77,8 +77,8 @@ std::string folder_of(const std::string& name) {
   if (plain.size() > kLongest) plain.resize(kLongest);
   // Names that begin with "_" are reserved for names that are made here.
   const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain[0] == '_' ||
-                     plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" ||
-                     plain == "times.json";
+                     plain.ends_with(".html") || plain.ends_with(".csv") ||
+                     plain.ends_with(".json") || plain.ends_with(".jsonl");
   // 64 bits of SHA-256: enough that no two names of a course collide by chance
   constexpr std::size_t kDigits = 16;
   return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, kDigits);

@@ -1,6 +1,5 @@
 // Grades all submissions of a folder, each in a separate process, a few at a time, so that a
 // failure affects only one.
-#include <fcntl.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -17,8 +16,12 @@
 #include "framework/grading/compiler/compile.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_many.h"
+#include "framework/core/nearest_word.h"
+#include "framework/grading/grades/batch_work.h"
+#include "framework/grading/grades/changes.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/ledger.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/grade_submission.h"
@@ -33,16 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-struct Work {
-  const Submission* submission;
-  std::string folder;
-  GradeKey key;
-  EarlierRun earlier;
-  GradeRecord record;  // the final one
-  std::vector<std::string> remarks;
-  double seconds = 0.0;
-};
+using Work = GradedWork;
 
 class Batch {
  public:
@@ -57,16 +51,32 @@ class Batch {
     require_rubric_of_judge(course_, id);
     rubric_ = rubric_of(course_, id);
     refuse_key_in(out);
-    output_.emplace(out, submissions, id);
+    out_ = out;
+    if (options.shard) fs::remove(done_file(out, *options.shard));
+    output_.emplace(options.shard ? shard_folder(out, *options.shard) : out, submissions, id,
+                    RunSettings{id, fs::canonical(submissions), options.budget_s, options.media,
+                                options.policy});
+    if (!options.shard) ledger_.emplace(output_->path() / kLedgerFile);
+    if (ledger_ && ledger_->was_mended())
+      notice(
+          "the last line of the ledger was unfinished, because a run was killed while it wrote "
+          "it; it is written again");
     key_ = machine_key();
     if (!key_.notice.empty()) notice(key_.notice);
   }
 
   std::vector<Grade> run(std::vector<Submission> submissions) {
+    refuse_unknown_names(submissions);
+    std::vector<std::string> folders = folders_for(submissions);
+    if (options_.shard) keep_own(submissions, folders);
     read_once(submissions);
-    plan(submissions);
+    plan(submissions, folders);
     grade_open_ones();
-    return write_overview();
+    if (options_.shard) return end_shard();
+    decide_lowerings();
+    std::vector<Grade> grades = write_overview();
+    remove_shards(output_->path());
+    return grades;
   }
 
  private:
@@ -105,85 +115,120 @@ class Batch {
     }
   }
 
+  void keep_own(std::vector<Submission>& submissions, std::vector<std::string>& folders) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < submissions.size(); ++i) {
+      if (!options_.shard->holds(i)) continue;
+      std::swap(submissions[kept], submissions[i]);
+      std::swap(folders[kept++], folders[i]);
+    }
+    submissions.resize(kept);
+    folders.resize(kept);
+  }
+
   // Reuses earlier results that are complete, signed and unchanged.
-  void plan(const std::vector<Submission>& submissions) {
+  void plan(const std::vector<Submission>& submissions, const std::vector<std::string>& folders) {
     const std::string judging = digest(grader_digest(course_, id_, options_.budget_s) +
                                        protection_.words),
                       pictures = pictures_digest(course_, id_, options_);
-    std::set<std::string> folders;
-    for (const Submission& submission : submissions) {
-      // Names of folders are unique, but a student may have two flat files: each gets its own
-      // folder.
-      std::string folder = folder_of(submission.name);
-      for (int again = 2; !folders.insert(folder).second; ++again)
-        folder = folder_of(submission.name + '\0' + std::to_string(again));
-      Work work{&submission,
-                folder,
-                {submission_digest(submission), judging, rubric_digest(rubric_), pictures},
-                {},
-                {},
-                {},
-                0.0};
-      if (output_->owns(folder)) work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
+    for (std::size_t i = 0; i < submissions.size(); ++i) {
+      Work work;
+      work.submission = &submissions[i];
+      work.folder = folders[i];
+      work.key = {submission_digest(submissions[i]), judging, rubric_digest(rubric_), pictures};
+      if (output_->owns(work.folder))
+        work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
+      if (options_.shard && !work.earlier.record) read_result_of_class(work);
       work_.push_back(std::move(work));
     }
-    output_->claim(folders);
-    remark_equal_files();
-    report_doubles();
-    report_distrusted();
+    output_->claim({folders.begin(), folders.end()});
+    const Notice tell = [this](const std::string& sentence) { notice(sentence); };
+    remark_equal_files(work_);
+    report_doubles(work_, tell);
+    if (!options_.shard) shards_ = shard_folders(output_->path());
+    report_distrusted(work_, tell);
     for (Work& work : work_) {
-      if (is_current(work)) {
-        work.record = *work.earlier.record;
-        work.record.grade.taken_over = true;
-        ++done_;
-      } else {
-        open_.push_back(&work);
+      const bool is_asked = is_asked_for(work);
+      if (is_asked && (options_.again || !is_current(work))) {
+        if (settle_from_shard(work))
+          ++done_;
+        else
+          open_.push_back(&work);
+        continue;
       }
+      if (work.earlier.record)
+        take_over(work);
+      else
+        work.is_left_out = work.is_settled = true;
+      ++done_;
     }
+    log_settled();
   }
 
-  // Identical files under two names get a remark, which students do not see because it names
-  // others.
-  void remark_equal_files() {
-    std::map<std::string, std::vector<Work*>> by_digest;
-    for (Work& work : work_)
-      if (!work.submission->source.empty())
-        by_digest[digest_of_file(work.submission->source)].push_back(&work);
-    for (const auto& [bytes, equal] : by_digest)
-      for (Work* work : equal)
-        for (const Work* other : equal)
-          if (other != work)
-            work->remarks.push_back("the same file, byte for byte, as that of " +
-                                    plain_name(other->submission->name));
+  // For a shard the earlier result is that of the class, and where it is current nothing is to be
+  // done.
+  void read_result_of_class(Work& work) const {
+    const fs::path place = out_ / work.folder;
+    if (fs::is_directory(fs::symlink_status(place)))
+      work.earlier = read_earlier_run(place, id_, key_.bytes);
   }
 
-  // For example a folder and a flat file of one name: two rows of one student, of which a gradebook
-  // keeps the last.
-  void report_doubles() {
-    std::map<std::pair<std::string, std::string>, std::vector<Work*>> by_student;
-    for (Work& work : work_)
-      by_student[{work.submission->name, work.submission->student_id}].push_back(&work);
-    for (const auto& [student, works] : by_student) {
-      if (works.size() < 2) continue;
-      notice(
-          fmt::format("{}: {} submissions of that name: the gradebook has a row for each, and a "
-                      "system that reads it may keep the last. Leave only one.",
-                      plain_name(student.first), works.size()));
-      for (Work* work : works)
-        work->remarks.push_back(fmt::format("one of {} submissions of this name", works.size()));
+  // What a shard has finished is treated as if this process had made it now.
+  bool settle_from_shard(Work& work) {
+    for (const fs::path& shard : shards_) {
+      const fs::path made = shard / work.folder;
+      if (!fs::is_directory(fs::symlink_status(made))) continue;
+      Work trial = work;
+      trial.earlier = read_earlier_run(made, id_, key_.bytes);
+      if (!trial.earlier.problem.empty())
+        report_distrusted({trial}, [this](const std::string& sentence) { notice(sentence); });
+      if (!is_current(trial)) continue;
+      fs::create_directories(draft_of(work));
+      fs::rename(made, made_of(work));
+      settle(work, 0);
+      return true;
     }
+    return false;
   }
 
-  void report_distrusted() const {
-    constexpr std::size_t kNamed = 5;
-    std::size_t count = 0;
-    for (const Work& work : work_) {
-      if (work.earlier.problem.empty()) continue;
-      if (++count <= kNamed)
-        notice(plain_name(work.submission->name) + ": the earlier result is not reused, because " +
-               work.earlier.problem + "; graded again");
-    }
-    if (count > kNamed) notice(fmt::format("... and {} more", count - kNamed));
+  // A shard has no gradebook: only the class has.
+  std::vector<Grade> end_shard() const {
+    std::vector<Grade> grades;
+    for (const Work& work : work_) grades.push_back(work.record.grade);
+    write_whole(done_file(out_, *options_.shard),
+                fmt::format("{} of {} submissions graded, {} were current\n", fresh_, work_.size(),
+                            work_.size() - fresh_));
+    return grades;
+  }
+
+  bool is_asked_for(const Work& work) const {
+    const auto& only = options_.only;
+    return only.empty() || std::find(only.begin(), only.end(), work.submission->name) != only.end();
+  }
+
+  void refuse_unknown_names(const std::vector<Submission>& submissions) const {
+    std::vector<std::string> known;
+    for (const Submission& submission : submissions) known.push_back(submission.name);
+    for (const std::string& name : options_.only)
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        throw UserError("--only " + plain_name(name),
+                        "there is no submission of this name." + did_you_mean(name, known),
+                        "The names are those of the folders of submissions.");
+  }
+
+  void take_over(Work& work) const {
+    work.record = *work.earlier.record;
+    work.record.grade.taken_over = true;
+    work.is_settled = true;
+  }
+
+  // Entries are appended in the order of the submissions, each as soon as all before it are
+  // settled: so the ledger has the same bytes for any number of jobs.
+  void log_settled() {
+    if (!ledger_) return;
+    for (; logged_ < work_.size() && work_[logged_].is_settled; ++logged_)
+      if (!work_[logged_].is_left_out)
+        ledger_->append(ledger_entry_of(work_[logged_].record, compiler_));
   }
 
   bool pictures_do(const Work& work) const {
@@ -208,6 +253,7 @@ class Batch {
         [&](std::size_t i, int status, double seconds) {
           open_[i]->seconds = seconds;
           settle(*open_[i], status);
+          log_settled();
           ++done_;
           ++fresh_;
           report_progress(open_[i]->submission->name);
@@ -227,6 +273,10 @@ class Batch {
   }
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
+  fs::path earlier_place_of(const Work& work) const {
+    const fs::path place = place_of(work);
+    return options_.shard && !fs::exists(place) ? out_ / work.folder : place;
+  }
   fs::path draft_of(const Work& work) const { return output_->path() / draft_name(work.folder); }
   // The draft's folder has the final name inside, because the written files contain it.
   fs::path made_of(const Work& work) const { return draft_of(work) / work.folder; }
@@ -240,7 +290,8 @@ class Batch {
       own.progress = {};
       std::optional<Grade> grade;
       // only points have changed: added up again, not run again
-      if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);
+      if (verdicts_stand(work) && !options_.again)
+        grade = graded_by(rubric_, work.earlier.record->grade);
       GradeKey key = work.key;
       const bool is_rerun = !grade;
       if (is_rerun) {
@@ -248,10 +299,11 @@ class Batch {
         note_protection(*grade);
       }
       grade->folder = work.folder;
-      if (!is_rerun || !options_.media) keep_media(work, *grade, key);
+      if (!is_rerun || !options_.media)
+        keep_media(earlier_place_of(work), made_of(work), work.earlier.record, *grade, key);
       grade->change.clear();
       grade->changes.clear();
-      if (work.earlier.record) compare(*work.earlier.record, key, *grade);
+      if (work.earlier.record) note_changes(*work.earlier.record, key, *grade);
       write_grade(kind_, *grade, key, made_of(work), key_.bytes);
     } catch (const std::exception& error) {
       write_whole(draft_of(work) / "fault.txt", error.what());
@@ -265,60 +317,6 @@ class Batch {
     if (!protection_.note.empty()) grade.notes.push_back(protection_.note);
   }
 
-  // Keeps the pictures of an earlier run if none are made now: their files always, and on the page
-  // if the earlier record describes them.
-  void keep_media(const Work& work, Grade& grade, GradeKey& key) const {
-    const fs::path from = place_of(work) / "media", to = made_of(work) / "media";
-    if (!fs::is_directory(fs::symlink_status(from))) return;
-    fs::create_directories(to);
-    for (const auto& entry : fs::directory_iterator(from)) {
-      std::error_code failed;
-      fs::create_hard_link(entry.path(), to / entry.path().filename(), failed);
-      if (failed) fs::copy_file(entry.path(), to / entry.path().filename());
-    }
-    if (!work.earlier.record || work.earlier.record->grade.media.empty()) return;
-    const GradeRecord& earlier = *work.earlier.record;
-    grade.media = earlier.grade.media;
-    const bool is_same = earlier.key.submission == work.key.submission;
-    key.pictures = is_same ? earlier.key.pictures : "";
-    const std::string note =
-        "the pictures are of an earlier version of the file (no new ones were made)";
-    std::erase(grade.notes, note);
-    const bool were_old = std::find(earlier.grade.notes.begin(), earlier.grade.notes.end(), note) !=
-                          earlier.grade.notes.end();
-    if (!is_same || were_old) grade.notes.push_back(note);
-  }
-
-  // Lists the changes by a regrade, test by test.
-  static void compare(const GradeRecord& old, const GradeKey& key, Grade& now) {
-    const char* reason = old.key.submission != key.submission ? "the submission changed"
-                         : old.key.judging != key.judging     ? "the tests or the grader changed"
-                         : old.key.rubric != key.rubric       ? "the rubric changed"
-                                                              : "run again";
-    const auto said = [](const ScoredTest& test) {
-      return fmt::format("{}, {} of {}", words(test.result.verdict), points_text(test.score),
-                         points_text(test.item.points));
-    };
-    std::map<std::string, std::string> before;
-    for (const ScoredTest& test : old.grade.tests) before[test.item.test] = said(test);
-    for (const ScoredTest& test : now.tests) {
-      const auto it = before.find(test.item.test);
-      const std::string was = it == before.end() ? "absent" : it->second;
-      if (was != said(test))
-        now.changes.push_back({test.item.test, test.item.title, was, said(test), reason});
-      if (it != before.end()) before.erase(it);
-    }
-    for (const auto& [test, was] : before)
-      now.changes.push_back({test, test, was, "absent", reason});
-    if (old.grade.score != now.score && old.grade.has_score() && now.has_score())
-      now.change =
-          fmt::format("{} -> {}: {}", points_text(old.grade.score), points_text(now.score), reason);
-    else if (old.grade.has_score() != now.has_score())
-      now.change =
-          fmt::format("{} -> {}: {}", old.grade.has_score() ? points_text(old.grade.score) : "none",
-                      now.has_score() ? points_text(now.score) : "none", reason);
-  }
-
   // Puts a finished submission in place. After a fault of the grader an old result stays.
   void settle(Work& work, int status) {
     const fs::path draft = draft_of(work), made = made_of(work), place = place_of(work);
@@ -329,6 +327,11 @@ class Batch {
     const bool old_stands = earlier && earlier->grade.is_final() &&
                             earlier->key.submission == work.key.submission &&
                             !record->grade.is_final();
+    if (!options_.shard && !old_stands && would_lower(work, *record)) {
+      work.record = *record;  // until decide_lowerings
+      held_.push_back(&work);
+      return;
+    }
     if (old_stands) {
       work.record = *earlier;
       work.record.grade.change =
@@ -337,17 +340,42 @@ class Batch {
       put_in_place(made, place, draft / "old");
       work.record = *record;
     }
+    work.is_settled = true;
     std::error_code ignored;
     fs::remove_all(draft, ignored);
   }
 
-  // A reader sees the whole old folder or the whole new one: they are exchanged atomically where
-  // the file system can.
-  static void put_in_place(const fs::path& made, const fs::path& place, const fs::path& aside) {
-    if (!fs::exists(fs::symlink_status(place))) return fs::rename(made, place);
-    if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, place.c_str(), RENAME_EXCHANGE) == 0) return;
-    fs::rename(place, aside);
-    fs::rename(made, place);
+  // Whether somebody has to agree before this result replaces the earlier one.
+  bool would_lower(const Work& work, const GradeRecord& now) const {
+    const std::optional<GradeRecord>& old = work.earlier.record;
+    if (!old || !old->grade.has_score() || !now.grade.is_final()) return false;
+    if (!options_.guard_changed_files && old->key.submission != work.key.submission) return false;
+    return !now.grade.has_score() || now.grade.score < old->grade.score;
+  }
+
+  // Asks once for all; results that may not be lowered stay as they were.
+  void decide_lowerings() {
+    if (held_.empty()) return;
+    std::sort(held_.begin(), held_.end());  // the order of the submissions
+    std::vector<Lowering> lowerings;
+    for (const Work* work : held_) {
+      const Grade& grade = work->record.grade;
+      lowerings.push_back({work->submission->name, grade.change, grade.changes});
+    }
+    const bool may = options_.may_lower && options_.may_lower(lowerings);
+    for (Work* work : held_) {
+      if (may) {
+        put_in_place(made_of(*work), place_of(*work), draft_of(*work) / "old");
+      } else {
+        const std::string change = work->record.grade.change;
+        take_over(*work);
+        work->record.grade.change = "not lowered (" + change + ")";
+      }
+      work->is_settled = true;
+      std::error_code ignored;
+      fs::remove_all(draft_of(*work), ignored);
+    }
+    log_settled();
   }
 
   // The grading process itself failed: writes a page that says so, without a score.
@@ -373,7 +401,7 @@ class Batch {
     add_up(grade);
     fs::remove_all(made_of(work));
     fs::create_directories(made_of(work));
-    keep_media(work, grade, record.key);
+    keep_media(earlier_place_of(work), made_of(work), work.earlier.record, grade, record.key);
     write_grade(kind_, grade, record.key, made_of(work), key_.bytes);
     record.files = digests_below(made_of(work));
     return record;
@@ -392,23 +420,29 @@ class Batch {
 
   std::vector<Grade> write_overview() {
     std::vector<Grade> grades;
-    std::vector<GradeRecord> records;
     nlohmann::ordered_json times = {{"command", course_.command},
                                     {"seconds", nlohmann::ordered_json::object()}};
+    std::size_t left_out = 0;
     for (Work& work : work_) {
+      left_out += work.is_left_out;
+      if (work.is_left_out) continue;
       work.record.grade.name = work.submission->name;
       work.record.grade.remarks = work.remarks;
       work.record.grade.student_id = work.submission->student_id;
       grades.push_back(work.record.grade);
-      records.push_back(work.record);
       if (work.seconds > 0.0) times["seconds"][work.folder] = work.seconds;
     }
+    if (left_out > 0)
+      notice(
+          fmt::format("{} submissions were never graded and are not in the overview: grade all "
+                      "of them with tumble grade",
+                      left_out));
     const fs::path& out = output_->path();
     write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
-    write_whole(out / "ledger.json", ledger_json(id_, records));
     index_page(kind_, grades).write(out / "index.html");
     write_whole(out / "times.json",
                 times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+    if (options_.overview) options_.overview(out, grades);
     return grades;
   }
 
@@ -421,10 +455,15 @@ class Batch {
   const modules::ModuleKind& kind_;
   const GradeOptions& options_;
   Rubric rubric_;
+  fs::path out_;  // of the class, also for a shard
   std::optional<OutputFolder> output_;
+  std::vector<fs::path> shards_;  // folders of results that may be taken over
+  std::optional<Ledger> ledger_;  // of the class
+  const std::string compiler_ = compiler_in_words();
   MachineKey key_;
   std::vector<Work> work_;
-  std::vector<Work*> open_;
+  std::vector<Work*> open_, held_;
+  std::size_t logged_ = 0;  // of work_
   std::size_t done_ = 0, fresh_ = 0;
   Clock::time_point start_;
 };

@@ -4,7 +4,8 @@
 ///   OUT/index.html                 every submission with its score
 ///   OUT/gradebook.csv              for Canvas: blank if the grader failed or found no file, so
 ///   that no old score is lowered
-///   OUT/ledger.json                digests of submission, grader and result; changes by a regrade
+///   OUT/ledger.jsonl               every result that was ever put here, as a chain of digests
+///   (ledger.h); changes by a regrade
 ///   OUT/NAME/index.html            scores, stories, pictures
 ///   OUT/NAME/results.json          in Gradescope's format
 ///   OUT/NAME/record.json           the ledger's entry, signed by this machine's key

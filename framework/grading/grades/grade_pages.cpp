@@ -255,7 +255,11 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
   report::Page page(
       kind.title + ": all submissions",
       fmt::format("{}, {} submission{}", kind.id, grades.size(), grades.size() == 1 ? "" : "s"));
-  page.links({{"gradebook.csv", "gradebook.csv"}, {"ledger.json", "ledger.json"}});
+  page.links({{"The class", "class.html"},
+              {"Pictures", "pictures.html"},
+              {"Similar submissions", "similar.html"},
+              {"gradebook.csv", "gradebook.csv"},
+              {"ledger.jsonl", "ledger.jsonl"}});
   std::vector<double> scores;
   std::size_t faults = 0, not_found = 0;
   for (const Grade& grade : grades) {

@@ -25,8 +25,9 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = ".tumble-grade.json";
 constexpr const char* kLock = ".tumble-lock";
 constexpr const char* kDraft = ".making-";
-constexpr std::array<std::string_view, 4> kOverview = {"index.html", "gradebook.csv", "ledger.json",
-                                                       "times.json"};
+constexpr std::array<std::string_view, 8> kOverview = {
+    "index.html",    "gradebook.csv", "ledger.jsonl",  "times.json",
+    "standing.json", "class.html",    "pictures.html", "similar.html"};
 constexpr std::array<std::string_view, 3> kOfASubmission = {"index.html", "results.json",
                                                             "record.json"};
 const char* const kElsewhere = "Give --out a folder of its own, or one that does not exist yet.";
@@ -108,8 +109,30 @@ bool holder_lives(int lock) {
 
 std::string draft_name(const std::string& folder) { return kDraft + folder; }
 
-OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id)
-    : id_(id) {
+RunSettings settings_of(const fs::path& out) {
+  const fs::path file = out / kManifest;
+  try {
+    std::ifstream in(file);
+    if (!in)
+      throw UserError(shown(out), "is no folder of results: it has no " + std::string(kManifest),
+                      "Name the folder that was given to grade as --out.");
+    const auto json = nlohmann::json::parse(in);
+    RunSettings settings;
+    settings.assignment = json.at("assignment");
+    settings.submissions = json.at("submissions").get<std::string>();
+    settings.budget_s = json.at("budget_s");
+    settings.media = json.at("media");
+    settings.policy = json.at("policy").get<std::string>();
+    return settings;
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(shown(file), "cannot be read as the list of a folder of results",
+                    "Run tumble grade with this folder as --out once.");
+  }
+}
+
+OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id,
+                           const RunSettings& settings)
+    : id_(id), settings_(settings) {
   std::error_code failed;
   path_ = fs::weakly_canonical(fs::absolute(out), failed);
   if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
@@ -186,6 +209,7 @@ void OutputFolder::refuse_foreign_files() const {
     if (has_manifest && fs::is_regular_file(status) &&
         (name == kManifest || is_one_of(name, kOverview)))
       continue;
+    if (fs::is_directory(status) && name == kShards) continue;
     const bool is_drafts =
         name.starts_with(kDraft) && owns(name.substr(std::string_view(kDraft).size()));
     if (fs::is_directory(status) && is_drafts) continue;
@@ -227,12 +251,35 @@ void OutputFolder::sweep_drafts() const {
   }
 }
 
+void remove_results(const fs::path& out) {
+  std::error_code ignored;
+  try {
+    std::ifstream in(out / kManifest);
+    for (const std::string folder : nlohmann::json::parse(in).at("folders")) {
+      if (!is_one_component(folder) || !is_there(out / folder)) continue;
+      refuse_foreign_in(out / folder);
+      fs::remove_all(out / folder, ignored);
+      fs::remove_all(out / draft_name(folder), ignored);
+    }
+    for (const char* file : {kManifest, kLock}) fs::remove(out / file, ignored);
+  } catch (const std::exception&) {
+    // not ours, or foreign files in it: it stays
+  }
+  fs::remove(out, ignored);  // only when it is empty
+}
+
 void OutputFolder::claim(const std::set<std::string>& folders) {
   for (const std::string& folder : folders)
     if (!owns(folder) && is_there(path_ / folder)) refuse_foreign(path_ / folder);
   folders_.insert(folders.begin(), folders.end());
-  const nlohmann::ordered_json manifest = {{"assignment", id_}, {"folders", folders_}};
-  write_whole(path_ / kManifest, manifest.dump(1) + '\n');
+  const nlohmann::ordered_json manifest = {{"assignment", id_},
+                                           {"submissions", settings_.submissions.string()},
+                                           {"budget_s", settings_.budget_s},
+                                           {"media", settings_.media},
+                                           {"policy", settings_.policy.string()},
+                                           {"folders", folders_}};
+  write_whole(path_ / kManifest,
+              manifest.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
 }  // namespace tumble::grading

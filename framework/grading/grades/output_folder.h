@@ -3,6 +3,7 @@
 ///   OUT/.tumble-grade.json   the assignment, and the folders that this grader has created here
 ///   OUT/.tumble-lock         held while a grading runs; the kernel releases it when the last of
 ///   its processes has ended
+///   OUT/.shards/             results of parts of the class (shard.h)
 /// If OUT contains any other file, nothing is written.
 #pragma once
 
@@ -12,17 +13,31 @@
 
 namespace tumble::grading {
 
+/// What a grading was asked to do, kept in the manifest for commands that come later.
+struct RunSettings {
+  std::string assignment;             // "a1"
+  std::filesystem::path submissions;  // absolute
+  double budget_s = 60.0;
+  bool media = true;
+  std::filesystem::path policy;  // absolute; empty: none
+};
+
+/// The settings of the last grading into a folder of results.
+/// @throws UserError when the folder has no manifest of this grader
+RunSettings settings_of(const std::filesystem::path& out);
+
 class OutputFolder {
  public:
   /// Opens OUT for one grading, and creates it if it is missing. Nothing is changed before
   /// everything has been checked.
   /// @param out          may be a relative path, or lead through links
   /// @param submissions  the folder to be graded
+  /// @param settings     kept in the manifest
   /// @throws UserError with the obstacle: OUT is, contains or is inside `submissions`, contains a
   ///   file that this grader did not write or the results of another assignment, or another grading
   ///   runs there
   OutputFolder(const std::filesystem::path& out, const std::filesystem::path& submissions,
-               const std::string& id);
+               const std::string& id, const RunSettings& settings = {});
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
@@ -33,6 +48,9 @@ class OutputFolder {
   /// Adds these folders to the manifest; to be called before they are created.
   /// @throws UserError when one exists already and was not created by this grader
   void claim(const std::set<std::string>& folders);
+
+  /// The folders that this grader has created.
+  const std::set<std::string>& folders() const { return folders_; }
 
   /// Whether this grader has created a folder of this name.
   bool owns(const std::string& folder) const { return folders_.contains(folder); }
@@ -45,11 +63,18 @@ class OutputFolder {
 
   std::filesystem::path path_;
   std::string id_;
+  RunSettings settings_;
   std::set<std::string> folders_;  // in the manifest
   int lock_ = -1;
 };
 
 /// Name of the draft of a submission's folder, beside it.
 std::string draft_name(const std::string& folder);
+
+/// Folder in OUT where parts of a class are graded (shard.h).
+inline constexpr const char* kShards = ".shards";
+
+/// Removes an output folder and the results in it, but no file that this grader did not write.
+void remove_results(const std::filesystem::path& out);
 
 }  // namespace tumble::grading

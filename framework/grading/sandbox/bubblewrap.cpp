@@ -1,4 +1,4 @@
-// Every option here prevents an attack (tests/grading/attacks has the attacks).
+// Every option here prevents an attack (solutions_private/attacks/calls has the attacks).
 #include "framework/grading/sandbox/bubblewrap.h"
 
 #include <fcntl.h>

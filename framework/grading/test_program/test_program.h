@@ -3,6 +3,7 @@
 
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/test_program/test_runner.h"
+#include "framework/modules/load.h"
 #include "framework/modules/under_test.h"
 
 namespace tumble::grading {
@@ -16,12 +17,28 @@ namespace tumble::grading {
 ///   attempted and the others right
 int run_check_program(int argc, char** argv);
 
+/// The shared object that the first word names.
+/// @return nothing where it cannot be loaded, after a message
+modules::AnyModule load_first_word(const modules::ModuleName& name, int argc, char** argv);
+
 /// The tests against the functions linked into this program.
 template <class Module>
 int run_linked_tests(int argc, char** argv) {
   static const Module module = observed(Module::linked());
   modules::UnderTest<Module>::table = &module;
   return run_check_program(argc, argv);
+}
+
+/// The tests against a shared object built from a student's file: the first word. For an installed
+/// course, where nothing is linked.
+template <class Module>
+int run_loaded_tests(int argc, char** argv) {
+  const modules::AnyModule loaded =
+      load_first_word(modules::find_name(assignment_names(), Module::kId), argc, argv);
+  if (!loaded) return static_cast<int>(ExitCode::kUserError);
+  static const Module module = observed(*static_cast<const Module*>(loaded.get()));
+  modules::UnderTest<Module>::table = &module;
+  return run_check_program(argc - 1, argv + 1);
 }
 
 }  // namespace tumble::grading

@@ -67,7 +67,7 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
           std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
     constexpr const char* kFailed = "Failed\n";
     if (message.starts_with(kFailed)) message.erase(0, std::strlen(kFailed));
-    if (message.size() > kStory) message = message.substr(0, kStory) + "\n[cut here]";
+    if (message.size() > kStory) message.replace(kStory, std::string::npos, "\n[cut here]");
     if (text.size() <= kStory) text += (text.empty() ? "" : "\n") + message;
   }
 };

@@ -16,7 +16,7 @@ template <class Module>
 int run_linked_worker(const void* (*exported)()) {
   keep_freed_memory();
   try {
-    modules::Channel channel(kChannelFd, kChannelFd);
+    modules::Channel channel(modules::Channel::End::kAnswers, kChannelFd, kChannelFd);
     modules::serve(*static_cast<const Module*>(exported()), channel);
     return 0;
   } catch (const std::exception& error) {

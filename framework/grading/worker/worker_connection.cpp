@@ -128,7 +128,7 @@ void WorkerConnection::start() {
     plain_ = start_plain(worker_programs(options_.id, options_.programs).worker, options_, pair[1]);
   }
   ::close(pair[1]);
-  channel_ = std::make_unique<Channel>(socket_, socket_);
+  channel_ = std::make_unique<Channel>(Channel::End::kAsks, socket_, socket_);
   channel_->extend_by([this](TimePoint passed) { return check_time(passed); });
   callbacks_ = 0;
   worker_ = plain_;

@@ -20,7 +20,7 @@ int run_worker(int argc, char** argv) {
   if (argc != 2) return 2;
   try {
     const modules::AnyModule module = modules::load_module({Module::kId, Module::kId, ""}, argv[1]);
-    modules::Channel channel(kChannelFd, kChannelFd);
+    modules::Channel channel(modules::Channel::End::kAnswers, kChannelFd, kChannelFd);
     modules::serve(*static_cast<const Module*>(module.get()), channel);
     return 0;
   } catch (const std::exception& error) {

@@ -1,0 +1,216 @@
+// tumble class ACTION OUT: what a teaching assistant asks of a folder of results.
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "framework/cli/verb.h"
+#include "framework/core/nearest_word.h"
+#include "framework/core/version.h"
+#include "framework/grading/course/machine_key.h"
+#include "framework/grading/grades/class_files.h"
+#include "framework/grading/grades/class_facts.h"
+#include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/grades/ledger.h"
+#include "framework/grading/grades/output_folder.h"
+#include "framework/grading/grades/scoring.h"
+#include "framework/grading/verdicts/plain_text.h"
+#include "framework/trajectory/record.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using grading::plain_name;
+
+struct ClassWords {
+  std::string action, out, name, test, to;
+};
+
+// The folder of results, and what is asked of it.
+struct Class {
+  Context& context;
+  const ClassWords& words;
+  grading::RunSettings settings;
+};
+
+std::vector<grading::GradeRecord> records_of(const Class& all) {
+  return grading::records_of(
+      all.words.out, all.settings.assignment, grading::machine_key().bytes,
+      [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); });
+}
+
+std::vector<grading::Grade> grades_of(const Class& all) {
+  std::vector<grading::Grade> grades;
+  for (auto& record : records_of(all)) grades.push_back(std::move(record.grade));
+  return grades;
+}
+
+grading::Grade grade_called(const Class& all) {
+  std::vector<std::string> known;
+  for (grading::Grade& grade : grades_of(all)) {
+    if (grade.name == all.words.name || grade.folder == all.words.name) return std::move(grade);
+    known.push_back(grade.name);
+  }
+  throw UserError(
+      plain_name(all.words.name),
+      "is no submission in " + all.words.out + "." + did_you_mean(all.words.name, known),
+      "For example: tumble class " + all.words.action + " OUT NAME");
+}
+
+// One test of one submission, with its whole story, also of a hidden test.
+void story(const Class& all) {
+  const grading::Grade grade = grade_called(all);
+  std::vector<std::string> known;
+  for (const grading::ScoredTest& test : grade.tests) known.push_back(test.item.test);
+  std::size_t shown = 0;
+  for (const grading::ScoredTest& test : grade.tests) {
+    const bool is_asked = all.words.test.empty() ? test.result.verdict != grading::Verdict::kRight
+                                                 : test.item.test == all.words.test;
+    if (!is_asked) continue;
+    ++shown;
+    fmt::print("{}{}\n{}: {}, {} of {} points, {} calls{}\n{}\n\n", test.item.test,
+               test.item.hidden ? " (hidden)" : "", test.item.title,
+               grading::words(test.result.verdict), grading::points_text(test.score),
+               grading::points_text(test.item.points), test.result.calls,
+               test.result.last_call.empty() ? "" : ", the last of " + test.result.last_call,
+               grading::plain_text(test.result.story));
+  }
+  if (shown == 0 && !all.words.test.empty())
+    throw UserError(
+        plain_name(all.words.test),
+        "is no test of " + all.settings.assignment + "." + did_you_mean(all.words.test, known),
+        "Names are Suite.Name, as in its results.json.");
+  if (shown == 0) fmt::print("Every test is right.\n");
+}
+
+// A page for the student: hidden tests keep their points, and neither name nor story.
+void page(const Class& all) {
+  if (all.words.to.empty())
+    throw UserError("class page", "has no place to write to", "Say --to FOLDER, outside of OUT.");
+  const grading::Grade grade = grading::for_student(grade_called(all));
+  const fs::path to = fs::weakly_canonical(fs::absolute(all.words.to)),
+                 out = fs::weakly_canonical(fs::absolute(all.words.out));
+  if (std::mismatch(out.begin(), out.end(), to.begin(), to.end()).first == out.end())
+    throw UserError(to.string(), "is in the folder of results, which belongs to the grader",
+                    "Name another folder.");
+  grading::submission_page(all.context.registry.find(all.settings.assignment), grade,
+                           version_in_words(kProgramVersion))
+      .write(to / "index.html");
+  if (fs::is_directory(out / grade.folder / "media"))
+    fs::copy(out / grade.folder / "media", to / "media",
+             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  fmt::print("wrote {}\n", (to / "index.html").string());
+}
+
+void late(const Class& all) {
+  const auto standings = grading::read_standings(fs::path(all.words.out) / grading::kStandingFile);
+  std::size_t count = 0;
+  for (const grading::Standing& s : standings) {
+    if (s.late_days == 0 && s.after && s.is_time_known) continue;
+    fmt::print("{}: {}{}\n", plain_name(s.person.name), s.why,
+               s.before && s.after && *s.before != *s.after
+                   ? fmt::format(" ({} -> {})", grading::points_text(*s.before),
+                                 grading::points_text(*s.after))
+                   : "");
+    ++count;
+  }
+  fmt::print("{} of {} late, without a score or without a time\n", count, standings.size());
+}
+
+// Groups of the roster, equal files, and files that are alike.
+void together(const Class& all) {
+  const fs::path file = fs::path(all.words.out) / grading::kStandingFile;
+  if (fs::exists(file)) {
+    std::map<std::string, std::vector<std::string>> groups;
+    for (const grading::Standing& s : grading::read_standings(file))
+      if (!s.submission.empty()) groups[s.submission].push_back(plain_name(s.person.name));
+    for (const auto& [submission, names] : groups)
+      if (names.size() > 1)
+        fmt::print("as a group: {} ({})\n", fmt::join(names, ", "), plain_name(submission));
+  }
+  for (auto& names : grading::equal_submissions(records_of(all))) {
+    for (std::string& name : names) name = plain_name(name);
+    fmt::print("the same file: {}\n", fmt::join(names, ", "));
+  }
+  if (!grading::can_compare_sources())
+    return fmt::print(
+        "not compared further: sim_c++ is not installed (sudo apt-get install "
+        "similarity-tester)\n");
+  constexpr int kLeastPercent = 80;
+  const auto& kind = all.context.registry.find(all.settings.assignment);
+  const auto sources = grading::sources_in(all.settings.submissions, kind);
+  const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
+  for (const auto& pair :
+       grading::similar_pairs(sources, grading::starter_of(course, kind), kLeastPercent, 0))
+    fmt::print("alike by {} %: {}, {}\n", pair.percent, plain_name(sources[pair.a].name),
+               plain_name(sources[pair.b].name));
+}
+
+void slips(const Class& all) {
+  for (const grading::SlipCount& slip : grading::slips_made_most(grades_of(all)))
+    fmt::print("{:>5}  {}\n", slip.names.size(), slip.slip);
+}
+
+void changed(const Class& all) {
+  const auto ledger = grading::read_ledger(fs::path(all.words.out) / grading::kLedgerFile);
+  if (!ledger.fault.empty())
+    throw UserError(all.words.out, "has a ledger that does not fit together: " + ledger.fault);
+  std::size_t count = 0;
+  for (const grading::LedgerEntry& entry : ledger.entries) {
+    if (entry.changes.empty() && entry.change.empty()) continue;
+    ++count;
+    fmt::print("{}: {}\n", entry.name,
+               entry.change.empty() ? "the same score, by other tests" : entry.change);
+    for (const grading::TestChange& c : entry.changes)
+      fmt::print("  {}: {} -> {} ({})\n", c.test, c.before, c.after, c.reason);
+  }
+  fmt::print("{} changes in {} entries of the ledger\n", count, ledger.entries.size());
+}
+
+const std::map<std::string, void (*)(const Class&)> kActions = {
+    {"story", story}, {"page", page},       {"late", late},
+    {"slips", slips}, {"changed", changed}, {"together", together}};
+
+void run(Context& context, const ClassWords& words) {
+  std::vector<std::string> known;
+  for (const auto& [name, action] : kActions) known.push_back(name);
+  const auto it = kActions.find(words.action);
+  if (it == kActions.end())
+    throw UserError("class " + words.action,
+                    "there is no such action." + did_you_mean(words.action, known),
+                    fmt::format("There are {}.", fmt::join(known, ", ")));
+  it->second({context, words, grading::settings_of(words.out)});
+}
+
+}  // namespace
+
+void add_class(CLI::App& app, Context& context) {
+  auto words = std::make_shared<ClassWords>();
+  Verb verb(app, "class",
+            "What a graded class did: stories, late ones, slips, changes, equal files");
+  verb.option("action", words->action, "story, page, late, together, slips or changed")
+      .required()
+      .type_name("ACTION");
+  verb.option("results", words->out, "The folder that was given to grade as --out")
+      .required()
+      .type_name("OUT");
+  verb.option("name", words->name, "For story and page: the submission").type_name("NAME");
+  verb.option("test", words->test, "For story: Suite.Name; default: every test that is not right")
+      .type_name("TEST");
+  verb.option("--to", words->to, "For page: where it goes, outside of OUT").type_name("FOLDER");
+  verb.footer(
+      "story OUT NAME [TEST]    one test of one student with its whole story, also of a hidden "
+      "one\n"
+      "page OUT NAME --to DIR   the student's page, without names and stories of hidden tests\n"
+      "late OUT                 who is late, without a score or without a time (needs --policy)\n"
+      "together OUT             groups, equal files, and files that are alike\n"
+      "slips OUT                the ten slips that the most students made\n"
+      "changed OUT              who changed after a regrade, and by which test\n"
+      "One student again: tumble regrade a1 OUT --only NAME --again\n"
+      "Exit: 0 done, 2 something to repair.");
+  verb.runs([&context, words] { run(context, *words); });
+}
+
+}  // namespace tumble::cli

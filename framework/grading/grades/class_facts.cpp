@@ -1,0 +1,113 @@
+#include "framework/grading/grades/class_facts.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "framework/grading/verdicts/plain_text.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What follows "likely:" in a story, each once.
+void collect_slips(const std::string& story, std::set<std::string>& slips) {
+  constexpr std::string_view kMark = "likely:";
+  std::istringstream lines(story);
+  for (std::string line; std::getline(lines, line);) {
+    const auto first = line.find_first_not_of(' ');
+    if (first == std::string::npos || line.compare(first, kMark.size(), kMark) != 0) continue;
+    const auto text = line.find_first_not_of(' ', first + kMark.size());
+    if (text != std::string::npos) slips.insert(plain_name(line.substr(text)));
+  }
+}
+
+}  // namespace
+
+std::vector<SlipCount> slips_made_most(const std::vector<Grade>& grades, std::size_t most) {
+  std::map<std::string, std::vector<std::string>> names;
+  for (const Grade& grade : grades) {
+    std::set<std::string> slips;
+    for (const ScoredTest& test : grade.tests)
+      if (test.result.verdict == Verdict::kWrong) collect_slips(test.result.story, slips);
+    for (const std::string& slip : slips) names[slip].push_back(grade.name);
+  }
+  std::vector<SlipCount> counts;
+  for (auto& [slip, who] : names) counts.push_back({slip, std::move(who)});
+  std::stable_sort(counts.begin(), counts.end(), [](const SlipCount& a, const SlipCount& b) {
+    return a.names.size() > b.names.size();
+  });
+  if (counts.size() > most) counts.resize(most);
+  return counts;
+}
+
+std::vector<TestCount> test_counts(const std::vector<Grade>& grades) {
+  std::vector<TestCount> counts;
+  std::map<std::string, std::size_t> place;
+  for (const Grade& grade : grades) {
+    if (!grade.has_score()) continue;
+    for (const ScoredTest& test : grade.tests) {
+      const auto [it, is_new] = place.emplace(test.item.test, counts.size());
+      if (is_new) counts.push_back({test.item});
+      ++counts[it->second].judged;
+      counts[it->second].right += test.result.verdict == Verdict::kRight;
+    }
+  }
+  return counts;
+}
+
+std::vector<std::vector<std::string>> equal_submissions(const std::vector<GradeRecord>& records) {
+  std::map<std::string, std::vector<std::string>> by_digest;
+  for (const GradeRecord& record : records)
+    if (record.grade.state != GradeState::kNothingToCompile)
+      by_digest[record.key.submission].push_back(record.grade.name);
+  std::vector<std::vector<std::string>> groups;
+  for (auto& [digest, names] : by_digest)
+    if (names.size() > 1) groups.push_back(std::move(names));
+  std::sort(groups.begin(), groups.end());
+  return groups;
+}
+
+std::vector<GradeRecord> records_of(const fs::path& out, const std::string& assignment,
+                                    const std::string& machine_key,
+                                    const std::function<void(const std::string&)>& notice) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(out))
+    if (entry.is_directory() && !entry.is_symlink() && fs::exists(entry.path() / "record.json"))
+      folders.push_back(entry.path());
+  std::sort(folders.begin(), folders.end());
+  std::vector<GradeRecord> records;
+  for (const fs::path& folder : folders) {
+    EarlierRun run = read_earlier_run(folder, assignment, machine_key);
+    if (run.record)
+      records.push_back(std::move(*run.record));
+    else if (!folder.filename().string().starts_with('.'))
+      notice(plain_name(folder.filename().string()) + " is left out, because " + run.problem);
+  }
+  return records;
+}
+
+Grade for_student(Grade grade) {
+  std::set<std::string> hidden;
+  std::size_t number = 0;
+  for (ScoredTest& test : grade.tests) {
+    if (!test.item.hidden) continue;
+    hidden.insert(test.item.test);
+    test.item.title = fmt::format("Hidden test {}", ++number);
+    test.item.test = fmt::format("Hidden.Test{}", number);
+    const Verdict verdict = test.result.verdict;
+    test.result = {};
+    test.result.test = test.item.test;
+    test.result.verdict = verdict;
+  }
+  std::erase_if(grade.changes,
+                [&](const TestChange& change) { return hidden.contains(change.test); });
+  grade.remarks.clear();
+  return grade;
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,43 @@
+/// The files about a class in a folder of results: gradebook by the course's rules, pages of the
+/// instructor, and what later commands read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/grading/course/course.h"
+#include "framework/grading/grades/policy_file.h"
+#include "framework/grading/grades/similar.h"
+
+namespace tumble::grading {
+
+inline constexpr const char* kStandingFile = "standing.json";
+
+/// gradebook.csv with the points after the course's rules in the column that Canvas imports, and
+/// two that it ignores ("read only"): points before them, and why. Blank where there is no score.
+std::string gradebook_csv(const std::string& assignment_title,
+                          const std::vector<Standing>& standings, double possible,
+                          bool is_official);
+
+/// standing.json: every standing, for programs.
+std::string standing_json(const std::vector<Standing>& standings);
+/// @throws UserError when the file is missing or cannot be read
+std::vector<Standing> read_standings(const std::filesystem::path& file);
+
+/// One sentence for each person without a score and each submission of nobody in the roster.
+std::vector<std::string> what_needs_a_look(const std::vector<Standing>& standings);
+
+/// The submissions' texts, and the starter's.
+std::vector<NamedSource> sources_in(const std::filesystem::path& submissions,
+                                    const modules::ModuleKind& kind);
+std::string starter_of(const Course& course, const modules::ModuleKind& kind);
+
+/// Writes class.html, pictures.html, similar.html, and with a policy gradebook.csv and
+/// standing.json (without one, an earlier standing.json is removed).
+/// @param policy  none: nullptr
+void write_class_files(const Course& course, const modules::ModuleKind& kind,
+                       const std::filesystem::path& submissions, const PolicyFile* policy,
+                       const std::filesystem::path& out, const std::vector<Grade>& grades);
+
+}  // namespace tumble::grading

@@ -1,0 +1,83 @@
+#include "framework/grading/grades/shard.h"
+
+#include <algorithm>
+#include <regex>
+
+#include "framework/core/error.h"
+#include "framework/grading/grades/output_folder.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostShards = 1'000'000;
+
+std::string name_of(const Shard& shard) {
+  return std::to_string(shard.number) + "-of-" + std::to_string(shard.of);
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> all;
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
+    all.push_back(it->path());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code failed;
+  return fs::is_directory(fs::symlink_status(path, failed));
+}
+
+}  // namespace
+
+Shard shard_of(const std::string& words) {
+  static const std::regex form("([0-9]{1,7})/([0-9]{1,7})");
+  std::smatch match;
+  if (std::regex_match(words, match, form)) {
+    const Shard shard{std::stoi(match[1]), std::stoi(match[2])};
+    if (shard.number >= 1 && shard.number <= shard.of && shard.of <= kMostShards) return shard;
+  }
+  throw UserError("--shard", "is '" + words + "'",
+                  "The second of eight shards is 2/8; they are counted from 1.");
+}
+
+fs::path shards_folder(const fs::path& out) { return out / kShards; }
+
+fs::path shard_folder(const fs::path& out, const Shard& shard) {
+  return shards_folder(out) / name_of(shard);
+}
+
+fs::path done_file(const fs::path& out, const Shard& shard) {
+  return shards_folder(out) / (name_of(shard) + ".done");
+}
+
+std::vector<fs::path> shard_folders(const fs::path& out) {
+  static const std::regex form("[0-9]+-of-[0-9]+");
+  std::vector<fs::path> all;
+  for (const fs::path& entry : entries_of(shards_folder(out)))
+    if (is_folder(entry) && std::regex_match(entry.filename().string(), form)) all.push_back(entry);
+  return all;
+}
+
+std::size_t finished_in_shards(const fs::path& out) {
+  std::size_t count = 0;
+  for (const fs::path& shard : shard_folders(out))
+    for (const fs::path& entry : entries_of(shard))
+      if (is_folder(entry) && entry.filename().string().front() != '.') ++count;
+  return count;
+}
+
+void remove_shards(const fs::path& out) {
+  static const std::regex ours("[0-9]+-of-[0-9]+\\.done|log-[0-9]+\\.txt|job\\.(sh|id|log)");
+  std::error_code ignored;
+  for (const fs::path& shard : shard_folders(out)) remove_results(shard);
+  for (const fs::path& entry : entries_of(shards_folder(out)))
+    if (!is_folder(entry) && std::regex_match(entry.filename().string(), ours))
+      fs::remove(entry, ignored);
+  fs::remove(shards_folder(out), ignored);  // only when it is empty
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,47 @@
+/// A shard: a part of a class that is graded by itself, perhaps on another machine. A grading of the
+/// whole class takes over what shards have finished, as if it had graded it.
+///
+///   OUT/.shards/2-of-8/       results of the second of eight: an output folder (output_folder.h)
+///   OUT/.shards/2-of-8.done   that shard has come to its end; how many it graded
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tumble::grading {
+
+struct Shard {
+  int number = 1, of = 1;  // 1 <= number <= of
+
+  /// Whether a submission belongs to it. Neighbours in a list go to different shards, so that work
+  /// is spread evenly.
+  /// @param index  of the submission, by name
+  bool holds(std::size_t index) const {
+    return index % static_cast<std::size_t>(of) == static_cast<std::size_t>(number - 1);
+  }
+};
+
+/// From "2/8".
+/// @throws UserError for other words
+Shard shard_of(const std::string& words);
+
+/// OUT/.shards
+std::filesystem::path shards_folder(const std::filesystem::path& out);
+/// OUT/.shards/2-of-8
+std::filesystem::path shard_folder(const std::filesystem::path& out, const Shard& shard);
+/// OUT/.shards/2-of-8.done
+std::filesystem::path done_file(const std::filesystem::path& out, const Shard& shard);
+
+/// Every folder of results in OUT/.shards, whatever number of shards it is of, by name.
+std::vector<std::filesystem::path> shard_folders(const std::filesystem::path& out);
+
+/// Submissions that shards of OUT have finished so far.
+std::size_t finished_in_shards(const std::filesystem::path& out);
+
+/// Removes what is left in OUT/.shards when everything has been taken over: only files that shards
+/// and jobs write; any other file stays, and its folders with it.
+void remove_shards(const std::filesystem::path& out);
+
+}  // namespace tumble::grading

@@ -1,0 +1,171 @@
+// A class overnight: the same bytes at any number of jobs, nothing lost to kills, nobody lowered
+// without a word.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <set>
+
+#include "framework/core/random.h"
+#include "tests/cli/grading_fixture.h"
+
+namespace tumble::grading {
+namespace {
+
+// The reference with the impulse's sign lost: some tests are right and some are wrong.
+std::string with_wrong_sign() {
+  std::string text = text_of(kReference);
+  const std::string right = "return -(1.0 + restitution)";
+  const auto at = text.rfind(right);
+  EXPECT_NE(at, std::string::npos);
+  return text.replace(at, right.size(), "return (1.0 + restitution)");
+}
+
+std::string files_that_differ(const std::map<std::string, std::string>& a,
+                              const std::map<std::string, std::string>& b) {
+  std::string names;
+  for (const auto& [file, text] : a)
+    if (!b.contains(file) || b.at(file) != text) names += file + ' ';
+  for (const auto& [file, text] : b)
+    if (!a.contains(file)) names += file + ' ';
+  return names;
+}
+
+TEST_F(Grading, AnyNumberOfJobsGivesTheSameBytes) {
+  put("ada/a1_impulse.cpp", text_of(kReference));
+  put("blaise/a1_impulse.cpp", with_wrong_sign());
+  put("carl/a1_impulse.cpp", text_of(kStub));
+  put("dora/a1_impulse.cpp", "int x = ;\n");
+  const ProgramOutcome one = grade("one", {"--no-media", "--jobs", "1"});
+  ASSERT_EQ(one.code, 0) << one.printed;
+  ASSERT_EQ(grade("two", {"--no-media", "--jobs", "2"}).code, 0);
+  EXPECT_EQ(files_that_differ(files("one"), files("two")), "");
+}
+
+TEST_F(Grading, PicturesAndVideosHaveTheSameBytesToo) {
+  put("blaise/a1_impulse.cpp", with_wrong_sign());
+  put("carl/a1_impulse.cpp", text_of(kStub));
+  const ProgramOutcome one = grade("one", {"--jobs", "1"});
+  ASSERT_EQ(one.code, 0) << one.printed;
+  ASSERT_EQ(grade("two", {"--jobs", "2"}).code, 0);
+  EXPECT_EQ(files_that_differ(files("one"), files("two")), "");
+  std::set<std::string> kinds;
+  for (const auto& [file, text] : files("one")) kinds.insert(fs::path(file).extension());
+  for (const char* kind : {".html", ".json", ".jsonl", ".csv", ".png", ".mp4"})
+    EXPECT_TRUE(kinds.contains(kind)) << kind;
+}
+
+class Overnight : public Grading {
+ protected:
+  pid_t start(const std::string& out) const {
+    const auto words = words_for(out, {"--no-media", "--jobs", "2"});
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    const int nothing = ::open("/dev/null", O_RDWR);
+    ::dup2(nothing, 1);
+    ::dup2(nothing, 2);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+};
+
+TEST_F(Overnight, KillsLoseNothingAndLeaveTheBytesOfARunWithoutThem) {
+  constexpr int kSubmissions = 20, kKills = 5;
+  for (int i = 0; i < kSubmissions; ++i) {
+    const std::string mark = "// student " + std::to_string(i) + "\n";
+    put("s" + std::to_string(i) + "/a1_impulse.cpp",
+        (i % 4 == 0 ? text_of(kStub) : "int x = ;\n") + mark);
+  }
+  const auto began = std::chrono::steady_clock::now();
+  ASSERT_EQ(grade("calm").code, 0);
+  const double whole_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  Random random(20);
+  for (int kill = 0; kill < kKills; ++kill) {
+    const pid_t child = start("out");
+    ::usleep(static_cast<useconds_t>(1e6 * whole_s * random.between(0.05, 0.4)));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+  }
+  const ProgramOutcome last = grade("out");
+  EXPECT_EQ(last.code, 0) << last.printed;
+  EXPECT_EQ(files_that_differ(files("calm"), files("out")), "");
+  const ProgramOutcome check = tumble({"ledger", "verify", (root / "out").string()});
+  EXPECT_EQ(check.code, 0) << check.printed;
+  EXPECT_TRUE(says(check, "20 entries of 20 submissions fit together")) << check.printed;
+}
+
+// Rubrics whose points were moved from a test that the submission passes to one that it fails.
+class Lowering : public OtherRubric {
+ protected:
+  Lowering() {
+    put("blaise/a1_impulse.cpp", with_wrong_sign());
+    put("carl/a1_impulse.cpp", text_of(kStub));
+    EXPECT_EQ(grade("out").code, 0);
+    before = results("blaise")["score"];
+    std::map<std::string, bool> is_right;
+    const auto blaise = results("blaise");
+    for (const auto& test : blaise["tests"])
+      is_right[test["extra_data"]["test"]] = test["status"] == "passed";
+    auto json = read();
+    bool taken = false, given = false;
+    for (auto& test : json["tests"]) {
+      bool& moved = is_right[test["test"]] ? taken : given;
+      if (moved) continue;
+      moved = true;
+      test["points"] = test["points"].get<double>() + (&moved == &taken ? -0.5 : 0.5);
+    }
+    write(json);
+  }
+  ProgramOutcome regrade(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"regrade", "a1", (root / "out").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return tumble(words);
+  }
+  double before = 0.0;
+};
+
+TEST_F(Lowering, NeedsAYes) {
+  const ProgramOutcome again = grade("out");
+  EXPECT_TRUE(says(again, "not lowered: blaise")) << again.printed;
+  EXPECT_TRUE(says(again, "tumble regrade a1")) << again.printed;
+  EXPECT_EQ(results("blaise")["score"], before);
+
+  const ProgramOutcome unasked = regrade();
+  EXPECT_EQ(unasked.code, 1) << unasked.printed;
+  EXPECT_TRUE(says(unasked, "One score would be lower")) << unasked.printed;
+  EXPECT_TRUE(says(unasked, ": the rubric changed")) << unasked.printed;
+  EXPECT_EQ(results("blaise")["score"], before);
+
+  const ProgramOutcome agreed = regrade({"--yes"});
+  EXPECT_EQ(agreed.code, 0) << agreed.printed;
+  EXPECT_EQ(results("blaise")["score"], before - 0.5);
+  EXPECT_EQ(ledger().back()["name"], "blaise");
+  EXPECT_NE(ledger().back()["change"].get<std::string>().find("the rubric changed"),
+            std::string::npos);
+  EXPECT_EQ(tumble({"ledger", "verify", (root / "out").string()}).code, 0);
+}
+
+TEST_F(Overnight, OneStudentAgainLeavesTheOthersAndChangesNothing) {
+  put("ada/a1_impulse.cpp", text_of(kStub));
+  put("blaise/a1_impulse.cpp", "int x = ;\n");
+  ASSERT_EQ(grade("out").code, 0);
+  const auto before = files("out");
+  const ProgramOutcome again =
+      tumble({"regrade", "a1", (root / "out").string(), "--only", "ada", "--again"});
+  EXPECT_EQ(again.code, 0) << again.printed;
+  EXPECT_TRUE(says(again, "[2/2] ada")) << again.printed;
+  EXPECT_FALSE(says(again, "] blaise")) << again.printed;
+  EXPECT_EQ(files_that_differ(before, files("out")), "");
+  const ProgramOutcome unknown =
+      tumble({"regrade", "a1", (root / "out").string(), "--only", "adda"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(says(unknown, "Did you mean 'ada'?")) << unknown.printed;
+}
+
+}  // namespace
+}  // namespace tumble::grading

@@ -1,0 +1,269 @@
+// The rules of a course: late days, penalties with a cap, attempts, groups, and nobody's silent 0.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/core/random.h"
+#include "framework/grading/grades/class_facts.h"
+#include "framework/grading/grades/class_files.h"
+#include "framework/grading/grades/policy_file.h"
+
+namespace tumble::grading::policy_test {
+namespace {
+
+constexpr std::int64_t kDay = 24 * 60 * 60;
+
+Policy rules() {
+  Policy policy;
+  policy.due_s = 1000 * kDay;
+  policy.grace_s = 900;
+  policy.free_late_days = 1;
+  return policy;
+}
+
+Grade scored(const std::string& name, double score, const std::string& id = "") {
+  Grade grade;
+  grade.name = grade.folder = name;
+  grade.student_id = id;
+  grade.state = GradeState::kJudged;
+  grade.score = score;
+  grade.possible = 100.0;
+  return grade;
+}
+
+Standing only(const std::vector<Standing>& standings) {
+  EXPECT_EQ(standings.size(), 1u);
+  return standings.at(0);
+}
+
+TEST(LateDays, BeginWhenGraceEndsAndCountFromTheDueDate) {
+  const Policy policy = rules();
+  for (const auto& [late_s, days] : std::vector<std::pair<std::int64_t, int>>{
+           {-5 * kDay, 0}, {0, 0}, {900, 0}, {901, 1}, {kDay, 1}, {kDay + 1, 2}, {7 * kDay, 7}})
+    EXPECT_EQ(late_days(policy, policy.due_s + late_s), days) << late_s;
+}
+
+TEST(Penalty, IsTheShareADayUpToTheCapAfterFreeDays) {
+  const Policy policy = rules();  // 10 % a day, at most 50 %
+  EXPECT_EQ(penalty_percent(policy, 0, 0), 0.0);
+  EXPECT_EQ(penalty_percent(policy, 1, 1), 0.0);
+  EXPECT_EQ(penalty_percent(policy, 3, 1), 20.0);
+  EXPECT_EQ(penalty_percent(policy, 9, 0), 50.0);
+  EXPECT_EQ(points_after(80.0, 20.0), 64.0);
+}
+
+TEST(Penalty, IsMonotoneInLatenessAndWithinItsBoundsForAnyRules) {
+  Random random(4);
+  for (int i = 0; i < 20000; ++i) {
+    Policy policy = rules();
+    policy.grace_s = static_cast<std::int64_t>(random.below(3 * kDay));
+    policy.percent_a_day = random.between(0.0, 100.0);
+    policy.cap_percent = random.between(0.0, 100.0);
+    const int free = static_cast<int>(random.below(5));
+    const auto early = policy.due_s + static_cast<std::int64_t>(random.below(20 * kDay)) - 3 * kDay;
+    const auto later = early + static_cast<std::int64_t>(random.below(10 * kDay));
+    const double points = random.between(0.0, 100.0);
+    const double a = penalty_percent(policy, late_days(policy, early), free);
+    const double b = penalty_percent(policy, late_days(policy, later), free);
+    ASSERT_LE(0.0, a);
+    ASSERT_LE(a, b);
+    ASSERT_LE(b, policy.cap_percent);
+    ASSERT_LE(penalty_percent(policy, late_days(policy, later), free + 1), b);
+    ASSERT_GE(points_after(points, a), points_after(points, b));
+    ASSERT_GE(points_after(points, b), 0.0);
+    ASSERT_LE(points_after(points, a), points);
+  }
+}
+
+TEST(Standing, HasPointsBeforeAndAfterAndWhy) {
+  const Policy policy = rules();
+  const Standing ada =
+      only(apply_policy(policy, {{"ada", "7", "", {}}}, {{"ada", "", policy.due_s + 3 * kDay}},
+                        {scored("ada", 80.0)}));
+  EXPECT_EQ(ada.before, 80.0);
+  EXPECT_EQ(ada.after, 64.0);
+  EXPECT_EQ(ada.why, "3 days late, 1 of them free: -20 %");
+}
+
+TEST(Standing, BestOfAttemptsIsBestAfterThePenalty) {
+  Policy policy = rules();
+  const std::vector<HandIn> times = {{"first", "ada", policy.due_s},
+                                     {"second", "ada", policy.due_s + 4 * kDay}};
+  const std::vector<Grade> grades = {scored("first", 70.0), scored("second", 90.0)};
+  const Standing best = only(apply_policy(policy, {{"ada", "7", "", {}}}, times, grades));
+  EXPECT_EQ(best.submission, "first");  // 70 against 90 - 30 % = 63
+  EXPECT_EQ(best.attempts, 2u);
+  policy.attempt = AttemptThatCounts::kLast;
+  const Standing last = only(apply_policy(policy, {{"ada", "7", "", {}}}, times, grades));
+  EXPECT_EQ(last.submission, "second");
+  EXPECT_NEAR(*last.after, 63.0, 1e-12);
+}
+
+TEST(Standing, AGroupSharesItsSubmissionOnlyWhereGroupsAreOn) {
+  Policy policy = rules();
+  const std::vector<Person> roster = {
+      {"ada", "1", "x", {}}, {"bo", "2", "x", {}}, {"cy", "3", "", {}}};
+  const std::vector<Grade> grades = {scored("ada", 80.0)};
+  EXPECT_FALSE(apply_policy(policy, roster, {}, grades)[1].after);
+  policy.groups = true;
+  const auto shared = apply_policy(policy, roster, {}, grades);
+  EXPECT_EQ(shared[1].after, 80.0);
+  EXPECT_FALSE(shared[2].after) << "an empty group is no group";
+}
+
+TEST(Standing, NobodyGetsASilentZero) {
+  Grade fault = scored("dan", 0.0), without = scored("eve", 0.0);
+  fault.tests.resize(1);  // its verdict is a fault of the grader until somebody answers
+  without.state = GradeState::kNothingToCompile;
+  const auto all = apply_policy(
+      rules(),
+      {{"ada", "1", "", {}}, {"bo", "2", "", {}}, {"dan", "4", "", {}}, {"eve", "5", "", {}}}, {},
+      {scored("ada", 80.0), fault, without, scored("zoe", 90.0)});
+  ASSERT_EQ(all.size(), 5u);
+  EXPECT_EQ(all[0].after, 80.0);
+  EXPECT_EQ(all[0].why, "the time of handing in is unknown: no penalty");
+  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_FALSE(all[i].after) << all[i].why;
+  EXPECT_EQ(all[1].why, "nothing was handed in: no score, somebody has to decide");
+  EXPECT_EQ(all[2].why, "dan has no final result: grade it again");
+  EXPECT_FALSE(all[4].is_in_roster);
+  EXPECT_EQ(what_needs_a_look(all).size(), 5u);
+  const std::string csv = gradebook_csv("Thing", all, 100.0, true);
+  EXPECT_NE(csv.find("\nbo,2,bo,,,,\"nothing was handed in"), std::string::npos)
+      << csv;  // cells with commas are quoted
+  EXPECT_EQ(csv.find(",0,"), std::string::npos) << csv;
+}
+
+TEST(Standing, IsReadAsItWasWritten) {
+  const PrivateFolder folder;
+  const auto all = apply_policy(rules(), {{"ada", "7", "x", {}}, {"bo", "8", "", {}}},
+                                {{"ada", "", rules().due_s + 3 * kDay}}, {scored("ada", 80.0)});
+  write_whole(folder.path() / "s.json", standing_json(all));
+  EXPECT_EQ(standing_json(read_standings(folder.path() / "s.json")), standing_json(all));
+}
+
+TEST(TimeOf, ReadsAnOffsetAndRefusesWhatIsNoTime) {
+  EXPECT_EQ(time_of("1970-01-02T00:00:00Z"), kDay);
+  EXPECT_EQ(time_of("1970-01-02T01:30:00+01:30"), kDay);
+  EXPECT_EQ(time_of("1970-01-01T19:00:00-05:00"), kDay);
+  for (const char* text : {"", "1970-01-02", "1970-01-02T00:00:00", "1970-02-30T00:00:00Z",
+                           "1970-01-02T25:00:00Z", "1970-01-02T00:00:00+1:00", "soon"})
+    EXPECT_FALSE(time_of(text)) << text;
+}
+
+class PolicyFolder : public ::testing::Test {
+ protected:
+  PolicyFolder() {
+    put("roster.csv", "name,id,group,late_days\n\"Lovelace, Ada\",7,x,3\nbo,8,,\n");
+    put("handed_in.csv", "submission,student,time\nada,7,2026-10-13T00:30:00+02:00\n");
+  }
+  void put(const char* file, const std::string& text) const {
+    write_whole(folder_.path() / file, text);
+  }
+  PolicyFile read(const std::string& json) const {
+    put("policy.json", json);
+    return read_policy(folder_.path() / "policy.json", "a1");
+  }
+  std::string refusal(const std::string& json) const {
+    try {
+      read(json);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "not refused";
+  }
+  const std::string due_ = R"("due": {"a1": "2026-10-12T23:59:00+02:00"}, "roster": "roster.csv")";
+  PrivateFolder folder_;
+};
+
+TEST_F(PolicyFolder, IsReadWithItsTables) {
+  const PolicyFile file = read("{" + due_ + R"(, "handed_in": "handed_in.csv", "attempt": "last",
+      "penalty_percent_a_day": 20, "penalty_cap_percent": 40, "grace_minutes": 1})");
+  EXPECT_EQ(file.policy.percent_a_day, 20.0);
+  EXPECT_EQ(file.policy.cap_percent, 40.0);
+  EXPECT_EQ(file.policy.grace_s, 60);
+  ASSERT_EQ(file.roster.size(), 2u);
+  EXPECT_EQ(file.roster[0].name, "Lovelace, Ada");
+  EXPECT_EQ(file.roster[0].free_late_days, 3);
+  EXPECT_FALSE(file.roster[1].free_late_days);
+  ASSERT_EQ(file.hand_ins.size(), 1u);
+  EXPECT_EQ(file.hand_ins[0].time_s - file.policy.due_s, 31 * 60);
+}
+
+TEST_F(PolicyFolder, WhatItCannotMeanIsNamed) {
+  EXPECT_NE(refusal("{" + due_ + R"(, "penalty_cap": 40})").find("penalty_cap_percent"),
+            std::string::npos);
+  EXPECT_NE(refusal("{" + due_ + R"(, "penalty_cap_percent": 140})").find("from 0 to 100"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"roster": "roster.csv"})").find("does not say when a1 is due"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"due": {"a1": "tomorrow"}, "roster": "roster.csv"})").find("is no time"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"due": {"a1": "2026-10-12T23:59:00Z"}})").find("names no roster"),
+            std::string::npos);
+  put("roster.csv", "name,id\nada,7\nbo,7\n");
+  EXPECT_NE(refusal("{" + due_ + "}").find("another person"), std::string::npos);
+  put("roster.csv", "name,number\nada,7\n");
+  EXPECT_NE(refusal("{" + due_ + "}").find("unknown column 'number'"), std::string::npos);
+}
+
+TEST(ForStudent, HiddenTestsKeepPointsAndLoseNameAndStory) {
+  Grade grade = scored("ada", 3.0);
+  ScoredTest hidden;
+  hidden.item = {.test = "Secret.Seam", .points = 5.0, .title = "The seam", .hidden = true};
+  hidden.result = {.test = "Secret.Seam", .verdict = Verdict::kWrong, .story = "the seam leaks"};
+  hidden.score = 2.0;
+  grade.tests = {hidden};
+  grade.changes = {{"Secret.Seam", "The seam", "right, 5 of 5", "wrong, 2 of 5", "run again"}};
+  const Grade shown = for_student(grade);
+  const std::string all = gradescope_json(shown);
+  for (const char* word : {"Secret", "seam"}) EXPECT_EQ(all.find(word), std::string::npos) << all;
+  EXPECT_EQ(shown.tests[0].score, 2.0);
+  EXPECT_EQ(shown.tests[0].result.verdict, Verdict::kWrong);
+  EXPECT_TRUE(shown.changes.empty());
+}
+
+TEST(SlipsMadeMost, CountSubmissionsAndNotStories) {
+  const auto with = [](const std::string& name, std::vector<std::string> slips) {
+    Grade grade = scored(name, 0.0);
+    for (const std::string& slip : slips) {
+      ScoredTest test;
+      test.result.verdict = Verdict::kWrong;
+      test.result.story = "\n  scene:    x\n  likely:   " + slip + "\n  read:     y";
+      grade.tests.push_back(test);
+    }
+    return grade;
+  };
+  const auto slips = slips_made_most({with("a", {"sign", "sign"}), with("b", {"unit", "sign"})});
+  ASSERT_EQ(slips.size(), 2u);
+  EXPECT_EQ(slips[0].slip, "sign");
+  EXPECT_EQ(slips[0].names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(slips[1].names, std::vector<std::string>{"b"});
+}
+
+TEST(SimilarPairs, FindACopyWithOtherNamesAndLeaveOutTheStarter) {
+  if (!can_compare_sources()) GTEST_SKIP() << "needs the Debian package similarity-tester";
+  std::string starter, work;
+  for (int i = 0; i < 40; ++i)
+    starter += "double given_" + std::to_string(i) + "(double x) { return x + 1.0; }\n";
+  for (int i = 0; i < 12; ++i)
+    work += "double f(double a, int n) {\n  for (int i = 0; i < n; ++i)\n    a = a * (a + " +
+            std::to_string(i) + ") - a / 2.0;\n  return a;\n}\n";
+  std::string renamed = work;
+  for (auto at = renamed.find("int i"); at != std::string::npos; at = renamed.find("int i", at + 1))
+    renamed.replace(at, 5, "int k");
+  const auto pairs = similar_pairs({{"ada", starter + work},
+                                    {"bo", starter + "struct Other { int a[3]; };\n"},
+                                    {"cy", starter + renamed}},
+                                   starter);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].a, 0u);
+  EXPECT_EQ(pairs[0].b, 2u);
+  EXPECT_GT(pairs[0].percent, 90);
+  ASSERT_FALSE(pairs[0].runs.empty());
+  EXPECT_GT(pairs[0].runs[0].a_first, 40u) << "line numbers are those of the whole file";
+}
+
+}  // namespace
+}  // namespace tumble::grading::policy_test

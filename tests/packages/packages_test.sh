@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# The two Debian packages, made from the existing build and unpacked in a temporary folder: what they contain, that the one for
+# students holds nothing private, and that start and check work from it.
+# Usage: packages_test.sh ROOT BUILD
+set -euo pipefail
+root=$1 build=$2
+fail() { echo "packages_test: $*" >&2; exit 1; }
+for tool in dpkg-deb dpkg-shlibdeps cpack file; do command -v "$tool" >/dev/null || { echo "skipped: $tool is not installed"; exit 77; }; done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+export TUMBLE_ROOT=$root
+"$build/bin/tumble" package --out "$folder/made" || fail "tumble package failed"   # it proves that nothing private is in it
+course=$(echo "$folder"/made/tumble-course_*.deb) grader=$(echo "$folder"/made/tumble-grader_*.deb)
+unset TUMBLE_ROOT
+
+version=$(dpkg-deb -f "$course" Version)
+grep -qF "tumble-course (= $version)" <<<"$(dpkg-deb -f "$grader" Depends)" || fail "the grader does not depend on its own course"
+for package in 'g++' libeigen3-dev; do grep -qF "$package" <<<"$(dpkg-deb -f "$course" Depends)" || fail "the course does not depend on $package"; done
+# Into files: grep -q leaves early, and under pipefail a writer that meets a closed pipe makes a right listing wrong.
+dpkg-deb -c "$grader" >"$folder/grader" && dpkg-deb -c "$course" >"$folder/course"
+awk '{ print $6 }' "$folder/grader" | grep -vE '^\./(opt/(tumble-grader/.*)?)?$' && fail "the grader has files outside /opt/tumble-grader"
+grep -qE '^drwxr-x--- .* \./opt/tumble-grader/$' "$folder/grader" || fail "/opt/tumble-grader is open to everybody"
+awk '{ print $6 }' "$folder/course" | grep -E 'solutions_private|/judge_a|_reference|mutants|hidden|\.slip$' && fail "the course has a private file"
+
+mkdir "$folder/root" && dpkg-deb -x "$course" "$folder/root"
+tumble=$folder/root/usr/bin/tumble
+# No symbol of the fast scheduler, which is a solution.
+nm -C "$folder/root/usr/lib/tumble/bin/tumble" | grep -F 'tumble::a4::Coordinator' >"$folder/symbols" || true
+[ ! -s "$folder/symbols" ] || fail "the course's program holds the private scheduler: $(head -n 2 "$folder/symbols")"
+# As after postinst, from the build.
+ln "$build/submission_sdk/precompiled.h.gch" "$folder/root/usr/lib/tumble/submission_sdk/" 2>/dev/null ||
+  cp "$build/submission_sdk/precompiled.h.gch" "$folder/root/usr/lib/tumble/submission_sdk/"
+
+cd "$folder"
+"$tumble" start a1 work >"$folder/said" || fail "start: $(cat "$folder/said")"
+for file in a1_impulse.cpp a1_impulse.h a1_impulse.md README.md tests/response_test.cpp; do [ -s "work/$file" ] || fail "start makes no $file"; done
+code=0; "$tumble" start a1 work 2>"$folder/said" || code=$?
+[ $code = 2 ] && grep -q 'is there already' "$folder/said" || fail "start replaces a student's file"
+cd work
+code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
+[ $code = 4 ] || { cat "$folder/said"; fail "check of the stub ends with $code, not 4"; }
+cp "$root/solutions_private/a1_impulse/a1_impulse.cpp" .
+began=$(date +%s%N)
+code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
+[ $code = 0 ] || { cat "$folder/said"; fail "check of a right file ends with $code, not 0"; }
+echo "check a1 took $((($(date +%s%N) - began) / 1000000)) ms"
+echo 'int broken(' >>a1_impulse.cpp
+code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
+[ $code = 1 ] && grep -q 'does not compile' "$folder/said" || { cat "$folder/said"; fail "a file that does not compile ends with $code"; }
+cd .. && code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
+[ $code = 2 ] && grep -q 'tumble start a1' "$folder/said" || fail "check without a file does not say how to begin"
+
+# The words of the verbs, in the manual and in the shell.
+zcat "$folder/root/usr/share/man/man1/tumble.1.gz" >"$folder/tumble.1"
+for verb in start check run grade; do grep -q "^.SS tumble $verb" "$folder/tumble.1" || fail "the manual has no $verb"; done
+TUMBLE_COMPLETION_ROOT=$folder/root/usr/share/tumble bash -euc '
+  source "$1"
+  complete_words() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tumble; echo "${COMPREPLY[*]}"; }
+  [ "$(complete_words tumble sta)" = start ]
+  [[ "$(complete_words tumble check a)" == a1\ a2\ a3\ a4* ]]
+  [[ "$(complete_words tumble run x --vi)" == "--video --virtual-times" || "$(complete_words tumble run x --vi)" == *--video* ]]
+' completion "$folder/root/usr/share/bash-completion/completions/tumble" || fail "the completion of bash does not complete"
+echo "packages are whole, private parts are private, start and check work from them"
