@@ -135,7 +135,7 @@ void add_attack(CLI::App& app, Context& context) {
   verb.flag("--json", words->json, "For machines");
   verb.footer(
       "Each is graded as a student would hand it in, with an honest right solution beside it. A "
-      "fault is: a verdict that the attack's head does not name, a point more than\n"
+      "fault is: a verdict that the attack's head does not name, a point more than "
       "a harmless submission has, another result of the honest one, a secret in an output, a "
       "process or a file that is left, a grader that ends.\n"
       "Exit: 0 all withstood, 1 otherwise.");

@@ -177,7 +177,7 @@ void add_audit(CLI::App& app, Context& context) {
   verb.footer(
       "A known-wrong solution is a slip (NAME.slip: what differs from a right solution; "
       "framework/grading/course/slip.h) or a whole file (NAME.cpp). A line of the reference is "
-      "touched\n"
+      "touched "
       "where a slip takes it out or writes it anew; comments, #include, namespaces and braces "
       "alone do not count.\n"
       "Exit: 0 all caught and no right solution accused, 1 otherwise.");

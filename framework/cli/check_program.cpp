@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "framework/core/files.h"
+#include "framework/core/terminal.h"
 #include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/course/run_program.h"
@@ -29,7 +30,7 @@ const std::string& folder_of(const std::string& id) {
   return modules::find_name(assignment_names(), id).folder;
 }
 
-bool has_colours() { return ::isatty(STDOUT_FILENO) == 1; }
+bool has_colours() { return shows_colours(STDOUT_FILENO); }
 
 void print_indented(const std::string& text) {
   std::istringstream lines(text);
@@ -56,9 +57,8 @@ void print_warnings(const fs::path& file, const std::string& said) {
 
 ExitCode run_tests(const Command& command, const CheckWords& words,
                    std::vector<std::string> program) {
-  program.insert(
-      program.end(),
-      {"--rubric", (command.root / "assignments" / folder_of(words.id) / "rubric.json").string()});
+  program.insert(program.end(), {"--rubric", public_rubric(command, words).string()});
+  if (!words.results.empty()) program.insert(program.end(), {"--json", words.results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);
   const int code = grading::run_program(program, Output::kOurs).code;
@@ -177,7 +177,7 @@ void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id
 
 CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest) {
   folder_of(id);
-  CheckWords words{id, {}, {}};
+  CheckWords words{id, {}, {}, {}};
   for (const std::string& word : rest) {
     const bool is_file =
         word.ends_with(".cpp") || word.ends_with(".cc") || word.find('/') != std::string::npos;
@@ -190,6 +190,10 @@ CheckWords read_check_words(const std::string& id, const std::vector<std::string
       words.patterns.push_back(word);
   }
   return words;
+}
+
+fs::path public_rubric(const Command& command, const CheckWords& words) {
+  return command.root / "assignments" / folder_of(words.id) / "rubric.json";
 }
 
 fs::path checked_file(const Command& command, const CheckWords& words) {

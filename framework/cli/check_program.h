@@ -15,12 +15,16 @@ struct CheckWords {
   std::string id;
   std::optional<std::filesystem::path> file;  // instead of the stub
   std::vector<std::string> patterns;          // of test names
+  std::filesystem::path results;              // where verdicts are written as well; may be empty
 };
 
 /// Declares "a1 [FILE] [PATTERN...]" on a verb; `rest` and `id` hold the words after the parse.
 void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id);
 /// @throws UserError for an unknown assignment or a missing file
 CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest);
+
+/// The public rubric of the assignment.
+std::filesystem::path public_rubric(const Command& command, const CheckWords& words);
 
 /// The checked file.
 std::filesystem::path checked_file(const Command& command, const CheckWords& words);

@@ -6,11 +6,14 @@
 #include <exception>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
+#include "framework/cli/help_format.h"
 #include "framework/core/keep_memory.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
 #include "framework/core/program_trees.h"
+#include "framework/core/terminal.h"
 #include "framework/core/version.h"
 
 namespace tumble::cli {
@@ -64,6 +67,13 @@ std::string without_digits(const std::string& told) {
   return begin == std::string::npos ? told : told.substr(0, begin) + " is not a number above 0";
 }
 
+// On a terminal broken at words to its width; a file or a pipe keeps the line, to be searched.
+void complain(const std::string& text) {
+  const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
+  const std::string shown = is_terminal ? wrapped(text, terminal_columns(STDERR_FILENO), 2) : text;
+  std::fprintf(stderr, "%s\n", shown.c_str());
+}
+
 int run(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare) {
   set_trees(command);
   for (int i = 0; i < argc; ++i)
@@ -73,7 +83,14 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("Tumble ") + kProgramVersion);
   app.set_help_all_flag("--help-all", "Help of every verb");
+  app.set_help_flag("-h,--help", "This text");
+  lay_out_help(app);
   declare(app);
+  app.footer(
+      "./tumble test  (in the source tree) builds and passes every test; words of ctest may "
+      "follow.\n"
+      "Colours: none where NO_COLOR is set. A word that is not known is answered with the "
+      "nearest.");
   refuse_unknown_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -112,10 +129,10 @@ int run_verbs(int argc, char** argv, Command& command,
   try {
     return run(argc, argv, command, declare);
   } catch (const UserError& error) {
-    std::fprintf(stderr, "tumble: %s\n", error.what());
+    complain(std::string("tumble: ") + error.what());
     return static_cast<int>(ExitCode::kUserError);
   } catch (const NotImplemented& missing) {
-    std::fprintf(stderr, "tumble: not attempted: %s\n", missing.what());
+    complain(std::string("tumble: not attempted: ") + missing.what());
     return static_cast<int>(ExitCode::kNotAttempted);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tumble: this is our bug, please report it with the command: %s\n",

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/verb.h"
+#include "framework/core/terminal.h"
 #include "framework/core/version.h"
 #include "framework/grading/course/machine.h"
 #include "framework/grading/sandbox/protection.h"
@@ -28,7 +29,7 @@ const char* words_of(State state) {
 
 std::string painted(State state) {
   const std::string text = fmt::format("{:<8}", words_of(state));
-  if (isatty(STDOUT_FILENO) == 0) return text;
+  if (!shows_colours(STDOUT_FILENO)) return text;
   return fmt::format("\033[{}m{}\033[0m",
                      state == State::kGood   ? "32"
                      : state == State::kNote ? "33"

@@ -26,21 +26,11 @@ std::vector<fs::path> scenes_of(const Context& context) {
   return {files.begin(), files.end()};
 }
 
-/// Name and title of every scene, a line each.
+/// Name and title of every scene, a line each, for an error.
 std::string listing(const Context& context) {
   std::string lines;
-  for (const auto& file : scenes_of(context)) {
-    std::string title;
-    try {
-      title = scene::load_scene(file).title;
-    } catch (const UserError&) {
-      title = "(cannot be read; run it to see why)";
-    }
-    lines += fmt::format("\n  {:<24} {}", file.stem().string(), title);
-  }
-  for (const scene::SizedScene& sized : scene::sized_scenes())
-    lines += fmt::format("\n  {:<24} {} (--n {}: {})", sized.name, sized.title, sized.default_n,
-                         sized.counts);
+  for (const ListedScene& scene : listed_scenes(context))
+    lines += fmt::format("\n  {:<24} {}", scene.name, scene.title);
   return lines;
 }
 
@@ -99,6 +89,37 @@ scene::Scene find_scene(const Context& context, const std::string& word, std::op
   std::string names;
   for (const auto& file : beginning) names += (names.empty() ? "" : ", ") + file.stem().string();
   throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");
+}
+
+std::vector<ListedScene> listed_scenes(const Context& context) {
+  std::vector<ListedScene> all;
+  for (const fs::path& file : scenes_of(context)) {
+    ListedScene listed{.name = file.stem().string(),
+                       .title = {},
+                       .folder = file.parent_path().parent_path().filename().string(),
+                       .needs = {},
+                       .file = file,
+                       .problem = {}};
+    try {
+      const scene::Scene scene = scene::load_scene(file);
+      listed.title = scene.title;
+      listed.needs = scene.needs;
+    } catch (const UserError& error) {
+      listed.problem = error.what();
+      listed.title = "(cannot be read: " + listed.problem + ")";
+    }
+    all.push_back(std::move(listed));
+  }
+  for (const scene::SizedScene& sized : scene::sized_scenes())
+    all.push_back(
+        {.name = sized.name,
+         .title = fmt::format("{} (--n {}: {})", sized.title, sized.default_n, sized.counts),
+         .folder = {},
+         .needs = scene::make_sized_scene(sized.name, sized.default_n).needs,
+         .file = {},
+         .problem = {},
+         .default_n = sized.default_n});
+  return all;
 }
 
 std::vector<std::string> scene_names(const Context& context) {

@@ -29,6 +29,18 @@ scene::Scene find_scene(const Context& context, const std::string& word,
 /// @throws UserError also for words about a model with a scene that is none
 scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns);
 
+/// What a list of scenes says of one.
+struct ListedScene {
+  std::string name, title;
+  std::string folder;              // of its assignment; empty for a scene with a size
+  std::vector<std::string> needs;  // assignments whose laws it runs on
+  std::filesystem::path file;      // empty for a scene with a size
+  std::string problem;             // why the file cannot be read; empty where it can
+  int default_n = 0;               // of a scene with a size
+};
+/// All of them, in the order of their files, then those with a size.
+std::vector<ListedScene> listed_scenes(const Context& context);
+
 /// The names of all scenes: those of the assignments, then those with a size.
 std::vector<std::string> scene_names(const Context& context);
 

@@ -11,6 +11,7 @@
 #include "framework/cli/command.h"
 #include "framework/cli/find_model.h"
 #include "framework/cli/words.h"
+#include "framework/core/terminal.h"
 #include "framework/core/version.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
@@ -34,7 +35,7 @@ struct InspectWords {
 
 /// Colours on a terminal, none in a file or a pipe.
 struct Paint {
-  bool on = isatty(STDOUT_FILENO) != 0;
+  bool on = shows_colours(STDOUT_FILENO);
   std::string operator()(const char* code, const std::string& text) const {
     return on ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
   }

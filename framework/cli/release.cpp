@@ -205,7 +205,7 @@ void add_release(CLI::App& app, Context& context) {
             "Do not build what is released and check its stubs: seconds instead of minutes");
   verb.footer(
       "Refused: a file that is needed and not tracked, a stub that is more than a stub, lines of a "
-      "solution anywhere, a rubric that does not sum to 100,\n"
+      "solution anywhere, a rubric that does not sum to 100, "
       "a tree that does not build.");
   verb.runs([&context, options] { release(context, *options); });
 }

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 #include "framework/cli/check_program.h"
+#include "framework/core/files.h"
+#include "framework/grading/verdicts/what_changed.h"
 
 namespace tumble::cli {
 namespace {
@@ -62,8 +64,33 @@ class SaveWatch {
   int fd_;
 };
 
-void watch(Command& command, const CheckWords& words) {
+/// What the last save changed, and what comes next, in two lines below the table.
+class Progress {
+ public:
+  explicit Progress(const grading::Rubric& rubric) : rubric_(rubric) {}
+
+  /// @param file  the verdicts of this check; not there where no test ran
+  void print(const fs::path& file) {
+    if (!fs::exists(file)) return;
+    const std::vector<grading::TestResult> now = grading::read_results(file.string());
+    if (!before_.empty())
+      fmt::print("\nsince the last save: {}\n", grading::what_changed(before_, now, rubric_));
+    const std::string next = grading::what_comes_next(now, rubric_);
+    fmt::print("{}{}\n", before_.empty() ? "\n" : "",
+               next.empty() ? "every public test is right" : "next: " + next);
+    before_ = now;
+  }
+
+ private:
+  grading::Rubric rubric_;
+  std::vector<grading::TestResult> before_;
+};
+
+void watch(Command& command, CheckWords words) {
   const fs::path file = checked_file(command, words);
+  const PrivateFolder folder;
+  words.results = folder.path() / "verdicts.json";
+  Progress progress(grading::read_rubric(public_rubric(command, words)));
   SaveWatch saves(file);
   const bool screen = ::isatty(STDOUT_FILENO) == 1;
   for (;;) {
@@ -71,7 +98,9 @@ void watch(Command& command, const CheckWords& words) {
     // The test program and the compiler have exit codes of their own; errors of the loop itself are
     // reported and do not end it.
     try {
+      fs::remove(words.results);
       check_once(command, words);
+      progress.print(words.results);
     } catch (const UserError& error) {
       fmt::print("{}\n", error.what());
     }

@@ -5,8 +5,9 @@
 set -euo pipefail
 help=$1 out=$2 version=$3
 mkdir -p "$out"
-verbs=$(sed -n '/^Subcommands:/,$p' "$help/tumble.txt" | awk '/^  [a-z]/ { print $1 }')
-title() { head -n 1 "$help/$1.txt"; }
+verbs=$(sed -n '/^Verbs:/,$p' "$help/tumble.txt" | awk '/^  [a-z]/ { print $1 }')
+# What a verb does: the lines before its usage.
+title() { awk '/^Usage: / { exit } { printf "%s%s", between, $0; between = " " } END { print "" }' "$help/$1.txt"; }
 # The long options of a verb, one a line.
 options() { awk '/^Options:/ { on = 1; next } /^[^ ]/ { on = 0 } on && /^  -/ { n = split($1, names, ","); print names[n] }' "$help/$1.txt"; }
 # What the first positional word of a verb is: assignment, scene, or nothing known.
@@ -28,8 +29,8 @@ man_page() {
         else { word = substr(line, 3); line = "" }
         print ".TP\n.B " plain(word); if (line != "") print plain(line)
       }
-      NR == 1 { next }
-      /^Usage: / { print ".SS " plain(substr($0, 8)); print plain(title); next }
+      !begun && !/^Usage: / { next }
+      /^Usage: / { begun = 1; print ".SS " plain(substr($0, 8)); print plain(title); next }
       /^Positionals:|^Options:/ { inside = 1; next }
       /^  -h,--help|^  --help-all/ { next }
       inside && /^  [^ ]/ { entry($0); next }

@@ -7,7 +7,7 @@ export TUMBLE_ROOT=$folder   # nothing in help may depend on the tree
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 "$tumble" --help >"$made/tumble.txt"
-for verb in $(sed -n '/^Subcommands:/,$p' "$made/tumble.txt" | awk '/^  [a-z]/ { print $1 }'); do
+for verb in $(sed -n '/^Verbs:/,$p' "$made/tumble.txt" | awk '/^  [a-z]/ { print $1 }'); do
   "$tumble" "$verb" --help >"$made/$verb.txt"
 done
 if [ "$write" = --write ]; then

@@ -6,7 +6,7 @@ set -euo pipefail
 root=$1 build=$2
 export TUMBLE_ROOT=$root
 fail() { echo "needs_test: $*" >&2; exit 1; }
-verbs=$("$build/bin/tumble" --help | sed -n '/^Subcommands:/,$p' | awk '/^  [a-z]/ { print $1 }')
+verbs=$("$build/bin/tumble" --help | sed -n '/^Verbs:/,$p' | awk '/^  [a-z]/ { print $1 }')
 rows=$(grep -v '^#' "$root/framework/cli/needs.txt")
 [ "$(sort <<<"$verbs")" = "$(awk '{ print $1 }' <<<"$rows" | sort)" ] || fail "the verbs of the table are not those of the program"
 

@@ -1,6 +1,8 @@
 // The program on the command line: its output, exit codes, and files.
 #include <fstream>
+#include <filesystem>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -54,6 +56,33 @@ TEST_F(CommandLine, HelpListsEveryVerb) {
   for (const char* verb : {"check", "watch", "run", "poke", "cost", "inspect", "truths", "grade",
                            "audit", "release", "demo"})
     EXPECT_TRUE(holds(said.out, verb)) << verb;
+}
+
+// Eighty columns: what a terminal has when a course's machines are logged in to.
+TEST_F(CommandLine, HelpOfEveryVerbFitsEightyColumns) {
+  std::istringstream lines(type("--help-all").out + type("--help").out);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 80U) << line;
+  EXPECT_GT(count, 300);
+}
+
+TEST_F(CommandLine, ScenesListsEverySceneOfTheTreeOnce) {
+  const nlohmann::json page = nlohmann::json::parse(type("scenes --json").out);
+  std::set<std::string> names, files;
+  for (const auto& scene : page.at("scenes")) {
+    EXPECT_TRUE(names.insert(scene.at("name")).second) << scene;
+    EXPECT_FALSE(scene.at("title").get<std::string>().empty()) << scene;
+  }
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(TUMBLE_SOURCE_DIR) / "assignments"))
+    if (entry.path().parent_path().filename() == "scenes" && entry.path().extension() == ".json") {
+      files.insert(entry.path().stem());
+      EXPECT_TRUE(names.contains(entry.path().stem())) << entry.path();
+    }
+  EXPECT_GT(files.size(), 40U);
+  EXPECT_TRUE(names.contains("atoms"));  // of any size
+  const std::string chosen = type("scenes newtons").out;
+  EXPECT_TRUE(holds(chosen, "newtons_cradle_2") && !holds(chosen, "t_handle")) << chosen;
 }
 
 #ifdef TUMBLE_HAS_REFERENCE

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/terminal.h"
 #include "framework/grading/test_program/test_words.h"
 #include "framework/grading/test_program/time_budget.h"
 #include "framework/grading/verdicts/verdict_table.h"
@@ -78,7 +79,7 @@ int run(int argc, char** argv) {
   }
   const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);
   if (!words.json.empty()) write_results(words.json, results);
-  print_verdicts(std::cout, results, rubric, ::isatty(STDOUT_FILENO) == 1);
+  print_verdicts(std::cout, results, rubric, shows_colours(STDOUT_FILENO));
   return static_cast<int>(exit_code(results));
 }
 

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/terminal.h"
 #include "framework/grading/test_program/test_runner.h"
 #include "framework/grading/test_program/test_words.h"
 #include "framework/grading/test_program/time_budget.h"
@@ -120,7 +121,7 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
   while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {
   }
   if (!words.json.empty()) write_results(words.json, results);
-  print_verdicts(std::cout, results, words.rubric, ::isatty(STDOUT_FILENO) == 1);
+  print_verdicts(std::cout, results, words.rubric, shows_colours(STDOUT_FILENO));
   return static_cast<int>(exit_code(results));
 }
 
