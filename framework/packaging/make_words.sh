@@ -36,6 +36,7 @@ man_page() {
       inside && /^  [^ ]/ { entry($0); next }
       inside && /^   / { sub(/^ +/, ""); print plain($0); next }
       /^$/ { inside = 0; next }
+      /^    / { sub(/^ +/, ""); print plain($0); next }   # goes on with the line above it
       { sub(/^ +/, ""); print (after++ ? ".br" : ".PP"); print plain($0) }
     ' title="$(title "$verb")" "$help/$verb.txt"
   done
