@@ -3,6 +3,9 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include "framework/core/terminal.h"
 
 namespace tumble {
 namespace {
@@ -16,6 +19,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace)
     : sink_(sink), duration_(duration_s), pace_(pace), reporter_([this] { report_until_done(); }) {}
 
+RunProgress::Pace RunProgress::usual_pace() {
+  return ::isatty(STDERR_FILENO) == 1 ? Pace{2.0, 1.0, true} : Pace{};
+}
+
 RunProgress::~RunProgress() {
   {
     const std::lock_guard lock(mutex_);
@@ -23,6 +30,7 @@ RunProgress::~RunProgress() {
   }
   ended_.notify_all();
   reporter_.join();
+  if (pace_.rewrites && reported_time_ >= 0.0) fmt::print(stderr, "\r\033[K");
 }
 
 void RunProgress::frame(const Frame& frame) {
@@ -48,7 +56,9 @@ void RunProgress::report_until_done() {
 
 void RunProgress::report(double now_s) {
   std::string line = fmt::format("tumble: {:.4g} of {:.4g} s simulated", time_, duration_);
-  if (time_ == reported_time_) {
+  // A line that is written every second says only after a while that no frame comes.
+  constexpr double kPatience = 5.0;  // s
+  if (time_ == reported_time_ && (!pace_.rewrites || now_s - came_s_ >= kPatience)) {
     line += fmt::format(
         ", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run",
         now_s - came_s_);
@@ -57,7 +67,14 @@ void RunProgress::report(double now_s) {
     line += fmt::format(", about {:.0f} s left", came_s_ / time_ * (duration_ - time_));
   }
   reported_time_ = time_;
-  fmt::print(stderr, "{}\n", line);
+  if (!pace_.rewrites) {
+    fmt::print(stderr, "{}\n", line);
+    return;
+  }
+  // A line wider than the terminal cannot be written over.
+  const std::size_t columns = terminal_columns(STDERR_FILENO) - 1;
+  fmt::print(stderr, "\r\033[K{}", line.size() <= columns ? line : line.substr(0, columns));
+  std::fflush(stderr);
 }
 
 }  // namespace tumble

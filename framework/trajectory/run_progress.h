@@ -18,10 +18,14 @@ class RunProgress final : public TrajectorySink {
  public:
   struct Pace {
     double first_s = 5.0, every_s = 10.0;  // of wall-clock time
+    bool rewrites = false;                 // one line of a terminal
   };
+  /// For what stderr is: a terminal or a file.
+  static Pace usual_pace();
   /// @param duration_s  of the run, simulated
   RunProgress(TrajectorySink& sink, double duration_s, Pace pace);
-  RunProgress(TrajectorySink& sink, double duration_s) : RunProgress(sink, duration_s, Pace{}) {}
+  RunProgress(TrajectorySink& sink, double duration_s)
+      : RunProgress(sink, duration_s, usual_pace()) {}
   ~RunProgress() override;
   RunProgress(const RunProgress&) = delete;
   RunProgress& operator=(const RunProgress&) = delete;

@@ -27,7 +27,15 @@ std::string said_in(double wait_s, const RunProgress::Pace& pace) {
   return testing::internal::GetCapturedStderr();
 }
 
-TEST(RunProgress, AShortRunSaysNothing) { EXPECT_EQ(said_in(0.01, {100.0, 100.0}), ""); }
+// One line, written anew from the first column, and taken away at the end.
+TEST(RunProgress, OnATerminalItIsOneLineThatIsGoneAtTheEnd) {
+  const std::string said = said_in(0.2, {0.05, 0.02, true});
+  EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  EXPECT_TRUE(said.starts_with("\r\033[Ktumble: ")) << said;
+  EXPECT_TRUE(said.ends_with("\r\033[K")) << said;
+}
+
+TEST(RunProgress, AShortRunSaysNothing) { EXPECT_EQ(said_in(0.01, {100.0, 100.0, false}), ""); }
 
 TEST(RunProgress, ALongRunSaysHowFarItIsAndWhereItStandsStill) {
   // twenty lines on an idle machine, two on any
