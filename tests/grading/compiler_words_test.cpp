@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
+#include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/course/run_program.h"
 
 namespace tumble::grading {
 namespace {
@@ -103,6 +105,18 @@ TEST_F(CompilerWords, LinesOfAMegabyteDoNoHarm) {
                 .find("speed"),
             std::string::npos);
   EXPECT_LT(compiler_warnings("mine.cpp:1:1: warning: " + longest + "\n", mine).size(), 1000u);
+}
+
+// GCC takes no precompiled header made with other flags, and says nothing: a check would take 2 s
+// longer, whatever the student's file is.
+TEST_F(CompilerWords, TheStudentsOwnCompilationUsesThePrecompiledHeader) {
+  const fs::path file = write("a1_impulse.cpp", "int answer() { return 42; }\n");
+  std::vector<std::string> words =
+      own_compilation(TUMBLE_SOURCE_DIR, TUMBLE_BINARY_DIR, file, folder_.path() / "a1.so");
+  words.push_back("-Winvalid-pch");
+  const ProgramOutcome outcome = run_program(words, Output::kCaptured);
+  EXPECT_EQ(outcome.code, 0) << outcome.printed;
+  EXPECT_EQ(outcome.printed, "");
 }
 
 }  // namespace

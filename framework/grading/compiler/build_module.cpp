@@ -13,14 +13,14 @@ fs::path header_in(const std::string& folder) {
 
 std::vector<std::string> own_compilation(const fs::path& root, const fs::path& build,
                                          const fs::path& source, const fs::path& object) {
+  // No -Wpedantic: the precompiled header is refused by it, and a check takes 2 s longer.
   std::vector<std::string> words = {"g++"};
   std::istringstream flags(TUMBLE_SUBMISSION_FLAGS);
   for (std::string flag; flags >> flag;) words.push_back(flag);
-  words.insert(words.end(),
-               {"-Wall", "-Wextra", "-Wpedantic", "-fdiagnostics-color=never", "-shared",
-                "-Wl,-z,defs", "-I", root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE, "-include",
-                (build / "submission_sdk" / "precompiled.h").string(), source.string(), "-o",
-                object.string()});
+  words.insert(words.end(), {"-Wall", "-Wextra", "-fdiagnostics-color=never", "-shared",
+                             "-Wl,-z,defs", "-I", root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE,
+                             "-include", (build / "submission_sdk" / "precompiled.h").string(),
+                             source.string(), "-o", object.string()});
   return words;
 }
 
