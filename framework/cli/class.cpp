@@ -96,7 +96,7 @@ void page(const Class& all) {
     throw UserError(to.string(), "is in the folder of results, which belongs to the grader",
                     "Name another folder.");
   grading::submission_page(all.context.registry.find(all.settings.assignment), grade,
-                           version_in_words(kProgramVersion))
+                           version_in_words(kProgramVersion), true)
       .write(to / "index.html");
   if (fs::is_directory(out / grade.folder / "media"))
     fs::copy(out / grade.folder / "media", to / "media",
@@ -149,7 +149,15 @@ void together(const Class& all) {
 }
 
 void slips(const Class& all) {
-  for (const grading::SlipCount& slip : grading::slips_made_most(grades_of(all)))
+  const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
+  grading::SlipTally slips(grading::known_slips(course, all.settings.assignment));
+  if (!slips.has_known())
+    fmt::print(stderr,
+               "slips are those that stories name; after tumble audit {} they are recognised by "
+               "the tests that they fail\n",
+               all.settings.assignment);
+  for (const grading::Grade& grade : grades_of(all)) slips.add(grade);
+  for (const grading::SlipCount& slip : slips.made_most())
     fmt::print("{:>5}  {}\n", slip.names.size(), slip.slip);
 }
 

@@ -63,14 +63,17 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   if (policy) options.policy = fs::absolute(request.policy);
   const grading::GradeProtection protection =
       grading::protection_of_grades(options.accepted_sandbox);
-  const auto found = grading::find_submissions(request.folder, kind);
+  const auto found = grading::find_submissions(request.folder, kind, request.options.shard);
   options.progress = tell;
   options.notice = [](const std::string& sentence) {
     fmt::print(stderr, "{}\n", grading::plain_text(sentence));
   };
+  grading::SlipTally slips({});
+  if (!options.shard) slips = grading::SlipTally(grading::known_slips(course, request.id));
+  options.each = [&](const grading::Grade& grade) { slips.add(grade); };
   options.overview = [&](const fs::path& out, const std::vector<grading::Grade>& grades) {
     grading::write_class_files(course, kind, request.folder, policy ? &*policy : nullptr, out,
-                               grades);
+                               grades, slips);
   };
   for (const std::string& name : found.passed_over)
     fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));

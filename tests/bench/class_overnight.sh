@@ -1,61 +1,101 @@
 #!/bin/bash
 # A class overnight: grades N submissions of a1, made from its slips, and says how many a minute, how
 # much memory, and what kills do.
-#   tests/bench/class_overnight.sh BUILD N JOBS KILLS [FOLDER]
-# With KILLS > 0 the grading is ended by SIGKILL that many times, at random moments, and started
-# again; then it is compared, byte for byte, with a grading that was not killed.
+#   tests/bench/class_overnight.sh BUILD N JOBS KILLS [CALM [FOLDER]]
+# First the first CALM submissions (default: all N) are graded without a kill: submissions a minute.
+# With KILLS > 0 all N are graded then; that grading is ended by SIGKILL so many times, at random
+# moments, and started again. What it leaves is compared, byte for byte, with the calm grading; a
+# submission that the calm one has not, with those of the same slip.
 # Needs what grade needs (./tumble grade --help builds it), and `./tumble audit a1` once: it leaves the
-# texts of the slips in BUILD/audit/a1/slips.
+# texts of the slips in BUILD/audit/a1/slips. Hours, for N = 1000.
 set -euo pipefail
-build=$(realpath "$1") n=$2 jobs=$3 kills=$4
-folder=${5:-$(mktemp -d /tmp/class_overnight.XXXXXX)}
+build=$(realpath "$1") n=$2 jobs=$3 kills=$4 calm=${5:-$2}
+folder=${6:-$(mktemp -d /tmp/class_overnight.XXXXXX)}
 slips=("$build"/audit/a1/slips/*.cpp)
 [ -e "${slips[0]}" ] || { echo "No slips in $build/audit/a1/slips: run ./tumble audit a1 first." >&2; exit 2; }
 export TUMBLE_ROOT=${TUMBLE_ROOT:-$(realpath "$(dirname "$0")/../..")}
 export TUMBLE_GRADER_KEY=$folder/grader.key
-mkdir -p "$folder/in"
-for ((i = 0; i < n; ++i)); do
-  name=$(printf 's%04d' "$i")
-  mkdir -p "$folder/in/$name"
-  { cat "${slips[i % ${#slips[@]}]}"; echo "// student $i"; } > "$folder/in/$name/a1_impulse.cpp"
-done
+tumble=$build/bin/tumble
 
-grade() {
-  local TIMEFORMAT='%U %S'
-  { time "$build/bin/tumble" grade a1 "$folder/in" --out "$folder/$1" --no-media --jobs "$jobs" > "$folder/$1.txt" 2> "$folder/$1.log"; } 2> "$folder/$1.cpu"
+# make_class FOLDER COUNT: the same files for the same number.
+make_class() {
+  local i name
+  for ((i = 0; i < $2; ++i)); do
+    name=$(printf 's%05d' "$i")
+    mkdir -p "$1/$name"
+    { cat "${slips[i % ${#slips[@]}]}"; echo "// student $i"; } > "$1/$name/a1_impulse.cpp"
+  done
 }
 
-# The memory of the grading's first process, in KiB, every second: its largest value.
+# done_in OUT: how many submissions its log calls finished.
+done_in() { grep -ao '^\[[0-9]*/' "$folder/$1.log" 2> /dev/null | tail -1 | tr -d '[/' || true; }
+
+# Once a second "finished KiB": the largest memory so far of the grading's first process.
 watch_memory() {
-  local most=0 now
-  while now=$(awk '/^VmRSS/ {print $2}' "/proc/$1/status" 2> /dev/null) && [ -n "$now" ]; do
-    ((now > most)) && most=$now
-    echo "$most" > "$folder/memory"
+  local most
+  while most=$(awk '/^VmHWM/ {print $2}' "/proc/$1/status" 2> /dev/null) && [ -n "$most" ]; do
+    echo "$(done_in "$2") $most" >> "$folder/$2.memory"
     sleep 1
   done
 }
 
-began=$(date +%s.%N)
-grade calm & pid=$!
-sleep 0.5
-watch_memory "$(pgrep -P "$pid" -x tumble | head -1)" &
-wait "$pid" || true
-seconds=$(echo "$(date +%s.%N) - $began" | bc)
-echo "$n submissions, $jobs at a time: $(printf '%.0f' "$seconds") s, $(echo "scale=1; 60 * $n / $seconds" | bc) a minute, $(echo "scale=1; 60 * $n / $seconds / $jobs" | bc) a minute and job; memory of the grader at most $(cat "$folder/memory") KiB"
-awk -v n="$n" '{c = $1 + $2; printf "CPU time of all processes: %.1f s, %.2f s a submission: %.1f submissions a minute on a core of its own\n", c, c / n, 60 * n / c}' "$folder/calm.cpu"
+# The largest memory until so many were finished.
+say_memory() {
+  local part
+  for part in 4 2 1; do
+    awk -v want=$((n / part)) '$1 + 0 <= want && $2 > most {most = $2} END {printf "memory of the grader until %d of the class: at most %.1f MiB\n", want, most / 1024}' "$folder/$1.memory"
+  done
+}
 
-for ((kill = 1; kill <= kills; ++kill)); do
-  grade killed & pid=$!
-  # Between 3 s and twice an even share of the whole, so that the last moments are reached too.
-  sleep "$(awk -v s="$seconds" -v k="$kills" -v r="$RANDOM" 'BEGIN {print 3 + r / 32767 * 2 * s / k}')"
-  child=$(pgrep -P "$pid" -x tumble | head -1) || true
-  [ -z "$child" ] || kill -KILL "$child"
+# start IN OUT: grades in the background; its process is $pid.
+start() {
+  : > "$folder/$2.log"
+  "$tumble" grade a1 "$folder/$1" --out "$folder/$2" --no-media --jobs "$jobs" > "$folder/$2.txt" 2>> "$folder/$2.log" &
+  pid=$!
+  watch_memory "$pid" "$2" &
+}
+
+make_class "$folder/in" "$n"
+make_class "$folder/first" "$calm"
+began=$(date +%s.%N)
+TIMEFORMAT='%U %S'
+{ time { start first calm; wait "$pid" || true; }; } 2> "$folder/calm.cpu"
+seconds=$(echo "$(date +%s.%N) - $began" | bc)
+echo "$calm submissions, $jobs at a time: $(printf '%.0f' "$seconds") s, $(echo "scale=1; 60 * $calm / $seconds" | bc) a minute"
+awk -v n="$calm" '{c = $1 + $2; printf "CPU time of all processes: %.1f s, %.2f s a submission: %.1f submissions a minute on a core of its own\n", c, c / n, 60 * n / c}' "$folder/calm.cpu"
+"$tumble" ledger verify "$folder/calm"
+((kills > 0)) || exit 0
+
+# The last kill comes when everything is graded, while pages of the class are written.
+mapfile -t moments < <(for ((k = 1; k < kills; ++k)); do echo $((RANDOM * 32768 % n + RANDOM % n)); done | awk -v n="$n" '{print $1 % n}' | sort -n; echo "$n")
+for ((k = 0; k < kills; ++k)); do
+  start in killed
+  until [ "$(done_in killed)" -ge "${moments[k]}" ] 2> /dev/null || ! kill -0 "$pid" 2> /dev/null; do sleep 0.1; done
+  sleep "0.$((RANDOM % 10))$((RANDOM % 10))"
+  kill -KILL "$pid" 2> /dev/null || true
   wait "$pid" 2> /dev/null || true
-  echo "kill $kill: $(find "$folder/killed" -name results.json -not -path '*/.making-*' | wc -l) of $n have results"
+  echo "kill $((k + 1)) after ${moments[k]}: $(find "$folder/killed" -name results.json -not -path '*/.making-*' | wc -l) of $n have results"
 done
-if ((kills > 0)); then
-  grade killed || true
-  diff -r -x times.json -x .tumble-lock "$folder/calm" "$folder/killed" || { echo "different bytes" >&2; exit 1; }
-  echo "after $kills kills: the same bytes as without"
-fi
-"$build/bin/tumble" ledger verify "$folder/calm"
+start in killed
+wait "$pid" || true
+say_memory killed
+
+same_bytes() {
+  local i name
+  ((calm < n)) || { diff -r -x times.json -x .tumble-lock "$folder/calm" "$folder/killed"; return; }
+  for ((i = 0; i < n; ++i)); do
+    name=$(printf 's%05d' "$i")
+    if ((i < calm)); then
+      diff -r "$folder/calm/$name" "$folder/killed/$name" || return 1
+    else
+      cmp "$folder/killed/$name/results.json" "$folder/killed/$(printf 's%05d' $((i % ${#slips[@]})))/results.json" || return 1
+    fi
+  done
+}
+same_bytes || { echo "different bytes" >&2; exit 1; }
+left=$(find "$folder/killed" -name '.making-*' -o -name '.*.draft*' | wc -l)
+((left == 0)) || { echo "$left unfinished files" >&2; exit 1; }
+said=$("$tumble" ledger verify "$folder/killed")
+echo "$said"
+[[ $said == *" $n entries of $n submissions fit together"* ]] || { echo "something was graded twice with another result" >&2; exit 1; }
+echo "after $kills kills: the same bytes as without, an entry each, nothing unfinished"

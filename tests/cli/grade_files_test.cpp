@@ -99,6 +99,22 @@ TEST_F(FindSubmissions, ALooseFileAndALooseArchiveAreSubmissionsToo) {
   EXPECT_NE(all[1].problem.find("Unpack"), std::string::npos) << all[1].problem;
 }
 
+TEST_F(FindSubmissions, AShardLooksIntoItsOwnAndKnowsTheNamesOfAll) {
+  for (const char* name : {"d", "b", "e", "a"}) put(name + std::string("/a9_thing.cpp"));
+  put("c_1_2_a9_thing.cpp", "int c;\n");
+  const auto whole = find_submissions(root, kind).all;
+  ASSERT_EQ(whole.size(), 5u);
+  for (const int number : {1, 2}) {
+    const Shard shard{number, 2};
+    const auto part = find_submissions(root, kind, shard).all;
+    ASSERT_EQ(part.size(), whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_EQ(part[i].name, whole[i].name);
+      EXPECT_EQ(part[i].source, shard.holds(i) ? whole[i].source : fs::path()) << whole[i].name;
+    }
+  }
+}
+
 TEST_F(FindSubmissions, CopiesThatAreEqualByteForByteAreOneFile) {
   put("adam/a9_thing.cpp");
   put("adam/backup/a9_thing.cpp");

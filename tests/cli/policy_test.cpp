@@ -6,6 +6,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/random.h"
+#include "framework/grading/grades/batch_work.h"
 #include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/class_files.h"
 #include "framework/grading/grades/policy_file.h"
@@ -211,8 +212,10 @@ TEST_F(PolicyFolder, WhatItCannotMeanIsNamed) {
 TEST(ForStudent, HiddenTestsKeepPointsAndLoseNameAndStory) {
   Grade grade = scored("ada", 3.0);
   ScoredTest hidden;
-  hidden.item = {.test = "Secret.Seam", .points = 5.0, .title = "The seam", .hidden = true};
-  hidden.result = {.test = "Secret.Seam", .verdict = Verdict::kWrong, .story = "the seam leaks"};
+  hidden.item = {"Secret.Seam", 5.0, "advanced", "The seam", true};
+  hidden.result.test = "Secret.Seam";
+  hidden.result.verdict = Verdict::kWrong;
+  hidden.result.story = "the seam leaks";
   hidden.score = 2.0;
   grade.tests = {hidden};
   grade.changes = {{"Secret.Seam", "The seam", "right, 5 of 5", "wrong, 2 of 5", "run again"}};
@@ -235,11 +238,61 @@ TEST(SlipsMadeMost, CountSubmissionsAndNotStories) {
     }
     return grade;
   };
-  const auto slips = slips_made_most({with("a", {"sign", "sign"}), with("b", {"unit", "sign"})});
+  SlipTally tally({});
+  for (const Grade& grade : {with("b", {"unit", "sign"}), with("a", {"sign", "sign"})})
+    tally.add(grade);
+  const auto slips = tally.made_most();
   ASSERT_EQ(slips.size(), 2u);
   EXPECT_EQ(slips[0].slip, "sign");
   EXPECT_EQ(slips[0].names, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(slips[1].names, std::vector<std::string>{"b"});
+}
+
+// A submission whose tests of these names fail, with these stories.
+Grade failing(const std::map<std::string, std::string>& stories) {
+  Grade grade = scored("a", 0.0);
+  for (const auto& [name, story] : stories) {
+    ScoredTest test;
+    test.item.test = name;
+    test.result.verdict = Verdict::kWrong;
+    test.result.story = "\n  likely:   " + story;
+    grade.tests.push_back(test);
+  }
+  return grade;
+}
+
+TEST(SlipsOf, AreThoseWhoseTestsAllFailAndWhoseKeywordIsSaid) {
+  const std::vector<KnownSlip> known = {{"the sign of j", "THE SIGN", {"J.A", "J.B"}},
+                                        {"no rotation", "rotation", {"J.A", "J.B"}},
+                                        {"one test of the sign", "the sign", {"J.A"}},
+                                        {"mass for its inverse", "mass", {"M.A"}},
+                                        {"another scene", "the sign", {"J.A", "J.C"}}};
+  using Slips = std::set<std::string>;
+  EXPECT_EQ(slips_of(failing({{"J.A", "the sign of j"}, {"J.B", "see J.A"}}), known),
+            Slips{"the sign of j"});
+  EXPECT_EQ(slips_of(failing({{"J.A", "rotation"}, {"J.B", "x"}, {"M.A", "mass"}}), known),
+            (Slips{"no rotation", "mass for its inverse"}));
+  EXPECT_EQ(slips_of(failing({{"J.B", "of a kind not known"}}), known),
+            Slips{"of a kind not known"});
+  EXPECT_EQ(slips_of(failing({}), known), Slips{});
+}
+
+TEST(LetGoOfDetails, KeepsWhatThePagesOfAClassShow) {
+  GradeRecord record;
+  record.grade = failing({{"J.A", std::string(100'000, 'x')}});
+  record.grade.media.emplace_back().title = "a ball";
+  record.grade.media[0].story = "it falls";
+  record.grade.change = "80 -> 75: the tests changed";
+  record.files["results.json"] = "digest";
+  let_go_of_details(record);
+  EXPECT_EQ(record.grade.tests[0].item.test, "J.A");
+  EXPECT_EQ(record.grade.tests[0].result.verdict, Verdict::kWrong);
+  EXPECT_EQ(record.grade.media[0].title, "a ball");
+  EXPECT_EQ(record.grade.change, "80 -> 75: the tests changed");
+  EXPECT_TRUE(record.grade.has_score());
+  EXPECT_LT(record.grade.tests[0].result.story.capacity(), 100u) << "its memory is given back";
+  EXPECT_TRUE(record.grade.media[0].story.empty());
+  EXPECT_TRUE(record.files.empty());
 }
 
 TEST(SimilarPairs, FindACopyWithOtherNamesAndLeaveOutTheStarter) {

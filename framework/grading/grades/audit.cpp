@@ -220,6 +220,18 @@ std::map<std::string, Catches> catches_of(const std::vector<AuditResult>& result
   return all;
 }
 
+std::vector<AuditResult> kept_audit(const Course& course, const std::string& id) {
+  const Rubric rubric = rubric_of(course, id);
+  const std::string grader = judging_digest(course, id);
+  std::vector<AuditResult> results;
+  for (const Candidate& candidate : find_candidates(course, id)) {
+    if (candidate.is_right) continue;
+    const Kept kept = kept_for(course, id, grader, candidate, sources_of({candidate}).front());
+    if (fs::exists(kept.results)) results.push_back(read_result(rubric, candidate, kept));
+  }
+  return results;
+}
+
 std::vector<AuditResult> audit(const Course& course, const std::string& id,
                                const std::vector<Candidate>& candidates, int jobs,
                                const std::function<void(std::size_t, std::size_t)>& told) {

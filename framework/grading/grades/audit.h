@@ -71,6 +71,10 @@ std::vector<AuditResult> audit(
     const Course& course, const std::string& id, const std::vector<Candidate>& candidates, int jobs,
     const std::function<void(std::size_t done, std::size_t total)>& told = {});
 
+/// What an earlier audit of the same tests found of the assignment's own known-wrong solutions.
+/// Nothing is run: those that were not judged yet, or have changed since, are left out.
+std::vector<AuditResult> kept_audit(const Course& course, const std::string& id);
+
 /// The candidates of these names; all of them where there is none.
 /// @throws UserError for a name that no candidate has, with the nearest
 std::vector<Candidate> only(const std::vector<Candidate>& candidates,

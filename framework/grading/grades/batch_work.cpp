@@ -1,15 +1,22 @@
 #include "framework/grading/grades/batch_work.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "framework/core/digest.h"
-#include "framework/grading/verdicts/plain_text.h"
+#include "framework/core/error.h"
+#include "framework/core/nearest_word.h"
+#include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/scoring.h"
+#include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
+
+namespace fs = std::filesystem;
 
 std::vector<std::string> folders_for(const std::vector<Submission>& submissions) {
   std::set<std::string> taken;
@@ -21,6 +28,36 @@ std::vector<std::string> folders_for(const std::vector<Submission>& submissions)
     folders.push_back(folder);
   }
   return folders;
+}
+
+void let_go_of_details(GradeRecord& record) {
+  const auto empty = [](std::string& text) { std::string().swap(text); };
+  record.files.clear();
+  record.grade.cost = CostSection();
+  for (SceneMedia& media : record.grade.media) {
+    for (std::string* text : {&media.about, &media.story}) empty(*text);
+    std::vector<engines::CheckResult>().swap(media.checks);
+  }
+  for (ScoredTest& test : record.grade.tests)
+    for (std::string* text :
+         {&test.result.test, &test.result.story, &test.result.last_call, &test.result.printed})
+      empty(*text);
+}
+
+GradeRecord fault_record(const GradedWork& work, const std::string& id, const Rubric& rubric,
+                         const std::string& why) {
+  GradeRecord record;
+  record.key = work.key;
+  record.key.pictures.clear();
+  record.assignment = id;
+  Grade& grade = record.grade;
+  grade.name = work.submission->name;
+  grade.folder = work.folder;
+  grade.notes = work.submission->notes;
+  grade.story = why;
+  grade.tests = score_nothing(rubric, Verdict::kGraderFault, why);
+  add_up(grade);
+  return record;
 }
 
 void remark_equal_files(std::vector<GradedWork>& all) {
@@ -61,6 +98,29 @@ void report_distrusted(const std::vector<GradedWork>& all, const Notice& notice)
              work.earlier.problem + "; graded again");
   }
   if (count > kNamed) notice(fmt::format("... and {} more", count - kNamed));
+}
+
+void refuse_key_in(const fs::path& out) {
+  std::error_code failed;
+  const fs::path key = fs::weakly_canonical(machine_key_file(), failed),
+                 folder = fs::weakly_canonical(fs::absolute(out), failed);
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), key.begin(), key.end());
+  if (!key.empty() && end == folder.end())
+    throw UserError(
+        key.string(),
+        "is the key of this machine, and is inside the folder of results " + folder.string(),
+        "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
+}
+
+void refuse_unknown_names(const std::vector<std::string>& only,
+                          const std::vector<Submission>& submissions) {
+  std::vector<std::string> known;
+  for (const Submission& submission : submissions) known.push_back(submission.name);
+  for (const std::string& name : only)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw UserError("--only " + plain_name(name),
+                      "there is no submission of this name." + did_you_mean(name, known),
+                      "The names are those of the folders of submissions.");
 }
 
 }  // namespace tumble::grading

@@ -1,11 +1,12 @@
 /// The submissions of one grading, each with what is known of it.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "framework/grading/grades/grade_files.h"
+#include "framework/grading/grades/ledger.h"
 
 namespace tumble::grading {
 
@@ -14,12 +15,22 @@ struct GradedWork {
   std::string folder;
   GradeKey key;
   EarlierRun earlier;
-  GradeRecord record;        // the final one
-  bool is_settled = false;   // `record` is final and lies in place
-  bool is_left_out = false;  // not asked for, and without an earlier result
+  std::filesystem::path earlier_place;  // the folder that `earlier` was read from
+  GradeRecord record;                   // the final one
+  LedgerEntry entry;                    // of `record`, until it is appended
+  bool is_settled = false;              // `record` is final and lies in place
+  bool is_left_out = false;             // not asked for, and without an earlier result
   std::vector<std::string> remarks;
   double seconds = 0.0;  // that it took, now
 };
+
+/// Lets go of what only the page of a submission shows: stories, plots, checks of scenes, digests.
+/// Its memory is given back.
+void let_go_of_details(GradeRecord& record);
+
+/// The record of a submission whose grading failed: no score, and `why` as the story of every test.
+GradeRecord fault_record(const GradedWork& work, const std::string& id, const Rubric& rubric,
+                         const std::string& why);
 
 using Notice = std::function<void(const std::string& sentence)>;
 
@@ -36,5 +47,13 @@ void report_doubles(std::vector<GradedWork>& all, const Notice& notice);
 
 /// A notice for each of the first earlier results that are not reused, with the reason.
 void report_distrusted(const std::vector<GradedWork>& all, const Notice& notice);
+
+/// Results are published; the key that signs them must not be.
+/// @throws UserError when the key of this machine is inside the folder of results
+void refuse_key_in(const std::filesystem::path& out);
+
+/// @throws UserError for the first of the names that no submission has, with the nearest
+void refuse_unknown_names(const std::vector<std::string>& only,
+                          const std::vector<Submission>& submissions);
 
 }  // namespace tumble::grading

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -26,18 +27,72 @@ void collect_slips(const std::string& story, std::set<std::string>& slips) {
   }
 }
 
+bool is_failed(const ScoredTest& test) {
+  const Verdict verdict = test.result.verdict;
+  return verdict == Verdict::kWrong || verdict == Verdict::kCrashed ||
+         verdict == Verdict::kOutOfResources;
+}
+
+// Stories of the failing tests, in lower case, by test.
+std::map<std::string, std::string> failing_stories(const Grade& grade) {
+  std::map<std::string, std::string> stories;
+  for (const ScoredTest& test : grade.tests)
+    if (is_failed(test)) stories[test.item.test] = lowercase(test.result.story);
+  return stories;
+}
+
+bool is_recognised(const KnownSlip& known, const std::map<std::string, std::string>& stories) {
+  const std::string keyword = lowercase(known.keyword);
+  bool is_named = false;
+  for (const std::string& test : known.tests) {
+    const auto it = stories.find(test);
+    if (it == stories.end()) return false;
+    is_named = is_named || it->second.find(keyword) != std::string::npos;
+  }
+  return is_named;
+}
+
+std::set<std::string> known_slips_of(const Grade& grade, const std::vector<KnownSlip>& known) {
+  const auto stories = failing_stories(grade);
+  std::vector<const KnownSlip*> recognised;
+  for (const KnownSlip& slip : known)
+    if (is_recognised(slip, stories)) recognised.push_back(&slip);
+  std::set<std::string> slips, explained;
+  for (;;) {
+    const KnownSlip* best = nullptr;
+    std::ptrdiff_t most = 0;
+    for (const KnownSlip* slip : recognised) {
+      const std::ptrdiff_t gain =
+          std::count_if(slip->tests.begin(), slip->tests.end(),
+                        [&](const std::string& test) { return !explained.contains(test); });
+      if (gain > most) {
+        most = gain;
+        best = slip;
+      }
+    }
+    if (!best) return slips;
+    slips.insert(best->slip);
+    explained.insert(best->tests.begin(), best->tests.end());
+  }
+}
+
 }  // namespace
 
-std::vector<SlipCount> slips_made_most(const std::vector<Grade>& grades, std::size_t most) {
-  std::map<std::string, std::vector<std::string>> names;
-  for (const Grade& grade : grades) {
-    std::set<std::string> slips;
-    for (const ScoredTest& test : grade.tests)
-      if (test.result.verdict == Verdict::kWrong) collect_slips(test.result.story, slips);
-    for (const std::string& slip : slips) names[slip].push_back(grade.name);
-  }
+std::set<std::string> slips_of(const Grade& grade, const std::vector<KnownSlip>& known) {
+  std::set<std::string> slips = known_slips_of(grade, known);
+  if (!slips.empty()) return slips;
+  for (const ScoredTest& test : grade.tests)
+    if (test.result.verdict == Verdict::kWrong) collect_slips(test.result.story, slips);
+  return slips;
+}
+
+void SlipTally::add(const Grade& grade) {
+  for (const std::string& slip : slips_of(grade, known_)) names_[slip].insert(grade.name);
+}
+
+std::vector<SlipCount> SlipTally::made_most(std::size_t most) const {
   std::vector<SlipCount> counts;
-  for (auto& [slip, who] : names) counts.push_back({slip, std::move(who)});
+  for (const auto& [slip, who] : names_) counts.push_back({slip, {who.begin(), who.end()}});
   std::stable_sort(counts.begin(), counts.end(), [](const SlipCount& a, const SlipCount& b) {
     return a.names.size() > b.names.size();
   });

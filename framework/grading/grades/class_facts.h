@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -10,15 +12,38 @@
 
 namespace tumble::grading {
 
-/// A slip, as the stories of failing tests name it after "likely:", with the submissions that made
-/// it.
+/// A slip with the tests that fail for it, as an audit found them.
+struct KnownSlip {
+  std::string slip;             // what is wrong
+  std::string keyword;          // in the story of one of the tests
+  std::set<std::string> tests;  // that do not pass it
+};
+
+/// The slips of one submission. Known slips come first: one is recognised where all tests fail that
+/// fail for it, and one of their stories holds its keyword; the one that explains the most failing
+/// tests is taken, then the one that explains the most of the rest, and so on. Where none is
+/// recognised, the slips that stories name after "likely:".
+std::set<std::string> slips_of(const Grade& grade, const std::vector<KnownSlip>& known);
+
+/// A slip, with the submissions that made it.
 struct SlipCount {
   std::string slip;
   std::vector<std::string> names;
 };
 
-/// @return the slips that the most submissions made, most frequent first; equal ones by their text
-std::vector<SlipCount> slips_made_most(const std::vector<Grade>& grades, std::size_t most = 10);
+/// Counts slips, one submission after the other.
+class SlipTally {
+ public:
+  explicit SlipTally(std::vector<KnownSlip> known) : known_(std::move(known)) {}
+  bool has_known() const { return !known_.empty(); }
+  void add(const Grade& grade);
+  /// The slips that the most submissions made, most frequent first; equal ones by their text.
+  std::vector<SlipCount> made_most(std::size_t most = 10) const;
+
+ private:
+  std::vector<KnownSlip> known_;
+  std::map<std::string, std::set<std::string>> names_;  // of submissions, by slip
+};
 
 /// How a class did in one test.
 struct TestCount {

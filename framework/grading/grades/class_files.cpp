@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/grading/compiler/compile.h"
+#include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/class_page.h"
 #include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/grades/scoring.h"
@@ -109,6 +110,23 @@ std::vector<std::string> what_needs_a_look(const std::vector<Standing>& standing
   return sentences;
 }
 
+std::vector<KnownSlip> known_slips(const Course& course, const std::string& id) {
+  std::vector<AuditResult> audited;
+  try {
+    audited = kept_audit(course, id);
+  } catch (const UserError&) {
+    return {};  // this tree has no slips, or one does not fit its base: the audit says so
+  }
+  std::vector<KnownSlip> known;
+  for (const AuditResult& result : audited) {
+    if (result.caught_by.empty() || !result.fault.empty()) continue;
+    KnownSlip slip{plain_name(result.candidate.slip), result.candidate.keyword, {}};
+    for (const TestResult& test : result.caught_by) slip.tests.insert(test.test);
+    known.push_back(std::move(slip));
+  }
+  return known;
+}
+
 std::vector<NamedSource> sources_in(const fs::path& submissions, const modules::ModuleKind& kind) {
   std::vector<NamedSource> sources;
   for (const Submission& submission : find_submissions(submissions, kind).all) {
@@ -126,7 +144,7 @@ std::string starter_of(const Course& course, const modules::ModuleKind& kind) {
 
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const fs::path& submissions, const PolicyFile* policy, const fs::path& out,
-                       const std::vector<Grade>& grades) {
+                       const std::vector<Grade>& grades, const SlipTally& slips) {
   std::vector<Standing> standings;
   if (policy) {
     standings = apply_policy(policy->policy, policy->roster, policy->hand_ins, grades);
@@ -141,17 +159,22 @@ void write_class_files(const Course& course, const modules::ModuleKind& kind,
   } else {
     fs::remove(out / kStandingFile);
   }
-  class_page(kind, grades, standings).write(out / "class.html");
+  class_page(kind, grades, slips, standings).write(out / "class.html");
   pictures_page(kind, grades, out).write(out / "pictures.html");
   const auto sources = sources_in(submissions, kind);
-  const bool can = can_compare_sources();
-  const auto pairs =
-      can ? similar_pairs(sources, starter_of(course, kind)) : std::vector<SimilarPair>();
-  similar_page(kind, sources, pairs,
-               can ? ""
-                   : "Nothing was compared, because sim_c++ is not installed: sudo apt-get install "
-                     "similarity-tester, then run the same command again.")
-      .write(out / "similar.html");
+  std::vector<SimilarPair> pairs;
+  std::string problem;
+  if (!can_compare_sources())
+    problem =
+        "Nothing was compared, because sim_c++ is not installed: sudo apt-get install "
+        "similarity-tester, then run the same command again.";
+  else
+    try {
+      pairs = similar_pairs(sources, starter_of(course, kind));
+    } catch (const std::runtime_error& error) {  // no grade depends on it
+      problem = fmt::format("Nothing was compared: {}.", error.what());
+    }
+  similar_page(kind, sources, pairs, problem).write(out / "similar.html");
 }
 
 }  // namespace tumble::grading

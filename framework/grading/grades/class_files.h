@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/grading/course/course.h"
+#include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/policy_file.h"
 #include "framework/grading/grades/similar.h"
 
@@ -28,6 +29,9 @@ std::vector<Standing> read_standings(const std::filesystem::path& file);
 /// One sentence for each person without a score and each submission of nobody in the roster.
 std::vector<std::string> what_needs_a_look(const std::vector<Standing>& standings);
 
+/// The assignment's known slips, as far as an audit has judged them; none where the tree has none.
+std::vector<KnownSlip> known_slips(const Course& course, const std::string& id);
+
 /// The submissions' texts, and the starter's.
 std::vector<NamedSource> sources_in(const std::filesystem::path& submissions,
                                     const modules::ModuleKind& kind);
@@ -38,6 +42,7 @@ std::string starter_of(const Course& course, const modules::ModuleKind& kind);
 /// @param policy  none: nullptr
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const std::filesystem::path& submissions, const PolicyFile* policy,
-                       const std::filesystem::path& out, const std::vector<Grade>& grades);
+                       const std::filesystem::path& out, const std::vector<Grade>& grades,
+                       const SlipTally& slips);
 
 }  // namespace tumble::grading

@@ -74,12 +74,16 @@ void add_tests(report::Page& page, const std::vector<TestCount>& counts) {
   page.table(table);
 }
 
-void add_slips(report::Page& page, const std::vector<Grade>& grades) {
+void add_slips(report::Page& page, const SlipTally& tally) {
   constexpr std::size_t kNamed = 5;
   page.heading("The slips made most", 2, "slips");
-  const auto slips = slips_made_most(grades);
+  const auto slips = tally.made_most();
   if (slips.empty()) return page.paragraph("No failing test names a slip.", Look::kMuted);
-  report::Table table{"A slip is what a failing test names as likely.",
+  report::Table table{!tally.has_known()
+                          ? "A slip is what a failing test names as likely. After tumble audit, "
+                            "slips are recognised by the tests that they fail."
+                          : "A slip is recognised by the tests that fail for it and by "
+                            "what their stories name.",
                       {{"Submissions", true}, {"Slip"}, {"Made by"}},
                       {}};
   for (const SlipCount& slip : slips) {
@@ -197,12 +201,12 @@ void add_pair(report::Page& page, const NamedSource& a, const NamedSource& b,
 }  // namespace
 
 report::Page class_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades,
-                        const std::vector<Standing>& standings) {
+                        const SlipTally& slips, const std::vector<Standing>& standings) {
   report::Page page(title_of(kind, "the class"), fmt::format("{} submissions", grades.size()));
   add_links(page);
   const auto counts = test_counts(grades);
   add_histogram(page, grades);
-  add_slips(page, grades);
+  add_slips(page, slips);
   add_tests(page, counts);
   add_standings(page, standings);
   add_matrix(page, grades, counts);
@@ -238,7 +242,7 @@ report::Page pictures_page(const modules::ModuleKind& kind, const std::vector<Gr
       if (figures.size() == kMost) break;
       figures.push_back(
           {one.picture, "",
-           fmt::format("{}: {:.1f} of 255", plain_name(one.grade->name), one.distance)});
+           fmt::format("{}: {:.1f} of 255", plain_name(one.grade->name), one.distance), ""});
     }
     if (shown.size() > kMost)
       page.paragraph(fmt::format("The {} farthest of {}.", kMost, shown.size()), Look::kMuted);

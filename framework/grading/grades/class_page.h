@@ -14,9 +14,10 @@ namespace tumble::grading {
 
 /// OUT/class.html: histogram, tests, slips, points by the course's rules, matrix of tests by
 /// submissions.
+/// @param slips      of all submissions
 /// @param standings  empty: there is no policy
 report::Page class_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades,
-                        const std::vector<Standing>& standings);
+                        const SlipTally& slips, const std::vector<Standing>& standings);
 
 /// OUT/pictures.html: each scene's pictures, those farthest from the reference first.
 /// @param out  where the pictures are

@@ -21,10 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kSubmissionsOfShard = 10, kMostUnasked = 1000;  // Slurm's default limit: 1001
 constexpr int kMostRounds = 5;
-constexpr auto kLook = 2s;             // between two looks at what is finished
+constexpr auto kLook = 2s;             // between two looks at what is finished, at least
+constexpr int kMostOfTime = 10;        // and ten times as long as a look takes
 constexpr int kMostSilentLooks = 150;  // of a controller that does not answer: five minutes
 
 std::string quoted(const std::string& word) {
@@ -122,12 +124,13 @@ class Rounds {
   }
 
   void report_progress() {
-    if (!job_.progress) return;
+    if (!job_.progress || Clock::now() < next_look_) return;
+    const auto began = Clock::now();
     const std::size_t done = std::min(finished_in_shards(job_.out), job_.total);
+    next_look_ = Clock::now() + kMostOfTime * (Clock::now() - began);
     if (done == reported_) return;
     reported_ = done;
-    const double spent =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
     const double left =
         done == 0 ? -1.0
                   : spent / static_cast<double>(done) * static_cast<double>(job_.total - done);
@@ -241,7 +244,8 @@ class Rounds {
   std::string job_id_;
   int silent_ = 0;
   std::size_t reported_ = static_cast<std::size_t>(-1);
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point next_look_ = start_;
 };
 
 }  // namespace

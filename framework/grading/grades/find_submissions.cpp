@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -196,64 +197,84 @@ std::optional<CanvasName> canvas_name(const std::string& name) {
   return canvas;
 }
 
+// A submission whose name is known, and what finds out about it.
+struct Named {
+  Submission submission;
+  std::function<void(Submission&)> look_into;
+};
+
+Submission called(const std::string& name, const std::string& student_id = "") {
+  Submission submission;
+  submission.name = name;
+  submission.student_id = student_id;
+  return submission;
+}
+
 }  // namespace
 
-FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleKind& kind) {
+FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleKind& kind,
+                                  const std::optional<Shard>& shard) {
   std::error_code failed;
   if (!fs::is_directory(folder, failed))
     throw UserError(folder.string(), "is not a folder",
                     "Give the folder that holds one sub-folder per submission.");
-  std::vector<fs::path> entries;
+  std::vector<fs::directory_entry> entries;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
-    entries.push_back(it->path());
+    entries.push_back(*it);
   if (failed) throw UserError(folder.string(), "cannot be read: " + failed.message());
   std::sort(entries.begin(), entries.end());
 
   const std::string wanted = kind.folder + ".cpp";
   FoundSubmissions all{folder, {}, {}};
+  std::vector<Named> named;
   // files from Canvas, by student and number
-  std::map<std::pair<std::string, std::string>, Found> flat;
-  const auto add = [&](Submission submission, const Found& found, const fs::path& within) {
-    choose_source(found, wanted, within, submission);
-    all.all.push_back(std::move(submission));
-  };
-  for (const fs::path& path : entries) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::pair<fs::path, std::string>>> flat;
+  for (const fs::directory_entry& entry : entries) {
+    const fs::path& path = entry.path();
     const std::string name = path.filename().string();
-    const auto status = fs::symlink_status(path, failed);
-    Submission submission;
-    submission.name = name;
     if (is_litter(name)) continue;
-    if (fs::is_symlink(status)) {
-      submission.problem = "This is a symbolic link, which is not followed. Copy the folder here.";
-      all.all.push_back(std::move(submission));
-    } else if (fs::is_directory(status)) {
+    if (entry.is_symlink(failed)) {
+      named.push_back(
+          {called(name), [](Submission& submission) {
+             submission.problem =
+                 "This is a symbolic link, which is not followed. Copy the folder here.";
+           }});
+    } else if (entry.is_directory(failed)) {
       if (is_tools_folder(name)) {
         all.passed_over.push_back(name + " (a folder of a tool)");
         continue;
       }
-      Found found;
-      std::size_t seen = 0;
-      search(path, wanted, 0, seen, found);
-      add(std::move(submission), found, path);
+      named.push_back({called(name), [=](Submission& submission) {
+                         Found found;
+                         std::size_t seen = 0;
+                         search(path, wanted, 0, seen, found);
+                         choose_source(found, wanted, path, submission);
+                       }});
     } else if (const auto canvas = canvas_name(name)) {
-      sort_in(path, canvas->file, wanted, flat[{canvas->student, canvas->id}]);
+      flat[{canvas->student, canvas->id}].push_back({path, canvas->file});
     } else if (is_source(path) || is_archive(path)) {
-      Found found;
-      sort_in(path, name, wanted, found);
-      submission.name = path.stem().string();
-      add(std::move(submission), found, folder);
+      named.push_back({called(path.stem().string()), [=](Submission& submission) {
+                         Found found;
+                         sort_in(path, name, wanted, found);
+                         choose_source(found, wanted, folder, submission);
+                       }});
     } else {
       all.passed_over.push_back(name + " (neither a folder nor a source)");
     }
   }
-  for (const auto& [student, found] : flat) {
-    Submission submission;
-    submission.name = student.first + "_" + student.second;
-    submission.student_id = student.second;
-    add(std::move(submission), found, folder);
+  for (const auto& [student, files] : flat)
+    named.push_back({called(student.first + "_" + student.second, student.second),
+                     [=, &files = files](Submission& submission) {
+                       Found found;
+                       for (const auto& [path, name] : files) sort_in(path, name, wanted, found);
+                       choose_source(found, wanted, folder, submission);
+                     }});
+  std::sort(named.begin(), named.end(),
+            [](const Named& a, const Named& b) { return a.submission.name < b.submission.name; });
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (!shard || shard->holds(i)) named[i].look_into(named[i].submission);
+    all.all.push_back(std::move(named[i].submission));
   }
-  std::sort(all.all.begin(), all.all.end(),
-            [](const Submission& a, const Submission& b) { return a.name < b.name; });
   if (all.all.empty())
     throw UserError(
         folder.string(),

@@ -124,8 +124,11 @@ struct GradeOptions {
   std::function<bool(const std::vector<Lowering>&)> may_lower;
   bool guard_changed_files = false;
   std::filesystem::path policy;  // kept in the manifest
-  // called with the folder of results and all grades before the folder is released: writes more
-  // pages
+  // called with each grade once its result lies in place, in any order: the one time that its
+  // stories are at hand
+  std::function<void(const Grade&)> each;
+  // called with the folder of results and all grades, without their stories, before the folder is
+  // released: writes more pages
   std::function<void(const std::filesystem::path&, const std::vector<Grade>&)> overview;
   std::function<void(const GradeProgress&)> progress;
   // called with a sentence for the user; may be empty

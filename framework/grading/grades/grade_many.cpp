@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,7 +17,6 @@
 #include "framework/grading/compiler/compile.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_many.h"
-#include "framework/core/nearest_word.h"
 #include "framework/grading/grades/batch_work.h"
 #include "framework/grading/grades/changes.h"
 #include "framework/grading/grades/grade_files.h"
@@ -66,7 +66,7 @@ class Batch {
   }
 
   std::vector<Grade> run(std::vector<Submission> submissions) {
-    refuse_unknown_names(submissions);
+    refuse_unknown_names(options_.only, submissions);
     std::vector<std::string> folders = folders_for(submissions);
     if (options_.shard) keep_own(submissions, folders);
     read_once(submissions);
@@ -80,19 +80,6 @@ class Batch {
   }
 
  private:
-  // Results are published; the key that signs them must not be.
-  static void refuse_key_in(const fs::path& out) {
-    std::error_code failed;
-    const fs::path key = fs::weakly_canonical(machine_key_file(), failed),
-                   folder = fs::weakly_canonical(fs::absolute(out), failed);
-    const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), key.begin(), key.end());
-    if (!key.empty() && end == folder.end())
-      throw UserError(
-          key.string(),
-          "is the key of this machine, and is inside the folder of results " + folder.string(),
-          "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
-  }
-
   void notice(const std::string& sentence) const {
     if (options_.notice) options_.notice(sentence);
   }
@@ -136,48 +123,52 @@ class Batch {
       work.submission = &submissions[i];
       work.folder = folders[i];
       work.key = {submission_digest(submissions[i]), judging, rubric_digest(rubric_), pictures};
-      if (output_->owns(work.folder))
-        work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
-      if (options_.shard && !work.earlier.record) read_result_of_class(work);
+      read_earlier(work);
+      take_over_or_open(work);
       work_.push_back(std::move(work));
     }
     output_->claim({folders.begin(), folders.end()});
     const Notice tell = [this](const std::string& sentence) { notice(sentence); };
     remark_equal_files(work_);
     report_doubles(work_, tell);
-    if (!options_.shard) shards_ = shard_folders(output_->path());
+    if (!options_.shard) finished_ = finished_by_shards(output_->path());
     report_distrusted(work_, tell);
     for (Work& work : work_) {
-      const bool is_asked = is_asked_for(work);
-      if (is_asked && (options_.again || !is_current(work))) {
-        if (settle_from_shard(work))
-          ++done_;
-        else
-          open_.push_back(&work);
-        continue;
-      }
-      if (work.earlier.record)
-        take_over(work);
-      else
-        work.is_left_out = work.is_settled = true;
-      ++done_;
+      if (work.is_settled) continue;
+      if (!settle_from_shard(work)) open_.push_back(&work);
     }
+    done_ = work_.size() - open_.size();
     log_settled();
   }
 
-  // For a shard the earlier result is that of the class, and where it is current nothing is to be
-  // done.
-  void read_result_of_class(Work& work) const {
-    const fs::path place = out_ / work.folder;
-    if (fs::is_directory(fs::symlink_status(place)))
-      work.earlier = read_earlier_run(place, id_, key_.bytes);
+  // For a shard without a result of its own the earlier result is that of the class, and where it
+  // is current nothing is to be done.
+  void read_earlier(Work& work) const {
+    work.earlier_place = place_of(work);
+    if (output_->owns(work.folder))
+      work.earlier = read_earlier_run(work.earlier_place, id_, key_.bytes);
+    const fs::path of_class = out_ / work.folder;
+    if (!options_.shard || work.earlier.record || !fs::is_directory(fs::symlink_status(of_class)))
+      return;
+    work.earlier_place = of_class;
+    work.earlier = read_earlier_run(of_class, id_, key_.bytes);
+  }
+
+  void take_over_or_open(Work& work) const {
+    if (is_asked_for(work) && (options_.again || !is_current(work))) {
+      if (work.earlier.record) let_go_of_details(*work.earlier.record);
+    } else if (work.earlier.record) {
+      take_over(work, std::move(*work.earlier.record));
+    } else {
+      work.is_left_out = work.is_settled = true;
+    }
   }
 
   // What a shard has finished is treated as if this process had made it now.
   bool settle_from_shard(Work& work) {
-    for (const fs::path& shard : shards_) {
-      const fs::path made = shard / work.folder;
-      if (!fs::is_directory(fs::symlink_status(made))) continue;
+    const auto finished = finished_.find(work.folder);
+    if (finished == finished_.end()) return false;
+    for (const fs::path& made : finished->second) {
       Work trial = work;
       trial.earlier = read_earlier_run(made, id_, key_.bytes);
       if (!trial.earlier.problem.empty())
@@ -192,9 +183,9 @@ class Batch {
   }
 
   // A shard has no gradebook: only the class has.
-  std::vector<Grade> end_shard() const {
+  std::vector<Grade> end_shard() {
     std::vector<Grade> grades;
-    for (const Work& work : work_) grades.push_back(work.record.grade);
+    for (Work& work : work_) grades.push_back(std::move(work.record.grade));
     write_whole(done_file(out_, *options_.shard),
                 fmt::format("{} of {} submissions graded, {} were current\n", fresh_, work_.size(),
                             work_.size() - fresh_));
@@ -206,20 +197,27 @@ class Batch {
     return only.empty() || std::find(only.begin(), only.end(), work.submission->name) != only.end();
   }
 
-  void refuse_unknown_names(const std::vector<Submission>& submissions) const {
-    std::vector<std::string> known;
-    for (const Submission& submission : submissions) known.push_back(submission.name);
-    for (const std::string& name : options_.only)
-      if (std::find(known.begin(), known.end(), name) == known.end())
-        throw UserError("--only " + plain_name(name),
-                        "there is no submission of this name." + did_you_mean(name, known),
-                        "The names are those of the folders of submissions.");
+  void take_over(Work& work, GradeRecord whole) const {
+    whole.grade.taken_over = true;
+    settle_with(work, std::move(whole));
   }
 
-  void take_over(Work& work) const {
-    work.record = *work.earlier.record;
-    work.record.grade.taken_over = true;
+  // `whole` is final and lies in place. A class has a thousand of them: what only its own page
+  // shows is let go of.
+  void settle_with(Work& work, GradeRecord whole) const {
+    work.entry = ledger_entry_of(whole, compiler_);
+    whole.grade.name = work.submission->name;  // a record replaces bytes that are no UTF-8
+    if (options_.each && !options_.shard) options_.each(whole.grade);
+    let_go_of_details(whole);
+    work.record = std::move(whole);
+    work.earlier.record.reset();
     work.is_settled = true;
+  }
+
+  // The earlier result, if there is one, with all details: read again.
+  std::optional<GradeRecord> earlier_record(const Work& work) const {
+    if (!work.earlier.record) return std::nullopt;
+    return read_earlier_run(work.earlier_place, id_, key_.bytes).record;
   }
 
   // Entries are appended in the order of the submissions, each as soon as all before it are
@@ -228,7 +226,7 @@ class Batch {
     if (!ledger_) return;
     for (; logged_ < work_.size() && work_[logged_].is_settled; ++logged_)
       if (!work_[logged_].is_left_out)
-        ledger_->append(ledger_entry_of(work_[logged_].record, compiler_));
+        ledger_->append(std::exchange(work_[logged_].entry, LedgerEntry()));
   }
 
   bool pictures_do(const Work& work) const {
@@ -273,10 +271,6 @@ class Batch {
   }
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
-  fs::path earlier_place_of(const Work& work) const {
-    const fs::path place = place_of(work);
-    return options_.shard && !fs::exists(place) ? out_ / work.folder : place;
-  }
   fs::path draft_of(const Work& work) const { return output_->path() / draft_name(work.folder); }
   // The draft's folder has the final name inside, because the written files contain it.
   fs::path made_of(const Work& work) const { return draft_of(work) / work.folder; }
@@ -288,10 +282,11 @@ class Batch {
       fs::create_directories(made_of(work));
       GradeOptions own = options_;
       own.progress = {};
+      const std::optional<GradeRecord> earlier = earlier_record(work);
       std::optional<Grade> grade;
       // only points have changed: added up again, not run again
-      if (verdicts_stand(work) && !options_.again)
-        grade = graded_by(rubric_, work.earlier.record->grade);
+      if (earlier && verdicts_stand(work) && !options_.again)
+        grade = graded_by(rubric_, earlier->grade);
       GradeKey key = work.key;
       const bool is_rerun = !grade;
       if (is_rerun) {
@@ -300,10 +295,10 @@ class Batch {
       }
       grade->folder = work.folder;
       if (!is_rerun || !options_.media)
-        keep_media(earlier_place_of(work), made_of(work), work.earlier.record, *grade, key);
+        keep_media(work.earlier_place, made_of(work), earlier, *grade, key);
       grade->change.clear();
       grade->changes.clear();
-      if (work.earlier.record) note_changes(*work.earlier.record, key, *grade);
+      if (earlier) note_changes(*earlier, key, *grade);
       write_grade(kind_, *grade, key, made_of(work), key_.bytes);
     } catch (const std::exception& error) {
       write_whole(draft_of(work) / "fault.txt", error.what());
@@ -328,19 +323,19 @@ class Batch {
                             earlier->key.submission == work.key.submission &&
                             !record->grade.is_final();
     if (!options_.shard && !old_stands && would_lower(work, *record)) {
-      work.record = *record;  // until decide_lowerings
+      let_go_of_details(*record);
+      work.record = std::move(*record);  // until decide_lowerings
       held_.push_back(&work);
       return;
     }
     if (old_stands) {
-      work.record = *earlier;
-      work.record.grade.change =
-          "the grader failed on a new run; this is the result of the earlier one";
+      GradeRecord old = earlier_record(work).value_or(*earlier);
+      old.grade.change = "the grader failed on a new run; this is the result of the earlier one";
+      settle_with(work, std::move(old));
     } else {
       put_in_place(made, place, draft / "old");
-      work.record = *record;
+      settle_with(work, std::move(*record));
     }
-    work.is_settled = true;
     std::error_code ignored;
     fs::remove_all(draft, ignored);
   }
@@ -364,14 +359,16 @@ class Batch {
     }
     const bool may = options_.may_lower && options_.may_lower(lowerings);
     for (Work* work : held_) {
+      const std::string change = work->record.grade.change;
       if (may) {
         put_in_place(made_of(*work), place_of(*work), draft_of(*work) / "old");
+        settle_with(
+            *work,
+            read_earlier_run(place_of(*work), id_, key_.bytes).record.value_or(work->record));
       } else {
-        const std::string change = work->record.grade.change;
-        take_over(*work);
+        take_over(*work, earlier_record(*work).value_or(*work->earlier.record));
         work->record.grade.change = "not lowered (" + change + ")";
       }
-      work->is_settled = true;
       std::error_code ignored;
       fs::remove_all(draft_of(*work), ignored);
     }
@@ -387,22 +384,12 @@ class Batch {
       why = WIFSIGNALED(status)
                 ? fmt::format("the grading process ended with signal {}", WTERMSIG(status))
                 : "the grading process left no result";
-    GradeRecord record;
-    record.key = work.key;
-    record.key.pictures.clear();
-    record.assignment = id_;
-    Grade& grade = record.grade;
-    grade.name = work.submission->name;
-    grade.folder = work.folder;
-    grade.notes = work.submission->notes;
-    grade.story = why;
-    note_protection(grade);
-    grade.tests = score_nothing(rubric_, Verdict::kGraderFault, why);
-    add_up(grade);
+    GradeRecord record = fault_record(work, id_, rubric_, why);
+    note_protection(record.grade);
     fs::remove_all(made_of(work));
     fs::create_directories(made_of(work));
-    keep_media(earlier_place_of(work), made_of(work), work.earlier.record, grade, record.key);
-    write_grade(kind_, grade, record.key, made_of(work), key_.bytes);
+    keep_media(work.earlier_place, made_of(work), earlier_record(work), record.grade, record.key);
+    write_grade(kind_, record.grade, record.key, made_of(work), key_.bytes);
     record.files = digests_below(made_of(work));
     return record;
   }
@@ -426,10 +413,9 @@ class Batch {
     for (Work& work : work_) {
       left_out += work.is_left_out;
       if (work.is_left_out) continue;
-      work.record.grade.name = work.submission->name;
       work.record.grade.remarks = work.remarks;
       work.record.grade.student_id = work.submission->student_id;
-      grades.push_back(work.record.grade);
+      grades.push_back(std::move(work.record.grade));
       if (work.seconds > 0.0) times["seconds"][work.folder] = work.seconds;
     }
     if (left_out > 0)
@@ -457,7 +443,7 @@ class Batch {
   Rubric rubric_;
   fs::path out_;  // of the class, also for a shard
   std::optional<OutputFolder> output_;
-  std::vector<fs::path> shards_;  // folders of results that may be taken over
+  FinishedByShards finished_;     // what may be taken over
   std::optional<Ledger> ledger_;  // of the class
   const std::string compiler_ = compiler_in_words();
   MachineKey key_;

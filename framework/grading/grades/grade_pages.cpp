@@ -219,13 +219,11 @@ void add_cost(report::Page& page, const CostSection& cost) {
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
-                             const std::string& record) {
+                             const std::string& record, bool is_alone) {
   report::Page page(plain_name(grade.name),
                     fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
-  page.links({{"All submissions", "../index.html"},
-              {"Tests", "#tests"},
-              {"Stories", "#stories"},
-              {"Scenes", "#scenes"}});
+  if (!is_alone) page.links({{"All submissions", "../index.html"}});
+  page.links({{"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
   if (!grade.cost.scene.empty()) page.links({{"What accuracy costs", "#cost"}});
   add_tiles(page, grade);
   for (const std::string& note : grade.notes)

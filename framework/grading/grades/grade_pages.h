@@ -10,8 +10,9 @@
 namespace tumble::grading {
 
 /// The page of one submission, for OUT/NAME/index.html. Its media are in media/ beside it.
+/// @param is_alone  there is no page of all submissions to go to
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
-                             const std::string& record);
+                             const std::string& record, bool is_alone = false);
 
 /// The page over all submissions, for OUT/index.html.
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);

@@ -31,6 +31,18 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(fs::symlink_status(path, failed));
 }
 
+// Calls `tell` with each result in a shard's folder. A directory says itself what its entries are.
+template <class Tell>
+void for_each_result(const fs::path& shard, const Tell& tell) {
+  std::error_code failed;
+  for (fs::directory_iterator it(shard, failed), end; !failed && it != end; it.increment(failed)) {
+    std::error_code gone;
+    const bool is_result = it->path().filename().string().front() != '.' && !it->is_symlink(gone) &&
+                           it->is_directory(gone);
+    if (is_result) tell(it->path());
+  }
+}
+
 }  // namespace
 
 Shard shard_of(const std::string& words) {
@@ -62,11 +74,18 @@ std::vector<fs::path> shard_folders(const fs::path& out) {
   return all;
 }
 
+FinishedByShards finished_by_shards(const fs::path& out) {
+  FinishedByShards finished;
+  for (const fs::path& shard : shard_folders(out))
+    for_each_result(
+        shard, [&](const fs::path& made) { finished[made.filename().string()].push_back(made); });
+  return finished;
+}
+
 std::size_t finished_in_shards(const fs::path& out) {
   std::size_t count = 0;
   for (const fs::path& shard : shard_folders(out))
-    for (const fs::path& entry : entries_of(shard))
-      if (is_folder(entry) && entry.filename().string().front() != '.') ++count;
+    for_each_result(shard, [&](const fs::path&) { ++count; });
   return count;
 }
 
