@@ -95,7 +95,7 @@ void ArticulatedTree::settle_arms(const Node& node, Motion& motion) const {
 
 VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
                                 const std::vector<FixedEnd>& fixed, bool turns_freely) {
-  for (Node& node : nodes_) node.turns_evenly = turns_freely && node.is_even && node.is_point;
+  for (Node& node : nodes_) node.turns_evenly = turns_freely && node.may_turn_evenly;
   assign_numbers();
   set_fixed(fixed);
   VectorXd y = VectorXd::Zero(2 * half_);
@@ -152,7 +152,26 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
     }
     settle_arms(node, motion);
   }
+  measure_misfit(states);
   return y;
+}
+
+void ArticulatedTree::measure_misfit(const std::vector<RigidBodyState>& states) {
+  double apart = 0.0, turned = 0.0, parting = 0.0, fastest = 0.0;
+  for (int place = 0; place < movable(); ++place) {
+    const Node& node = nodes_[static_cast<std::size_t>(place)];
+    const Motion& motion = motions_[static_cast<std::size_t>(place)];
+    const RigidBodyState& state = states[static_cast<std::size_t>(place)];
+    const Vector3d v = state.momentum_world / node.mass;
+    apart = std::max(apart, (state.com_world - motion.c).norm());
+    parting = std::max(parting, (v - motion.v).norm());
+    fastest = std::max({fastest, v.norm(), size_ * motion.w.norm()});
+    if (node.kind != TreeJoint::kHinge && node.kind != TreeJoint::kWeld) continue;
+    const Vector3d w = omega_world_of(state, node.inertia_body.inverse());
+    turned = std::max(turned, (state.world_from_body.conjugate() * motion.q).vec().norm());
+    parting = std::max(parting, size_ * (w - motion.w).norm());
+  }
+  misfit_ = std::max(apart / size_, turned) + (parting > 0.0 ? parting / fastest : 0.0);
 }
 
 void ArticulatedTree::stand_at(const VectorXd& y, const std::vector<FixedEnd>& fixed) {

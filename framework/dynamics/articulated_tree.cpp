@@ -42,7 +42,7 @@ ArticulatedTree::ArticulatedTree(const std::vector<Inertia>& bodies, int fixed_e
     nodes_[i].is_even = bodies[i].inertia_body == moment * Matrix3d::Identity();
   }
   hang(bodies, links);
-  find_points();
+  find_points(links);
   assign_numbers();
 }
 
@@ -106,7 +106,8 @@ void ArticulatedTree::hang(const std::vector<Inertia>& bodies, const std::vector
   }
 }
 
-void ArticulatedTree::find_points() {
+void ArticulatedTree::find_points(const std::vector<TreeLink>& links) {
+  size_ = 0.0;
   for (Node& node : nodes_) {
     node.at_own_centre = node.point_own.isZero(0.0);
     node.at_parent_centre = node.point_parent.isZero(0.0);
@@ -115,10 +116,21 @@ void ArticulatedTree::find_points() {
     node.is_point = keeps_turning && (node.kind == TreeJoint::kFree || node.at_own_centre);
   }
   for (const Node& node : nodes_) {
+    size_ = std::max({size_, node.length, node.point_own.norm(), node.point_parent.norm()});
     if (node.parent < 0 || node.parent >= movable()) continue;
     const bool at_centre =
         node.at_parent_centre && (node.kind == TreeJoint::kBall || node.kind == TreeJoint::kRod);
     if (!at_centre) nodes_[static_cast<std::size_t>(node.parent)].is_point = false;
+  }
+  if (size_ == 0.0) size_ = 1.0;
+  for (Node& node : nodes_) node.may_turn_evenly = node.is_even && node.is_point;
+  for (const int cut : cut_) {
+    const TreeLink& link = links[static_cast<std::size_t>(cut)];
+    const bool turns = link.kind == TreeJoint::kBall || link.kind == TreeJoint::kRod;
+    if (link.a < movable() && !(turns && link.point_a_body.isZero(0.0)))
+      nodes_[static_cast<std::size_t>(link.a)].may_turn_evenly = false;
+    if (link.b < movable() && !(turns && link.point_b_body.isZero(0.0)))
+      nodes_[static_cast<std::size_t>(link.b)].may_turn_evenly = false;
   }
 }
 

@@ -69,6 +69,9 @@ class ArticulatedTree {
   ///   turn evenly, and y leaves their turning out
   VectorXd begin(const std::vector<RigidBodyState>& states, const std::vector<FixedEnd>& fixed,
                  bool turns_freely);
+  /// How far the states that begin() took are from what it made of them: of places in parts of the
+  /// largest arm, of turnings [rad], of velocities in parts of the fastest.
+  double misfit() const { return misfit_; }
   /// Stands where y says. @param fixed  at the same time
   void stand_at(const VectorXd& y, const std::vector<FixedEnd>& fixed);
   /// Of a body, where this stands. @param since_begin  the time since begin() [s]
@@ -107,6 +110,7 @@ class ArticulatedTree {
     bool at_own_centre = true;     // its joint's point is its centre
     bool at_parent_centre = true;  // and its parent's
     bool is_point = true;          // this, and all that hangs on it hangs at its centre
+    bool may_turn_evenly = false;  // nothing but an outer torque would change its turning
     bool turns_evenly = false;     // since begin(): its turning is not in y
     Quaterniond at_begin;          // orientation; of a hinge or a weld: against the parent
     int at = 0;                    // its first number among the places of y
@@ -136,8 +140,9 @@ class ArticulatedTree {
     Vector3d a, alpha;  // accelerations
   };
 
+  void measure_misfit(const std::vector<RigidBodyState>& states);
   void hang(const std::vector<Inertia>& bodies, const std::vector<TreeLink>& links);
-  void find_points();
+  void find_points(const std::vector<TreeLink>& links);
   void assign_numbers();
   void set_fixed(const std::vector<FixedEnd>& fixed);
   void move_parent_point(const Node& node, Motion& motion) const;
@@ -154,11 +159,12 @@ class ArticulatedTree {
   std::vector<Node> nodes_;  // by body
   std::vector<int> order_;   // parents first
   std::vector<int> cut_;
-  bool is_factored_ = false;       // where this stands
-  int depth_ = 0, half_ = 0;       // numbers of y that are places
-  std::vector<Motion> motions_;    // by place: fixed ends too
-  std::vector<Articulated> held_;  // by body
-  std::vector<Solved> solved_;     // by place
+  double misfit_ = 0.0, size_ = 1.0;  // largest arm [m]
+  bool is_factored_ = false;          // where this stands
+  int depth_ = 0, half_ = 0;          // numbers of y that are places
+  std::vector<Motion> motions_;       // by place: fixed ends too
+  std::vector<Articulated> held_;     // by body
+  std::vector<Solved> solved_;        // by place
 };
 
 }  // namespace tumble
