@@ -95,6 +95,10 @@ void add_cost(CLI::App& app, Context& context) {
   verb.option("--stabilisations", words->stabilisations,
               "Stabilisation of rods and joints, each with RK4: none, baumgarte, projection")
       .separated_by(',');
+  verb.option("--coordinates", words->coordinates,
+              "In which rods and joints are integrated: maximal, reduced; default: both, where "
+              "bodies are linked and none collides")
+      .separated_by(',');
   verb.option("--impacts", words->impacts,
               "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748")
       .separated_by(',');

@@ -89,6 +89,33 @@ CostMethod by_stabilisation(const std::string& word, const scene::Scene& scene, 
   return method;
 }
 
+/// The same method in joint coordinates.
+CostMethod in_joint_coordinates(CostMethod method) {
+  method.name += ", joint coordinates";
+  method.coordinates = scene::Coordinates::kReduced;
+  return method;
+}
+
+/// The coordinates of rods and joints that are measured: words of the flag, else both where a scene
+/// is of linked bodies alone.
+std::vector<scene::Coordinates> coordinates_for(const scene::Scene& scene, const CostWords& words) {
+  using scene::Coordinates;
+  if (!words.coordinates.empty()) {
+    if (!scene::is_constrained(scene))
+      throw UserError("--coordinates", scene.name + " has no rods and no joints",
+                      "Leave the flag out, or take a scene such as double_pendulum.");
+    std::vector<Coordinates> all;
+    for (const std::string& word : words.coordinates)
+      all.push_back(scene::coordinates_named(word, "--coordinates"));
+    return all;
+  }
+  if (!scene::is_constrained(scene)) return {scene.coordinates};
+  const auto colliding = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                       [](const scene::BodySpec& body) { return body.collides; });
+  if (scene.contact || colliding > 1) return {scene.coordinates};
+  return {Coordinates::kMaximal, Coordinates::kReduced};
+}
+
 constexpr double kTightest = 1e-12;  // tolerance of everything except the varied part
 
 /// Impacts by another root finder. The framework refines its answer to the last digit, so that the
@@ -268,8 +295,14 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
   if (in_closed_form) add_engines(words, chosen.laws, subject);
   add_named_methods(context, words, chosen.laws, subject);
-  for (const std::string& word : methods_for(subject.scene, words))
-    subject.methods.push_back(method_by_integrator(method_named(word), chosen.laws));
+  for (const scene::Coordinates coordinates : coordinates_for(subject.scene, words))
+    for (const std::string& word : methods_for(subject.scene, words)) {
+      CostMethod method = method_by_integrator(method_named(word), chosen.laws);
+      method.coordinates = coordinates;
+      const bool reduced = coordinates == scene::Coordinates::kReduced;
+      subject.methods.push_back(reduced ? in_joint_coordinates(std::move(method))
+                                        : std::move(method));
+    }
   if (!in_closed_form) add_engines(words, chosen.laws, subject);
   for (const std::string& word : words.stabilisations)
     subject.methods.push_back(by_stabilisation(word, subject.scene, chosen.laws));

@@ -15,7 +15,7 @@ struct CostWords {
   std::string scene;  // or an assignment's id
   std::string modules, on, out = "out/cost";
   // empty: those that suit the scene
-  std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps;
+  std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps, coordinates;
   std::vector<double> tolerances;
   std::optional<double> duration_s;
   std::optional<int> n;

@@ -55,7 +55,15 @@ scene::Scene scene_of_words(const Context& context, const RunWords& words, bool 
   if (words.density) model.density_kg_m3 = *words.density;
   model.is_dropped = words.drop;
   model.turns = turns;
-  return find_scene(context, words.scene, words.n, model);
+  scene::Scene scene = find_scene(context, words.scene, words.n, model);
+  if (!words.coordinates.empty()) {
+    scene.coordinates = scene::coordinates_named(words.coordinates, "--coordinates");
+    if (!scene::is_constrained(scene))
+      throw UserError("--coordinates " + words.coordinates,
+                      scene.name + " has no rods and no joints",
+                      "Leave the flag out, or take a scene such as double_pendulum.");
+  }
+  return scene;
 }
 
 scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n,

@@ -13,6 +13,7 @@ struct RunWords {
   std::string scene;  // a path, or a bare name
   std::string modules;
   std::string engine, propagator;        // engine empty: the scene's, or rd
+  std::string coordinates;               // of rods and joints; empty: the scene's
   std::optional<int> n;                  // of a scene whose size is a parameter
   std::optional<double> scale, density;  // of a scene made of a .3ds file: metres per unit, kg/m^3
   bool drop = false;                     // the same: onto a floor

@@ -179,6 +179,10 @@ void add_run_words(Verb& verb, RunWords& words) {
               "laws: bodies go by the laws' integration (rd's default); auto: in closed form where "
               "nothing but gravity acts")
       .type_name("WORD");
+  verb.option("--coordinates", words.coordinates,
+              "In which rods and joints are integrated: maximal (six a body, and rows), reduced "
+              "(those that rods and joints leave free), auto; default: the scene's own")
+      .type_name("WORD");
   verb.option("--threads", words.threads,
               "Of --engine tw: how many; the run is the same with any number. Laws must keep "
               "nothing from one call to the next")

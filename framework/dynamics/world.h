@@ -47,6 +47,8 @@ struct World {
   // persistent contact; absent where the scene does not ask for it
   std::optional<scene::ContactSpec> contact;
   std::optional<scene::StabilisationSpec> stabilisation;
+  // in which rods and joints are integrated
+  scene::Coordinates coordinates = scene::Coordinates::kMaximal;
   // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them
   std::vector<std::pair<int, int>> apart;
 };

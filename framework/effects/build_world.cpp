@@ -83,6 +83,7 @@ World build_world(const scene::Scene& scene) {
   world.contact = scene.contact;
   if (is_constrained(world))
     world.stabilisation = scene.stabilisation.value_or(scene::StabilisationSpec{});
+  world.coordinates = scene.coordinates;
   correct_positions(scene, index, world);
   return world;
 }

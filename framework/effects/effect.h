@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/dynamics/articulated_tree.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
 #include "framework/effects/body_index.h"
@@ -126,6 +127,9 @@ class GroupTerms {
   /// @param bodies  by place, which rows name them by
   virtual std::size_t row_count() const { return 0; }
   virtual void append_rows(const std::vector<Body>&, std::vector<Constraint>&) {}
+  /// The same as joints of a tree, one for each entry, with the rows that are its; an effect that
+  /// has rows and no joints keeps its bodies out of joint coordinates.
+  virtual void append_joints(std::vector<TreeLink>&) const {}
   /// The largest length that they keep: what errors of places are compared with. [m]
   virtual double size() const { return 0.0; }
   virtual void note_open(const std::vector<Body>&, const NoteOpen&) const {}

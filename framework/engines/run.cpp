@@ -62,6 +62,15 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   }
 }
 
+/// The scene in the coordinates that "auto" stands for: those that rods and joints leave free,
+/// unless a module's laws of rods and joints are what the run shows.
+scene::Scene in_chosen_coordinates(const scene::Scene& scene, const Laws& laws) {
+  scene::Scene chosen = scene;
+  chosen.coordinates =
+      laws.constraint_multipliers ? scene::Coordinates::kMaximal : scene::Coordinates::kReduced;
+  return chosen;
+}
+
 // A step of the smallest world takes a microsecond; a frame takes some hundred bytes a body, and
 // all are kept.
 constexpr double kMostSteps = 1e8, kMostFrames = 1e7;
@@ -183,6 +192,8 @@ const std::vector<std::pair<std::string, std::string>>& engine_words() {
 
 void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& asked,
                TrajectorySink& sink) {
+  if (scene.coordinates == scene::Coordinates::kAutomatic)
+    return run_scene(in_chosen_coordinates(scene, laws), laws, asked, sink);
   RunOptions options = asked;
   if (options.engine.empty()) options.engine = scene.engine.empty() ? "rd" : scene.engine;
   const Engine engine = engine_of(options, laws);

@@ -40,6 +40,13 @@ void read_stabilisation(const json& root, const Document& document, Scene& scene
   read(value, "time_constant_s", scene.stabilisation->time_constant_s);
 }
 
+void read_coordinates(const json& root, const Document& document, Scene& scene) {
+  if (!root.contains("coordinates")) return;
+  if (!is_constrained(scene))
+    document.refuse("/coordinates", "the scene has neither rods nor joints", "Delete it.");
+  scene.coordinates = coordinates_named(root.at("coordinates"), "\"coordinates\"");
+}
+
 void read_apart(const json& root, const Document& document, Anchors& anchors, Scene& scene) {
   if (!root.contains("apart")) return;
   const json& pairs = root.at("apart");
@@ -59,6 +66,7 @@ void read_links(const Document& document, Anchors& anchors, Scene& scene) {
   read_apart(root, document, anchors, scene);
   read_contact(root, scene);
   read_stabilisation(root, document, scene);
+  read_coordinates(root, document, scene);
 }
 
 }  // namespace tumble::scene

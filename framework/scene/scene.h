@@ -105,6 +105,12 @@ struct StabilisationSpec {
   double time_constant_s = 0.1;  // of Baumgarte's
 };
 
+/// In which coordinates rods and joints are integrated: six a body and their rows, or those that
+/// they leave free; automatic: the latter where nothing else is to be seen of them.
+enum class Coordinates { kMaximal, kReduced, kAutomatic };
+/// @throws UserError naming `where` for another word than maximal, reduced, auto
+Coordinates coordinates_named(const std::string& word, const std::string& where);
+
 struct CameraSpec {
   Vector3d eye_m{6.0, -8.0, 4.0};
   Vector3d target_m = Vector3d::Zero();
@@ -151,6 +157,7 @@ struct Scene {
   std::optional<ContactSpec> contact;
   // present exactly where an effect constrains bodies (words.h: rods, joints)
   std::optional<StabilisationSpec> stabilisation;
+  Coordinates coordinates = Coordinates::kMaximal;
   // pairs that do not collide (links of a chain); joined bodies never do
   std::vector<std::pair<std::string, std::string>> apart;
   CameraSpec camera;

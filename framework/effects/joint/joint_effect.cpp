@@ -35,6 +35,25 @@ class JointTerms final : public GroupTerms {
                         link.b.place, rows);
     }
   }
+  void append_joints(std::vector<TreeLink>& joints) const override {
+    int row = 0;
+    for (const PlacedLink& link : joints_) {
+      TreeLink& joint = joints.emplace_back();
+      const JointKind kind = of(link).kind;
+      joint.kind = kind == JointKind::kBall    ? TreeJoint::kBall
+                   : kind == JointKind::kHinge ? TreeJoint::kHinge
+                                               : TreeJoint::kWeld;
+      joint.a = link.a.place;
+      joint.b = link.b.place;
+      joint.point_a_body = link.a.point_body;
+      joint.point_b_body = link.b.point_body;
+      joint.a_from_joint = of(link).a_from_joint;
+      joint.b_from_joint = of(link).b_from_joint;
+      joint.row = row;
+      joint.row_count = effects::row_count(kind);
+      row += joint.row_count;
+    }
+  }
   void note_open(const std::vector<Body>& bodies, const NoteOpen& note) const override {
     for (std::size_t k = 0; k < joints_.size(); ++k) {
       const PlacedLink& link = joints_[k];

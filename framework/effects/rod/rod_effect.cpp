@@ -46,6 +46,19 @@ class RodTerms final : public GroupTerms {
                       })});
     }
   }
+  void append_joints(std::vector<TreeLink>& joints) const override {
+    for (std::size_t k = 0; k < rods_.size(); ++k) {
+      TreeLink& joint = joints.emplace_back();
+      joint.kind = TreeJoint::kRod;
+      joint.a = rods_[k].a.place;
+      joint.b = rods_[k].b.place;
+      joint.point_a_body = rods_[k].a.point_body;
+      joint.point_b_body = rods_[k].b.point_body;
+      joint.length = of(rods_[k]).length;
+      joint.row = static_cast<int>(k);
+      joint.row_count = 1;
+    }
+  }
   double size() const override {
     double longest = 0.0;
     for (const PlacedLink& link : rods_) longest = std::max(longest, of(link).length);

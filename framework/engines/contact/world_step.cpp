@@ -35,6 +35,7 @@ WorldStep::WorldStep(World world, const Laws& laws, StepRules rules, RunCounters
 WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
   Taken taken;
   const double start = moving_.time();
+  choose_coordinates();
   // Bodies go where they would without each other. A sleeper that would be met takes the step
   // awake.
   stages.begin(target);
@@ -60,6 +61,16 @@ WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
   if (searches_) remove_overlaps(taken);
   if (!earliest) moving_.watch_links(reached - start);
   return taken;
+}
+
+// Of what is linked: contacts push bodies of six coordinates each.
+void WorldStep::choose_coordinates() {
+  if (moving_.world().coordinates != scene::Coordinates::kReduced || !has_contacts()) return;
+  for (LinkedBodies& group : moving_.linked_groups()) group.set_touched(false);
+  for (const Pair& pair : contacts_->lasting())
+    for (const int body : {pair.first, pair.second})
+      if (const int group = moving_.linked_group(body); group >= 0)
+        moving_.linked_groups()[static_cast<std::size_t>(group)].set_touched(true);
 }
 
 // Pairs that may meet in the step under way, which is made shorter where bodies turn too far in it.

@@ -108,6 +108,7 @@ class WorldStep {
     std::size_t trigger = 0;        // which of them stopped the step
   };
 
+  void choose_coordinates();
   std::vector<Pair> pairs_in_step();
   bool keep_contacts(Taken& taken, StepStages& stages);
   void remove_overlaps(const Taken& taken);

@@ -197,6 +197,7 @@ CostRun run_of(const scene::Scene& scene, const CostMethod& method, const CostRe
   CostRun run{std::move(stepped.scene), method.laws,
               options_of(method, options, stepped.frame_rate_hz)};
   if (method.stabilisation) run.scene.stabilisation = method.stabilisation;
+  if (method.coordinates) run.scene.coordinates = *method.coordinates;
   if (method.step_function) run.laws.integrate_step = method.step_function(tolerance);
   if (method.tuned) method.tuned(tolerance, run.laws);
   if (std::isfinite(options.most_of_run_s))

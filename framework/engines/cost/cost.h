@@ -51,6 +51,7 @@ struct CostMethod {
   bool controlled = false;
   bool has_refinement = true;                             // false: it has no step or tolerance
   std::optional<scene::StabilisationSpec> stabilisation;  // in place of the scene's
+  std::optional<scene::Coordinates> coordinates;          // the same
   Laws laws;
 };
 

@@ -69,6 +69,7 @@ struct PartMaker {
     world.gravity_world = whole.gravity_world;
     world.contact = whole.contact;
     world.stabilisation = whole.stabilisation;
+    world.coordinates = whole.coordinates;
     const auto in_part = [&](int body) { return body < 0 ? body : place_of(part.bodies, body); };
     for (std::size_t k = 0; k < part.entries.size(); ++k)
       if (!part.entries[k].empty())

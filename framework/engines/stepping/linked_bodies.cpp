@@ -78,11 +78,12 @@ std::vector<LinkedGroup> groups_of_linked_bodies(const World& world) {
 }
 
 LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters,
-                           OuterWrench outer_wrench, LinkedGroup group)
+                           OuterWrench outer_wrench, LinkedGroup group, LeftAlone left_alone)
     : world_(world),
       laws_(laws),
       counters_(counters),
       outer_wrench_(std::move(outer_wrench)),
+      left_alone_(std::move(left_alone)),
       bodies_(std::move(group.bodies)) {
   for (const auto& [k, entries] : group.entries) {
     auto acting =
@@ -92,6 +93,7 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     if (acting->control() != nullptr) controls_.push_back(terms_.size());
     terms_.push_back({k, std::move(acting)});
   }
+  if (world_.coordinates == scene::Coordinates::kReduced) plant_tree();
 }
 
 bool LinkedBodies::has(int body) const {
@@ -228,6 +230,13 @@ void keep_rates(ContactProblem& problem) {
   }
 }
 
+Vector3d LinkedBodies::acceleration_of_fixed(int fixed, const Vector3d& com_world, double t) const {
+  const WorldBody& body = world_.bodies[static_cast<std::size_t>(fixed)];
+  const double w = body.motion.angular_frequency_rad_s;
+  if (w == 0.0) return Vector3d::Zero();
+  return -w * w * (com_world - body.com_at_0_world - body.motion.velocity_m_s * t);
+}
+
 VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies,
                                              const std::vector<RigidBodyState>& local,
                                              std::vector<Wrench>& wrenches) {
@@ -244,12 +253,8 @@ VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies,
           body.inverse_inertia_world * (wrenches[i].torque_world - gyroscopic);
     } else if (fixed_[i - bodies_.size()] >= 0) {
       // a shaken end accelerates
-      const scene::PrescribedMotion& m = world_.bodies[fixed_[i - bodies_.size()]].motion;
-      if (m.angular_frequency_rad_s != 0.0)
-        body.free_acceleration.head<3>() =
-            -m.angular_frequency_rad_s * m.angular_frequency_rad_s *
-            (bodies[i].com_world - world_.bodies[fixed_[i - bodies_.size()]].com_at_0_world -
-             m.velocity_m_s * time_of_stage_);
+      body.free_acceleration.head<3>() =
+          acceleration_of_fixed(fixed_[i - bodies_.size()], bodies[i].com_world, time_of_stage_);
     }
     constrained.push_back(body);
   }
@@ -296,6 +301,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
                                                   double t, double h) {
   step_ = h;
   std::vector<RigidBodyState> local = take(states);
+  if (tree_ && !touched_) return advance_reduced(std::move(local), t, h);
   VectorXd y(static_cast<Eigen::Index>(local.size()) * kStateSize);
   for (std::size_t i = 0; i < local.size(); ++i)
     y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = pack(local[i]);

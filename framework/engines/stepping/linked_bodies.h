@@ -11,10 +11,12 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "framework/dynamics/articulated_tree.h"
 #include "framework/dynamics/contact_problem.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
@@ -52,8 +54,12 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Gravity and point forces on a body (index in the world) in a state.
   using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
 
+  /// Whether nothing but gravity acts on a body (index in the world) from outside of the group;
+  /// empty: outer_wrench says it all.
+  using LeftAlone = std::function<bool(int body)>;
+
   LinkedBodies(const World& world, const Laws& laws, RunCounters& counters,
-               OuterWrench outer_wrench, LinkedGroup group);
+               OuterWrench outer_wrench, LinkedGroup group, LeftAlone left_alone = {});
 
   const std::vector<int>& bodies() const { return bodies_; }
   /// Immovable bodies that a link of the group ends at; -1: the world.
@@ -65,6 +71,16 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Whether its control laws drive it otherwise than by what they held before.
   bool is_driven_otherwise(const std::map<int, effects::Memory>& before) const;
   bool has_constraints() const { return row_count_ > 0; }
+
+  /// Why the group is not integrated in joint coordinates where the world asks for these; empty: it
+  /// is, as long as nothing touches it.
+  const std::string& kept_maximal_by() const { return kept_maximal_by_; }
+  /// In words: numbers of joint coordinates and of rows that close loops. @pre kept_maximal_by() is
+  /// empty, and the world asks for joint coordinates
+  std::string reduced_in_words() const;
+  /// From here on bodies of the group are in persistent contact, or are not: contacts push bodies of
+  /// six coordinates, so the group goes on in these from the same state, and back.
+  void set_touched(bool touched) { touched_ = touched; }
 
   /// Control laws whose time has come look and set their torques.
   /// @return the next time at which one looks; infinite without
@@ -123,6 +139,15 @@ class LinkedBodies final : effects::GroupPlaces {
                                  const std::vector<RigidBodyState>& local,
                                  std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
+  // In joint coordinates: reduced_bodies.cpp.
+  void plant_tree();
+  std::vector<RigidBodyState> advance_reduced(std::vector<RigidBodyState> local, double t,
+                                              double h);
+  VectorXd begin_reduced(std::vector<RigidBodyState>& local, double t);
+  VectorXd reduced_rate(double t, const VectorXd& y);
+  void stand_fixed_ends_at(double t);
+  void close_loops();
+  Vector3d acceleration_of_fixed(int fixed, const Vector3d& com_world, double t) const;
   static std::vector<ConstrainedBody> constrained(const std::vector<Body>& bodies);
   VectorXd correction(const std::vector<Constraint>& rows,
                       const std::vector<ConstrainedBody>& bodies, const VectorXd& error);
@@ -134,6 +159,7 @@ class LinkedBodies final : effects::GroupPlaces {
   const Laws& laws_;
   RunCounters& counters_;
   OuterWrench outer_wrench_;
+  LeftAlone left_alone_;
   std::vector<int> bodies_;
   // immovable ends: bodies of the world, -1 for the world itself
   std::vector<int> fixed_;
@@ -146,6 +172,21 @@ class LinkedBodies final : effects::GroupPlaces {
   std::vector<std::size_t> controls_;  // those of terms_ that look
   double time_of_stage_ = 0.0;
   double step_ = kUnset;  // the last that advance() took [s]
+
+  std::optional<ArticulatedTree>
+      tree_;  // absent: the group is integrated in six coordinates a body
+  std::string kept_maximal_by_;
+  std::vector<TreeLink> joints_;  // row: among those of all terms
+  std::vector<int> loop_rows_;    // of joints that close loops
+  bool touched_ = false;
+  bool ends_move_ = false;            // fixed ends that are driven
+  std::vector<char> feels_gravity_;   // by body, in the step under way: gravity alone
+  std::vector<std::size_t> pulling_;  // those of terms_ that may act with forces
+  // where the tree stands, by place
+  std::vector<FixedEnd> ends_;
+  std::vector<Body> seen_;
+  std::vector<Wrench> wrenches_;
+  double begun_at_ = 0.0;  // time of the coordinates' beginning [s]
 };
 
 /// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.

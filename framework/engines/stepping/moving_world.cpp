@@ -63,7 +63,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
     linked_.emplace_back(
         world_, laws_, counters_,
         [this](int body, const RigidBodyState& state) { return wrench_on(body, state); },
-        std::move(group));
+        std::move(group), [this](int body) { return is_left_alone(body); });
     linked_.back().project(states_, 0.0);
   }
 }
