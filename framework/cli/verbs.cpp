@@ -18,6 +18,8 @@ void add_verbs(CLI::App& app, Context& context) {
   add_regrade(app, context);
   add_ledger(app, context);
   add_class(app, context);
+  add_export(app, context);
+  add_autograde(app, context);
   add_audit(app, context);
   add_attack(app, context);
   add_doctor(app, context);

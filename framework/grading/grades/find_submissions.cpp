@@ -3,13 +3,14 @@
 #include <cctype>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "framework/core/error.h"
 #include "framework/core/text.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/find_submissions.h"
+#include "framework/grading/handins/layouts.h"
+#include "framework/grading/handins/unpack.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -27,6 +28,23 @@ struct Found {
   std::vector<fs::path> named, sources, archives, headers;
   std::vector<std::pair<fs::path, std::string>> locked;  // folders that cannot be read, and why
   bool cut = false, is_deep = false;
+  std::string refused;  // why a part of it was not unpacked; then nothing of it is used
+};
+
+// Folders for what is unpacked, which last as long as what was found.
+class Unpacked {
+ public:
+  explicit Unpacked(std::unique_ptr<PrivateFolder>& folder) : folder_(folder) {}
+  fs::path next() {
+    if (!folder_) folder_ = std::make_unique<PrivateFolder>();
+    const fs::path place = folder_->path() / std::to_string(count_++);
+    fs::create_directories(place);
+    return place;
+  }
+
+ private:
+  std::unique_ptr<PrivateFolder>& folder_;
+  std::size_t count_ = 0;
 };
 
 bool ends_in(const fs::path& file, const std::set<std::string>& endings) {
@@ -126,8 +144,29 @@ bool are_equal(const std::vector<fs::path>& files) {
 }
 
 void choose_source(Found found, const std::string& wanted, const fs::path& folder,
-                   Submission& submission) {
+                   Unpacked* unpacked, Submission& submission);
+
+// One archive and no source: what is in it counts. An archive in an archive does not.
+void choose_from_archive(const fs::path& archive, const std::string& wanted, Unpacked& unpacked,
+                         Submission& submission) {
+  const fs::path place = unpacked.next();
+  submission.problem = unpack_submission(archive, place);
+  if (!submission.problem.empty()) return;
+  submission.notes.push_back("its file was in " + archive.filename().string());
+  Found found;
+  std::size_t seen = 0;
+  search(place, wanted, 0, seen, found);
+  choose_source(found, wanted, place, nullptr, submission);
+}
+
+void choose_source(Found found, const std::string& wanted, const fs::path& folder,
+                   Unpacked* unpacked, Submission& submission) {
   const auto note = [&](const std::string& text) { submission.notes.push_back(text); };
+  if (!found.refused.empty()) {
+    submission.problem = "Was not unpacked: " + found.refused +
+                         ". Take the submission from the platform, and give its folder.";
+    return;
+  }
   if (found.cut)
     note("more than " + std::to_string(kMostFiles) + " files: only the first were examined");
   if (found.is_deep)
@@ -157,6 +196,9 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
     submission.problem = "Holds no " + wanted +
                          " but several other sources: " + listed(found.sources, folder) +
                          ". Name the one that counts " + wanted + ".";
+  } else if (found.named.empty() && found.sources.empty() && found.archives.size() == 1 &&
+             ends_in(found.archives[0], {".zip"}) && unpacked != nullptr) {
+    choose_from_archive(found.archives[0], wanted, *unpacked, submission);
   } else if (found.named.empty() && found.sources.empty()) {
     submission.problem = "Holds no " + wanted;
     submission.problem +=
@@ -180,87 +222,238 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
   }
 }
 
-// STUDENT_[LATE_]USER_SUBMISSION_FILE: Canvas's names in an archive of all submissions.
-struct CanvasName {
-  std::string student, id, file;
-};
-std::optional<CanvasName> canvas_name(const std::string& name) {
-  static const std::regex pattern(R"(^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$)"),
-      numbered(R"(^(.+?)(?:-\d+| \(\d+\))(\.[^.]*)$)");
-  constexpr std::size_t kLongest = 255;  // bytes of a name; std::regex recurses by its length
-  std::smatch parts, number;
-  if (name.size() > kLongest || !std::regex_match(name, parts, pattern)) return std::nullopt;
-  CanvasName canvas{parts[1], parts[2], parts[3]};
-  if (std::regex_match(canvas.file, number, numbered))
-    canvas.file = number[1].str() + number[2].str();
-  return canvas;
-}
-
-}  // namespace
-
-FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleKind& kind) {
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
   std::error_code failed;
-  if (!fs::is_directory(folder, failed))
-    throw UserError(folder.string(), "is not a folder",
-                    "Give the folder that holds one sub-folder per submission.");
   std::vector<fs::path> entries;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
     entries.push_back(it->path());
   if (failed) throw UserError(folder.string(), "cannot be read: " + failed.message());
   std::sort(entries.begin(), entries.end());
+  return entries;
+}
 
-  const std::string wanted = kind.folder + ".cpp";
-  FoundSubmissions all{folder, {}, {}};
-  // files from Canvas, by student and number
-  std::map<std::pair<std::string, std::string>, Found> flat;
-  const auto add = [&](Submission submission, const Found& found, const fs::path& within) {
-    choose_source(found, wanted, within, submission);
-    all.all.push_back(std::move(submission));
-  };
-  for (const fs::path& path : entries) {
+bool is_real_folder(const fs::path& path) {
+  std::error_code failed;
+  return fs::is_directory(fs::symlink_status(path, failed));
+}
+
+// What is unpacked, and the folder of a Gradescope export, may hold the submissions one folder
+// deeper: a lone folder with an export in it, or, in an archive, one with two folders or with names
+// of a platform.
+fs::path root_of(const fs::path& folder, bool is_unpacked) {
+  std::vector<fs::path> entries = sorted_entries(folder);
+  std::erase_if(entries, [](const fs::path& e) { return is_litter(e.filename().string()); });
+  if (entries.size() != 1 || !is_real_folder(entries[0])) return folder;
+  if (fs::exists(fs::symlink_status(entries[0] / kGradescopeMetadata))) return entries[0];
+  if (!is_unpacked) return folder;
+  std::size_t folders = 0, files = 0, named = 0;
+  for (const fs::path& inner : sorted_entries(entries[0])) {
+    const std::string name = inner.filename().string();
+    if (is_litter(name)) continue;
+    ++(is_real_folder(inner) ? folders : files);
+    named += canvas_name(name) || moodle_name(name);
+  }
+  return named > 0 || (folders > 1 && files == 0) ? entries[0] : folder;
+}
+
+// The name of a submission of Gradescope: of the first who handed in, with the number.
+void name_as_gradescope(const std::vector<Submitter>& submitters, const std::string& folder,
+                        Submission& submission) {
+  const Submitter& first = submitters.front();
+  submission.student_id = first.id;
+  submission.name = first.name + "_" + (first.id.empty() ? folder : first.id);
+  std::string others;
+  for (std::size_t i = 1; i < submitters.size(); ++i)
+    others += (i > 1 ? ", " : "") + submitters[i].name +
+              (submitters[i].id.empty() ? "" : " (" + submitters[i].id + ")");
+  if (!others.empty()) submission.notes.push_back("handed in together with " + others);
+}
+
+// By the first part of their paths below `root`: why parts of submissions were not unpacked.
+std::map<std::string, std::string> refused_below(const fs::path& top, const fs::path& root,
+                                                 const std::vector<ZipFault>& faults) {
+  const std::string head = root == top ? "" : root.filename().string() + "/";
+  std::map<std::string, std::string> refused;
+  for (const ZipFault& fault : faults) {
+    if (!fault.entry.starts_with(head)) continue;
+    const std::string rest = fault.entry.substr(head.size());
+    refused.insert({rest.substr(0, rest.find('/')), in_words(fault)});
+  }
+  return refused;
+}
+
+class Finder {
+ public:
+  Finder(const fs::path& what, const modules::ModuleKind& kind)
+      : wanted_(kind.folder + ".cpp"), all_{what, {}, {}, {}}, unpacked_(all_.unpacked) {}
+
+  FoundSubmissions many() {
+    const fs::path& what = all_.folder;
+    std::error_code failed;
+    const bool is_archive = fs::is_regular_file(what, failed) && ends_in(what, {".zip"});
+    if (!is_archive && !fs::is_directory(what, failed))
+      throw UserError(what.string(), "is neither a folder nor a zip archive",
+                      "Give the folder that holds one sub-folder per submission, or the archive "
+                      "that a platform gave.");
+    const fs::path top = is_archive ? unpacked_.next() : what;
+    std::vector<ZipFault> faults;
+    if (is_archive) faults = unpack_class(fs::canonical(what), top);
+    root_ = root_of(top, is_archive);
+    refused_ = refused_below(top, root_, faults);
+    read_metadata();
+    for (const fs::path& path : sorted_entries(root_)) take(path);
+    // What is missing altogether, because its only file was refused.
+    for (const auto& [name, why] : refused_)
+      if (!fs::exists(fs::symlink_status(root_ / name, failed))) take_refused(name, why);
+    add_by_student();
+    if (all_.all.empty())
+      throw UserError(what.string(),
+                      "holds no submission: no sub-folder, and no file with a name as Canvas or "
+                      "Moodle gives it",
+                      "One submission is one sub-folder that holds " + wanted_ + ", for example " +
+                          (what / "alice" / wanted_).string() + ".");
+    return finished();
+  }
+
+  FoundSubmissions one() {
+    if (!is_real_folder(all_.folder))
+      throw UserError(all_.folder.string(), "is not a folder",
+                      "Give the folder with what was handed in.");
+    Submission submission;
+    submission.name = "submission";
+    add(std::move(submission), found_in(all_.folder), all_.folder);
+    return finished();
+  }
+
+ private:
+  FoundSubmissions finished() {
+    std::sort(all_.all.begin(), all_.all.end(),
+              [](const Submission& a, const Submission& b) { return a.name < b.name; });
+    return std::move(all_);
+  }
+
+  void add(Submission submission, const Found& found, const fs::path& within) {
+    choose_source(found, wanted_, within, &unpacked_, submission);
+    all_.all.push_back(std::move(submission));
+  }
+
+  Found found_in(const fs::path& folder) const {
+    Found found;
+    std::size_t seen = 0;
+    search(folder, wanted_, 0, seen, found);
+    return found;
+  }
+
+  // Never through a link.
+  void read_metadata() {
+    constexpr std::uint64_t kMostBytes = 64u << 20;  // results of all submissions stand in it
+    const fs::path file = root_ / kGradescopeMetadata;
+    std::string why;
+    if (!fs::exists(fs::symlink_status(file))) return;
+    const auto text = read_plain_file(file, kMostBytes, why);
+    if (!text) throw UserError(file.string(), why);
+    gradescope_ = read_gradescope_metadata(*text);
+  }
+
+  void take(const fs::path& path) {
+    std::error_code failed;
     const std::string name = path.filename().string();
+    if (is_litter(name) || name == kGradescopeMetadata) return;
     const auto status = fs::symlink_status(path, failed);
     Submission submission;
     submission.name = name;
-    if (is_litter(name)) continue;
     if (fs::is_symlink(status)) {
       submission.problem = "This is a symbolic link, which is not followed. Copy the folder here.";
-      all.all.push_back(std::move(submission));
+      all_.all.push_back(std::move(submission));
     } else if (fs::is_directory(status)) {
-      if (is_tools_folder(name)) {
-        all.passed_over.push_back(name + " (a folder of a tool)");
-        continue;
-      }
-      Found found;
-      std::size_t seen = 0;
-      search(path, wanted, 0, seen, found);
-      add(std::move(submission), found, path);
-    } else if (const auto canvas = canvas_name(name)) {
-      sort_in(path, canvas->file, wanted, flat[{canvas->student, canvas->id}]);
+      take_folder(path, std::move(submission));
+    } else if (const auto file = platform_file(name)) {
+      Found& found = by_student_[{file->student, file->id}];
+      sort_in(path, file->file, wanted_, found);
+      note_refused(name, found);
     } else if (is_source(path) || is_archive(path)) {
       Found found;
-      sort_in(path, name, wanted, found);
+      sort_in(path, name, wanted_, found);
       submission.name = path.stem().string();
-      add(std::move(submission), found, folder);
+      add(std::move(submission), found, root_);
     } else {
-      all.passed_over.push_back(name + " (neither a folder nor a source)");
+      all_.passed_over.push_back(name + " (neither a folder nor a source)");
     }
   }
-  for (const auto& [student, found] : flat) {
-    Submission submission;
-    submission.name = student.first + "_" + student.second;
-    submission.student_id = student.second;
-    add(std::move(submission), found, folder);
+
+  void take_folder(const fs::path& path, Submission submission) {
+    const std::string name = submission.name;
+    if (is_tools_folder(name)) {
+      all_.passed_over.push_back(name + " (a folder of a tool)");
+      return;
+    }
+    if (const auto moodle = moodle_name(name)) {
+      Found& found = by_student_[{moodle->student, moodle->id}];
+      std::size_t seen = 0;
+      search(path, wanted_, 0, seen, found);
+      return note_refused(name, found);
+    }
+    Found found = found_in(path);
+    note_refused(name, found);
+    if (const auto it = gradescope_.find(name); it != gradescope_.end())
+      name_as_gradescope(it->second, name, submission);
+    add(std::move(submission), found, path);
   }
-  std::sort(all.all.begin(), all.all.end(),
-            [](const Submission& a, const Submission& b) { return a.name < b.name; });
-  if (all.all.empty())
-    throw UserError(
-        folder.string(),
-        "holds no submission: no sub-folder, and no file with a name as Canvas gives it",
-        "One submission is one sub-folder that holds " + wanted + ", for example " +
-            (folder / "alice" / wanted).string() + ".");
-  return all;
+
+  void take_refused(const std::string& name, const std::string& why) {
+    const auto file = platform_file(name);
+    const auto moodle = moodle_name(name);
+    if (file || moodle) {
+      by_student_[{file ? file->student : moodle->student, file ? file->id : moodle->id}].refused =
+          why;
+      return;
+    }
+    Submission submission;
+    submission.name = name;
+    if (const auto it = gradescope_.find(name); it != gradescope_.end())
+      name_as_gradescope(it->second, name, submission);
+    Found found;
+    found.refused = why;
+    add(std::move(submission), found, root_);
+  }
+
+  static std::optional<PlatformName> platform_file(const std::string& name) {
+    auto moodle = moodle_name(name);
+    if (moodle && !moodle->file.empty()) return moodle;
+    return canvas_name(name);
+  }
+
+  void note_refused(const std::string& name, Found& found) const {
+    if (const auto it = refused_.find(name); it != refused_.end()) found.refused = it->second;
+  }
+
+  void add_by_student() {
+    for (const auto& [student, found] : by_student_) {
+      Submission submission;
+      submission.name = student.first + "_" + student.second;
+      submission.student_id = student.second;
+      add(std::move(submission), found, root_);
+    }
+  }
+
+  const std::string wanted_;
+  FoundSubmissions all_;
+  Unpacked unpacked_;
+  fs::path root_;
+  std::map<std::string, std::string> refused_;
+  std::map<std::string, std::vector<Submitter>> gradescope_;
+  // files of Canvas and Moodle, by student and number
+  std::map<std::pair<std::string, std::string>, Found> by_student_;
+};
+
+}  // namespace
+
+FoundSubmissions find_submissions(const fs::path& what, const modules::ModuleKind& kind) {
+  return Finder(what, kind).many();
+}
+
+FoundSubmissions find_submission(const fs::path& folder, const modules::ModuleKind& kind) {
+  return Finder(folder, kind).one();
 }
 
 }  // namespace tumble::grading
