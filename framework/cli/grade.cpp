@@ -142,7 +142,10 @@ void add_grade(CLI::App& app, Context& context) {
   auto words = std::make_shared<GradeWords>();
   Verb verb(app, "grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
-  verb.option("folder", words->folder, "One submission a sub-folder")
+  verb.option(
+          "folder", words->folder,
+          "One submission a sub-folder; or what Gradescope, Canvas or Moodle gives to download, "
+          "as a folder or a zip")
       .required()
       .type_name("FOLDER");
   verb.option("--out", words->out,

@@ -75,8 +75,8 @@ void regrade(Context& context, const RegradeWords& words) {
         "Name its assignment first: tumble regrade " + before.assignment + " " + words.out);
   const fs::path folder =
       words.submissions.empty() ? before.submissions : fs::path(words.submissions);
-  if (!fs::is_directory(folder))
-    throw UserError(folder.string(), "is where the submissions were, and is no folder now",
+  if (!fs::exists(folder))
+    throw UserError(folder.string(), "is where the submissions were, and they are not there now",
                     "Say where they are with --submissions FOLDER.");
   GradingRequest request{words.id, folder, words.out, words.sandbox, before.policy, {}};
   request.options.jobs = words.jobs;

@@ -19,6 +19,7 @@ void add_verbs(CLI::App& app, Context& context);
 
 void add_attack(CLI::App& app, Context& context);
 void add_audit(CLI::App& app, Context& context);
+void add_autograde(CLI::App& app, Context& context);
 void add_battery(CLI::App& app, Context& context);
 void add_class(CLI::App& app, Context& context);
 void add_cost(CLI::App& app, Context& context);
@@ -26,6 +27,7 @@ void add_demo(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_engines(CLI::App& app, Context& context);
 void add_explain(CLI::App& app, Context& context);
+void add_export(CLI::App& app, Context& context);
 void add_grade(CLI::App& app, Context& context);
 void add_ledger(CLI::App& app, Context& context);
 void add_package(CLI::App& app, Context& context);

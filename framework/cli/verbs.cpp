@@ -33,6 +33,8 @@ void add_verbs(CLI::App& app, Context& context) {
   add_attack(app, context);
   add_release(app, context);
   add_package(app, context);
+  add_export(app, context);
+  add_autograde(app, context);
 }
 
 }  // namespace tumble::cli

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <vector>
 
-#include <zlib.h>
-
 #include "framework/core/error.h"
 
 namespace tumble::report {
@@ -53,17 +51,6 @@ void ChannelWriter::add(std::span<const double> values, double quantum, int orde
     earlier = before;
     before = whole;
   }
-}
-
-std::string deflated(const std::string& bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string packed(size, '\0');
-  const int status =
-      compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
-  require(status == Z_OK, "report: zlib could not pack a page's data");
-  packed.resize(size);
-  return packed;
 }
 
 std::string base64(const std::string& bytes) {

@@ -31,9 +31,6 @@ class ChannelWriter {
 /// or not finite.
 double quantum_of(double x);
 
-/// Compressed in zlib's format at the highest level, for a browser's
-/// DecompressionStream("deflate").
-std::string deflated(const std::string& bytes);
 std::string base64(const std::string& bytes);
 
 }  // namespace tumble::report

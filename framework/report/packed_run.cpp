@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/zip.h"
 #include "framework/effects/registry.h"
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"

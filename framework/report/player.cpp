@@ -8,6 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/zip.h"
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"
 #include "framework/report/html.h"

@@ -84,7 +84,7 @@ TEST_F(FindSubmissions, FilesOfCanvasAreSubmissionsWithTheStudentsNumber) {
   EXPECT_EQ(all[0].student_id, "12345");
   EXPECT_EQ(all[0].source, root / "doejane_12345_678_a9_thing.cpp");
   EXPECT_TRUE(all[0].notes.empty()) << all[0].notes[0];
-  EXPECT_NE(all[1].problem.find("Unpack"), std::string::npos) << all[1].problem;
+  EXPECT_NE(all[1].problem.find("not a whole zip archive"), std::string::npos) << all[1].problem;
   EXPECT_NE(all[2].problem.find("Holds no a9_thing.cpp"), std::string::npos) << all[2].problem;
   EXPECT_EQ(all[3].name, "roejohn_222");
   EXPECT_EQ(all[3].source, root / "roejohn_LATE_222_679_a9_thing-1.cpp");
@@ -96,7 +96,7 @@ TEST_F(FindSubmissions, ALooseFileAndALooseArchiveAreSubmissionsToo) {
   const auto all = find_submissions(root, kind).all;
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].source, root / "alice.cpp");
-  EXPECT_NE(all[1].problem.find("Unpack"), std::string::npos) << all[1].problem;
+  EXPECT_NE(all[1].problem.find("not a whole zip archive"), std::string::npos) << all[1].problem;
 }
 
 TEST_F(FindSubmissions, AShardLooksIntoItsOwnAndKnowsTheNamesOfAll) {
@@ -159,8 +159,8 @@ TEST_F(FindSubmissions, NoSourceSaysWhatIsMissing) {
   EXPECT_NE(only().problem.find("Holds no a9_thing.cpp"), std::string::npos) << only().problem;
 }
 
-TEST_F(FindSubmissions, AnArchiveIsToBeUnpacked) {
-  put("adam/hw.zip");
+TEST_F(FindSubmissions, AnArchiveOfAnotherKindIsToBeUnpacked) {
+  put("adam/hw.tar.gz");
   EXPECT_NE(only().problem.find("Unpack"), std::string::npos) << only().problem;
 }
 

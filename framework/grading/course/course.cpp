@@ -21,7 +21,11 @@ constexpr const char* kSdk = "submission_sdk";  // precompiled header of compile
 }  // namespace
 
 fs::path judge_of(const Course& course, const std::string& id) {
-  const fs::path judge = course.build / "bin" / ("judge_" + id);
+  const fs::path judge =
+      course.build / "bin" / (course.public_only ? "check_" + id + "_sandboxed" : "judge_" + id);
+  if (!fs::exists(judge) && course.public_only)
+    throw UserError(judge.string(), "is not built",
+                    "Build it: ninja -C build check_" + id + "_sandboxed");
   if (!fs::exists(judge))
     throw UserError(judge.string(), "is not built",
                     "Grading needs the hidden tests, which students do not have. ./tumble check " +
@@ -35,9 +39,11 @@ fs::path built_module(const Course& course, const std::string& id, const std::st
 
 Rubric rubric_of(const Course& course, const std::string& id) {
   const std::string folder = course.registry->find(id).folder;
-  Rubric rubric =
-      joined(read_rubric(course.root / "assignments" / folder / "rubric.json"),
-             read_rubric(course.root / "solutions_private" / folder / "rubric_hidden.json", true));
+  Rubric rubric = read_rubric(course.root / "assignments" / folder / "rubric.json");
+  if (!course.public_only)
+    rubric = joined(
+        rubric,
+        read_rubric(course.root / "solutions_private" / folder / "rubric_hidden.json", true));
   if (rubric.title.empty()) rubric.title = course.registry->find(id).title;
   return rubric;
 }
@@ -59,7 +65,8 @@ std::vector<std::string> tests_of_judge(const Course& course, const std::string&
   std::istringstream lines(outcome.printed);
   for (std::string line; std::getline(lines, line);) tests.push_back(line);
   if (outcome.code != 0 || tests.empty())
-    throw UserError("judge_" + id, "does not list its tests: " + outcome.printed,
+    throw UserError(judge_of(course, id).filename().string(),
+                    "does not list its tests: " + outcome.printed,
                     "Build it again (ninja judge_" + id + "), and grade when the build has ended.");
   return tests;
 }
@@ -99,8 +106,8 @@ CourseSnapshot::CourseSnapshot(const Course& course, const std::string& id) : co
           (course.build / file).string(), "cannot be copied: " + failed.message(),
           "Build it (ninja " + file.stem().string() + "), and grade when the build has ended.");
   };
-  judge_of(course, id);
-  for (const std::string& program : {"judge_" + id, "worker_" + id, std::string("sandbox_init")})
+  const std::string judge = judge_of(course, id).filename().string();
+  for (const std::string& program : {judge, "worker_" + id, std::string("sandbox_init")})
     copy(fs::path("bin") / program);
   if (traits_of(chosen_sandbox()).links_worker) copy(fs::path("bin") / ("worker_" + id + ".o"));
   for (const modules::ModuleKind* kind : course.registry->all())

@@ -16,15 +16,17 @@ struct Course {
   std::filesystem::path build;  // of the build tree: programs in bin/, shared objects in modules/
   const modules::Registry* registry = nullptr;
   std::string command;  // as typed, for records
+  // the public tests alone, by the program that students have, too
+  bool public_only = false;
 };
 
-/// build/bin/judge_a1.
+/// build/bin/judge_a1; check_a1_sandboxed, which has the same words, for the public tests alone.
 /// @throws UserError when it is missing: a student's tree has no judge
 std::filesystem::path judge_of(const Course& course, const std::string& id);
 /// build/modules/a1_WORD.so, which may not exist.
 std::filesystem::path built_module(const Course& course, const std::string& id,
                                    const std::string& word);
-/// Public and hidden items, together 100 points.
+/// Public and hidden items, together 100 points; or the public ones.
 /// @throws UserError as read_rubric and joined
 Rubric rubric_of(const Course& course, const std::string& id);
 /// The demo scenes of an assignment, by name.

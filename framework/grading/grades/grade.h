@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct FoundSubmissions {
   // entries that are not submissions, each with the reason; files that systems leave in every
   // folder are left out
   std::vector<std::string> passed_over;
+  // where archives were unpacked; sources may be in it
+  std::unique_ptr<PrivateFolder> unpacked = {};
 };
 
 /// A test of the rubric with its result.
@@ -111,6 +114,7 @@ struct GradeOptions {
   // submissions graded at the same time, each in a separate process
   int jobs = 1;
   bool media = true;
+  bool cost = true;  // measures what accuracy costs with a submission's methods, for its page
   MediaOptions media_options;
   // a kind of sandbox that is used although the policy refuses it; results are marked
   std::string accepted_sandbox;

@@ -81,7 +81,8 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
         make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes,
                    object.path, folder / "media", options.media_options);
 
-  if (grade.state == GradeState::kJudged) grade.cost = measure_cost(course, id, object.path);
+  if (options.cost && grade.state == GradeState::kJudged)
+    grade.cost = measure_cost(course, id, object.path);
   return grade;
 }
 
