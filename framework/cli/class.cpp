@@ -59,21 +59,31 @@ grading::Grade grade_called(const Class& all) {
       "For example: tumble class " + all.words.action + " OUT NAME");
 }
 
+// "1 call", "2 calls"
+template <class Number>
+std::string number_of(Number number, const std::string& what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
 // One test of one submission, with its whole story, also of a hidden test.
 void story(const Class& all) {
   const grading::Grade grade = grade_called(all);
   std::vector<std::string> known;
   for (const grading::ScoredTest& test : grade.tests) known.push_back(test.item.test);
+  fmt::print("{}: {}\n\n", plain_name(grade.name), grading::summary_of(grade));
+  const bool is_judged = grade.state == grading::GradeState::kJudged;
+  if (!is_judged && all.words.test.empty())
+    return fmt::print("{}\n", grading::plain_text(grade.story));
   std::size_t shown = 0;
   for (const grading::ScoredTest& test : grade.tests) {
     const bool is_asked = all.words.test.empty() ? test.result.verdict != grading::Verdict::kRight
                                                  : test.item.test == all.words.test;
     if (!is_asked) continue;
     ++shown;
-    fmt::print("{}{}\n{}: {}, {} of {} points, {} calls{}\n{}\n\n", test.item.test,
+    fmt::print("{}{}\n{}: {}, {} of {} points, {}{}\n{}\n\n", test.item.test,
                test.item.hidden ? " (hidden)" : "", test.item.title,
                grading::words(test.result.verdict), grading::points_text(test.score),
-               grading::points_text(test.item.points), test.result.calls,
+               grading::points_text(test.item.points), number_of(test.result.calls, "call"),
                test.result.last_call.empty() ? "" : ", the last of " + test.result.last_call,
                grading::plain_text(test.result.story));
   }
@@ -139,13 +149,20 @@ void together(const Class& all) {
         "not compared further: sim_c++ is not installed (sudo apt-get install "
         "similarity-tester)\n");
   constexpr int kLeastPercent = 80;
+  constexpr std::size_t kMostPairs = 40;
   const auto& kind = all.context.registry.find(all.settings.assignment);
   const auto sources = grading::sources_in(all.settings.submissions, kind);
   const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
-  for (const auto& pair :
-       grading::similar_pairs(sources, grading::starter_of(course, kind), kLeastPercent, 0))
-    fmt::print("alike by {} %: {}, {}\n", pair.percent, plain_name(sources[pair.a].name),
-               plain_name(sources[pair.b].name));
+  const auto pairs =
+      grading::similar_pairs(sources, grading::starter_of(course, kind), kLeastPercent, 0);
+  for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i)
+    fmt::print("alike by {} %: {}, {}\n", pairs[i].percent, plain_name(sources[pairs[i].a].name),
+               plain_name(sources[pairs[i].b].name));
+  if (pairs.size() > kMostPairs)
+    fmt::print("... and {} more pairs that are alike by at least {} %\n", pairs.size() - kMostPairs,
+               kLeastPercent);
+  if (!pairs.empty())
+    fmt::print("side by side: {}\n", (fs::path(all.words.out) / "similar.html").string());
 }
 
 void slips(const Class& all) {
@@ -174,7 +191,9 @@ void changed(const Class& all) {
     for (const grading::TestChange& c : entry.changes)
       fmt::print("  {}: {} -> {} ({})\n", c.test, c.before, c.after, c.reason);
   }
-  fmt::print("{} changes in {} entries of the ledger\n", count, ledger.entries.size());
+  fmt::print(
+      "{} of the ledger's {} changed an earlier result\n", count,
+      ledger.entries.size() == 1 ? "one entry" : fmt::format("{} entries", ledger.entries.size()));
 }
 
 const std::map<std::string, void (*)(const Class&)> kActions = {

@@ -5,11 +5,13 @@
 # First the first CALM submissions (default: all N) are graded without a kill: submissions a minute.
 # With KILLS > 0 all N are graded then; that grading is ended by SIGKILL so many times, at random
 # moments, and started again. What it leaves is compared, byte for byte, with the calm grading; a
-# submission that the calm one has not, with those of the same slip.
+# submission that the calm one has not, with another of the same slip.
+# With EVERY=50 in the environment only each fiftieth is made from a slip, and the others do not compile: a
+# class of 1,000 in minutes, to see kills and memory, and nothing of speed.
 # Needs what grade needs (./tumble grade --help builds it), and `./tumble audit a1` once: it leaves the
 # texts of the slips in BUILD/audit/a1/slips. Hours, for N = 1000.
 set -euo pipefail
-build=$(realpath "$1") n=$2 jobs=$3 kills=$4 calm=${5:-$2}
+build=$(realpath "$1") n=$2 jobs=$3 kills=$4 calm=${5:-$2} every=${EVERY:-1}
 folder=${6:-$(mktemp -d /tmp/class_overnight.XXXXXX)}
 slips=("$build"/audit/a1/slips/*.cpp)
 [ -e "${slips[0]}" ] || { echo "No slips in $build/audit/a1/slips: run ./tumble audit a1 first." >&2; exit 2; }
@@ -17,13 +19,17 @@ export TUMBLE_ROOT=${TUMBLE_ROOT:-$(realpath "$(dirname "$0")/../..")}
 export TUMBLE_GRADER_KEY=$folder/grader.key
 tumble=$build/bin/tumble
 
+name_of() { printf 's%05d' "$1"; }
+# The first submission that differs from this one in the name of the student only.
+first_like() { echo $(($1 % every == 0 ? $1 % (every * ${#slips[@]}) : 1)); }
 # make_class FOLDER COUNT: the same files for the same number.
 make_class() {
-  local i name
+  local i to
   for ((i = 0; i < $2; ++i)); do
-    name=$(printf 's%05d' "$i")
-    mkdir -p "$1/$name"
-    { cat "${slips[i % ${#slips[@]}]}"; echo "// student $i"; } > "$1/$name/a1_impulse.cpp"
+    to=$1/$(name_of "$i")
+    mkdir -p "$to"
+    if ((i % every == 0)); then cat "${slips[i / every % ${#slips[@]}]}"; else echo 'int x = ;'; fi > "$to/a1_impulse.cpp"
+    echo "// student $i" >> "$to/a1_impulse.cpp"
   done
 }
 
@@ -81,14 +87,14 @@ wait "$pid" || true
 say_memory killed
 
 same_bytes() {
-  local i name
+  local i name like
   ((calm < n)) || { diff -r -x times.json -x .tumble-lock "$folder/calm" "$folder/killed"; return; }
   for ((i = 0; i < n; ++i)); do
-    name=$(printf 's%05d' "$i")
+    name=$(name_of "$i") like=$(name_of "$(first_like "$i")")
     if ((i < calm)); then
       diff -r "$folder/calm/$name" "$folder/killed/$name" || return 1
     else
-      cmp "$folder/killed/$name/results.json" "$folder/killed/$(printf 's%05d' $((i % ${#slips[@]})))/results.json" || return 1
+      cmp "$folder/killed/$name/results.json" "$folder/killed/$like/results.json" || return 1
     fi
   done
 }

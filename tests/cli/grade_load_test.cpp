@@ -1,36 +1,10 @@
 // A submission's result does not depend on the load of the machine; but the time that it sleeps
 // counts.
-#include <signal.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-
+#include "tests/cli/busy_loops.h"
 #include "tests/cli/grading_fixture.h"
 
 namespace tumble::grading {
 namespace {
-
-// Programs that load the machine beside a test.
-class BusyLoops {
- public:
-  explicit BusyLoops(int count) {
-    for (int i = 0; i < count; ++i) {
-      const pid_t child = ::fork();
-      if (child == 0) {
-        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        for (volatile unsigned spin = 0;; spin = spin + 1) {
-        }
-      }
-      children_.push_back(child);
-    }
-  }
-  ~BusyLoops() {
-    for (const pid_t child : children_) ::kill(child, SIGKILL);
-    for (const pid_t child : children_) ::waitpid(child, nullptr, 0);
-  }
-
- private:
-  std::vector<pid_t> children_;
-};
 
 TEST_F(Grading, BusyLoopsBesideItChangeNoByte) {
   id = "a2";

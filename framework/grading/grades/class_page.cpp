@@ -54,8 +54,23 @@ void add_histogram(report::Page& page, const std::vector<Grade>& grades) {
   page.plot(bars);
 }
 
+// The tests of which `is_one` holds, by number and title.
+template <class IsOne>
+std::string named(const std::vector<TestCount>& counts, const IsOne& is_one) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (is_one(counts[i]))
+      text += fmt::format("{}{} {}", text.empty() ? "" : "; ", i + 1, counts[i].item.title);
+  return text.empty() ? "none" : text;
+}
+
 void add_tests(report::Page& page, const std::vector<TestCount>& counts) {
   page.heading("Tests", 2, "tests");
+  page.paragraph("Nobody passes: " +
+                 named(counts, [](const TestCount& count) { return count.right == 0; }) + ".");
+  page.paragraph("Nobody fails: " +
+                 named(counts, [](const TestCount& count) { return count.right == count.judged; }) +
+                 ".");
   report::Table table{"Numbers are those of the matrix below.",
                       {{"No.", true}, {"Test"}, {"Right", true}, {"of", true}, {"Remark"}},
                       {}};
@@ -123,28 +138,44 @@ Cell mark_of(Verdict verdict) {
   }
 }
 
-void add_matrix(report::Page& page, const std::vector<Grade>& grades,
-                const std::vector<TestCount>& counts) {
-  page.heading("Tests by submissions", 2, "matrix");
+// A class of some thousand students makes a page that no browser shows: the gradebook has them all.
+constexpr std::size_t kMostInMatrix = 2000;
+
+// A block of the matrix: of `last` - `first` tests, so that it fits a page.
+report::Table matrix_of(const std::vector<Grade>& grades, const std::vector<TestCount>& counts,
+                        std::size_t first, std::size_t last) {
   report::Table table{
-      "+ right, x wrong, o not attempted, ! crashed, t out of time or memory, "
-      "? no final verdict; nothing: it does not compile",
-      {{"Submission"}, {"Points", true}},
-      {}};
-  for (std::size_t i = 0; i < counts.size(); ++i) table.columns.push_back({std::to_string(i + 1)});
+      fmt::format("Tests {} to {}", first + 1, last), {{"Submission"}, {"Points", true}}, {}};
+  for (std::size_t i = first; i < last; ++i) table.columns.push_back({std::to_string(i + 1)});
   for (const Grade& grade : grades) {
+    if (table.rows.size() == kMostInMatrix) break;
     std::map<std::string, Verdict> verdicts;
     if (grade.state == GradeState::kJudged)
       for (const ScoredTest& test : grade.tests) verdicts[test.item.test] = test.result.verdict;
     std::vector<Cell> row = {{plain_name(grade.name), link_of(grade)},
                              {grade.has_score() ? points_text(grade.score) : "none"}};
-    for (const TestCount& count : counts) {
-      const auto it = verdicts.find(count.item.test);
+    for (std::size_t i = first; i < last; ++i) {
+      const auto it = verdicts.find(counts[i].item.test);
       row.push_back(it == verdicts.end() ? Cell{""} : mark_of(it->second));
     }
     table.rows.push_back(std::move(row));
   }
-  page.table(table);
+  return table;
+}
+
+void add_matrix(report::Page& page, const std::vector<Grade>& grades,
+                const std::vector<TestCount>& counts) {
+  constexpr std::size_t kTestsOfBlock = 25;
+  page.heading("Tests by submissions", 2, "matrix");
+  page.paragraph(
+      "+ right, x wrong, o not attempted, ! crashed, t out of time or memory, ? no final verdict; "
+      "nothing: it does not compile",
+      Look::kMuted);
+  if (grades.size() > kMostInMatrix)
+    page.paragraph(fmt::format("The first {} of {} submissions.", kMostInMatrix, grades.size()),
+                   Look::kMuted);
+  for (std::size_t first = 0; first < counts.size(); first += kTestsOfBlock)
+    page.table(matrix_of(grades, counts, first, std::min(counts.size(), first + kTestsOfBlock)));
 }
 
 // Distance of the left half, the submission's view, from the right one, the reference's.
@@ -168,6 +199,8 @@ std::string line_of(const std::vector<std::string>& lines, std::size_t number) {
   return indented + plain_name(text.substr(first));
 }
 
+std::string pair_id(const SimilarPair& pair) { return fmt::format("pair-{}-{}", pair.a, pair.b); }
+
 void add_pair(report::Page& page, const NamedSource& a, const NamedSource& b,
               const SimilarPair& pair) {
   constexpr std::size_t kMostRuns = 6, kMostLines = 40;
@@ -179,7 +212,7 @@ void add_pair(report::Page& page, const NamedSource& a, const NamedSource& b,
   };
   const auto left = lines_of(a.text), right = lines_of(b.text);
   page.heading(fmt::format("{} and {}: {} %", plain_name(a.name), plain_name(b.name), pair.percent),
-               3);
+               3, pair_id(pair));
   for (std::size_t r = 0; r < std::min(kMostRuns, pair.runs.size()); ++r) {
     const SimilarRun& run = pair.runs[r];
     report::Table table{fmt::format("{} tokens", run.tokens),
@@ -204,6 +237,10 @@ report::Page class_page(const modules::ModuleKind& kind, const std::vector<Grade
                         const SlipTally& slips, const std::vector<Standing>& standings) {
   report::Page page(title_of(kind, "the class"), fmt::format("{} submissions", grades.size()));
   add_links(page);
+  page.links({{"Points", "#points"},
+              {"Slips", "#slips"},
+              {"Tests", "#tests"},
+              {"Tests by submissions", "#matrix"}});
   const auto counts = test_counts(grades);
   add_histogram(page, grades);
   add_slips(page, slips);
@@ -277,9 +314,10 @@ report::Page similar_page(const modules::ModuleKind& kind, const std::vector<Nam
   report::Table table{"", {{"Submission"}, {"and"}, {"Alike", true}}, {}};
   for (const SimilarPair& pair : pairs) {
     if (table.rows.size() == kMost) break;
-    table.rows.push_back({{plain_name(sources[pair.a].name)},
-                          {plain_name(sources[pair.b].name)},
-                          {fmt::format("{} %", pair.percent)}});
+    table.rows.push_back(
+        {{plain_name(sources[pair.a].name)},
+         {plain_name(sources[pair.b].name)},
+         {fmt::format("{} %", pair.percent), pair.runs.empty() ? "" : "#" + pair_id(pair)}});
   }
   page.heading(fmt::format("{} pairs", pairs.size()));
   if (pairs.size() > kMost)

@@ -1,5 +1,5 @@
-/// A shard: a part of a class that is graded by itself, perhaps on another machine. A grading of the
-/// whole class takes over what shards have finished, as if it had graded it.
+/// A shard: a part of a class that is graded by itself, perhaps on another machine. A grading of
+/// the whole class takes over what shards have finished, as if it had graded it.
 ///
 ///   OUT/.shards/2-of-8/       results of the second of eight: an output folder (output_folder.h)
 ///   OUT/.shards/2-of-8.done   that shard has come to its end; how many it graded

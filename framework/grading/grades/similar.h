@@ -28,8 +28,8 @@ struct SimilarPair {
 /// Whether sim_c++ is installed here.
 bool can_compare_sources();
 
-/// Up to so many sources every pair is compared by itself. Of more, each is compared with all others
-/// at once, and forms a pair only with those that most of it is like.
+/// Up to so many sources every pair is compared by itself. Of more, each is compared with all
+/// others at once, and forms a pair only with those that most of it is like.
 inline constexpr std::size_t kMostForEveryPair = 300;
 
 /// The text with an empty line for each line that the starter has too, so that line numbers stay.
