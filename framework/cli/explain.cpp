@@ -9,7 +9,9 @@
 
 #include "framework/cli/find_scene.h"
 #include "framework/cli/module_choice.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/run.h"
+#include "framework/engines/stepping/linked_bodies.h"
 #include "framework/scene/effects.h"
 #include "framework/core/version.h"
 
@@ -254,6 +256,9 @@ void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects
     fmt::print("  rods and joints are kept together by {}\n",
                kinds[static_cast<int>(scene.stabilisation->kind)]);
   }
+  if (scene.coordinates == scene::Coordinates::kReduced)
+    for (const std::string& words : engines::coordinates_in_words(build_world(scene)))
+      fmt::print("  {}; in persistent contact six coordinates a body\n", words);
   print_effects(scene, effects, run);
   print_stages(stages, run);
   if (run == nullptr)

@@ -15,10 +15,28 @@
 namespace tumble {
 namespace {
 
-Matrix3d cross_matrix(const Vector3d& d) {
-  Matrix3d m;
-  m << 0, -d.z(), d.y(), d.z(), 0, -d.x(), -d.y(), d.x(), 0;
-  return m;
+/// M [d]x, its columns from those of M.
+Matrix3d times_cross(const Matrix3d& M, const Vector3d& d) {
+  Matrix3d product;
+  product.col(0) = d.z() * M.col(1) - d.y() * M.col(2);
+  product.col(1) = d.x() * M.col(2) - d.z() * M.col(0);
+  product.col(2) = d.y() * M.col(0) - d.x() * M.col(1);
+  return product;
+}
+/// [d]x^T M
+Matrix3d cross_transposed_times(const Vector3d& d, const Matrix3d& M) {
+  Matrix3d product;
+  for (int column = 0; column < 3; ++column) product.col(column) = M.col(column).cross(d);
+  return product;
+}
+/// Adds X + X^T.
+void add_with_transposed(const Matrix3d& X, double sign, Matrix3d& sum) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum(i, j) += sign * (X(i, j) + X(j, i));
+}
+/// Takes factor a b^T away.
+void take_product(double factor, const Vector3d& a, const Vector3d& b, Matrix3d& from) {
+  for (int j = 0; j < 3; ++j) from.col(j) -= (factor * b[j]) * a;
 }
 
 }  // namespace
@@ -48,13 +66,14 @@ void ArticulatedTree::factor_joint(int place) {
   bool coupled = held.coupled;
   if (coupled) held.Hp = held.H;
   if (!node.at_own_centre && node.kind != TreeJoint::kFree) {
-    const Matrix3d D = cross_matrix(motion.arm_own), MD = held.M * D;
-    if (coupled) {
-      const Matrix3d HtD = held.H.transpose() * D;
-      Jp += HtD + HtD.transpose();
-    }
-    Jp += D.transpose() * MD;
-    held.Hp = coupled ? Matrix3d(held.H + MD) : MD;
+    const Vector3d& d = motion.arm_own;
+    const Matrix3d MD = times_cross(held.M, d);
+    if (coupled) add_with_transposed(times_cross(held.H.transpose(), d), 1.0, Jp);
+    Jp += cross_transposed_times(d, MD);
+    if (coupled)
+      held.Hp += MD;
+    else
+      held.Hp = MD;
     coupled = true;
   }
   held.coupled = coupled;
@@ -68,9 +87,9 @@ void ArticulatedTree::factor_joint(int place) {
     held.h = held.Hp * motion.axis;
     held.j = Jp * motion.axis;
     held.along = 1.0 / motion.axis.dot(held.j);
-    held.M_up -= held.along * held.h * held.h.transpose();
-    held.H_up -= held.along * held.h * held.j.transpose();
-    held.J_up -= held.along * held.j * held.j.transpose();
+    take_product(held.along, held.h, held.h, held.M_up);
+    take_product(held.along, held.h, held.j, held.H_up);
+    take_product(held.along, held.j, held.j, held.J_up);
     return;
   }
   // All others free all turning.
@@ -93,8 +112,12 @@ void ArticulatedTree::add_to_parent(int place) {
   const Articulated& held = held_[static_cast<std::size_t>(place)];
   const bool whole = node.kind == TreeJoint::kHinge || node.kind == TreeJoint::kWeld;
   Articulated& parent = held_[static_cast<std::size_t>(node.parent)];
-  Matrix3d M = held.M_up;
-  if (node.kind == TreeJoint::kRod) M = held.along * motion.u * motion.u.transpose();
+  Matrix3d along_rod;
+  if (node.kind == TreeJoint::kRod) {
+    along_rod.setZero();
+    take_product(-held.along, motion.u, motion.u, along_rod);
+  }
+  const Matrix3d& M = node.kind == TreeJoint::kRod ? along_rod : held.M_up;
   parent.M += M;
   if (whole) {
     parent.H += held.H_up;
@@ -102,13 +125,12 @@ void ArticulatedTree::add_to_parent(int place) {
     parent.coupled = true;
   }
   if (node.at_parent_centre) return;
-  const Matrix3d D = cross_matrix(motion.arm_parent), MD = M * D;
+  const Vector3d& d = motion.arm_parent;
+  const Matrix3d MD = times_cross(M, d);
   parent.H -= MD;
-  parent.J += D.transpose() * MD;
+  parent.J += cross_transposed_times(d, MD);
   parent.coupled = true;
-  if (!whole) return;
-  const Matrix3d HtD = held.H_up.transpose() * D;
-  parent.J -= HtD + HtD.transpose();
+  if (whole) add_with_transposed(times_cross(held.H_up.transpose(), d), -1.0, parent.J);
 }
 
 // From the leaves to the roots: f and n of (R.2).
@@ -123,8 +145,9 @@ void ArticulatedTree::gather(int place, bool with_velocities) {
   if (!node.at_own_centre) {
     if (with_velocities) {
       solved.f_joint -= held.M * motion.centripetal_own;
-      solved.n_joint -=
-          (held.Hp - held.M * cross_matrix(motion.arm_own)).transpose() * motion.centripetal_own;
+      // H^T c, of H = H_p - M D
+      solved.n_joint -= held.Hp.transpose() * motion.centripetal_own +
+                        motion.arm_own.cross(held.M * motion.centripetal_own);
     }
     solved.n_joint -= motion.arm_own.cross(solved.f_joint);
   }

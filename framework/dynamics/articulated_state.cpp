@@ -14,8 +14,11 @@ Vector3d omega_world_of(const RigidBodyState& state, const Matrix3d& inverse_ine
   return q * (inverse_inertia_body * (q.conjugate() * state.angular_momentum_world));
 }
 
-Quaterniond turn_about_z(double angle) {
-  return {std::cos(0.5 * angle), 0.0, 0.0, std::sin(0.5 * angle)};
+/// q times the turn about z by this angle.
+Quaterniond turned_about_z(const Quaterniond& q, double angle) {
+  const double c = std::cos(0.5 * angle), s = std::sin(0.5 * angle);
+  return {q.w() * c - q.z() * s, q.x() * c + q.y() * s, q.y() * c - q.x() * s,
+          q.z() * c + q.w() * s};
 }
 
 /// The part of a turn that is about z.
@@ -23,6 +26,11 @@ Quaterniond twist_about_z(const Quaterniond& turn) {
   const double length = std::hypot(turn.w(), turn.z());
   if (length == 0.0) return Quaterniond::Identity();
   return {turn.w() / length, 0.0, 0.0, turn.z() / length};
+}
+
+Vector3d z_axis(const Quaterniond& q) {
+  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
+          1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
 }
 
 Quaterniond turn_of(const Vector3d& rotation) {
@@ -64,13 +72,13 @@ void ArticulatedTree::turn_by_joint(const Node& node, double angle, double rate,
                                     Motion& motion) const {
   const Motion& parent = motions_[static_cast<std::size_t>(node.parent)];
   const Quaterniond parent_from_own =
-      node.kind == TreeJoint::kHinge ? node.at_begin * turn_about_z(angle) * node.joint_from_own
+      node.kind == TreeJoint::kHinge ? turned_about_z(node.at_begin, angle) * node.joint_from_own
                                      : node.at_begin * node.joint_from_own;
   motion.q = parent.q * parent_from_own;
   motion.w = parent.w;
   motion.angle_rate = rate;
   if (node.kind == TreeJoint::kWeld) return;
-  motion.axis = parent.q * (node.parent_from_joint * Vector3d::UnitZ());
+  motion.axis = parent.R * z_axis(node.parent_from_joint);
   motion.w += rate * motion.axis;
 }
 

@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/dynamics/articulated_tree.h"
 #include "framework/dynamics/laws.h"
+#include "framework/dynamics/tree_link.h"
 #include "framework/dynamics/world.h"
 #include "framework/effects/body_index.h"
 #include "framework/effects/drawables.h"

@@ -189,6 +189,10 @@ class LinkedBodies final : effects::GroupPlaces {
   double begun_at_ = 0.0;  // time of the coordinates' beginning [s]
 };
 
+/// What becomes of each group of a world that asks for joint coordinates, in words: its numbers, or
+/// why it keeps six coordinates a body.
+std::vector<std::string> coordinates_in_words(const World& world);
+
 /// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
 /// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become
 /// one body that cannot be pushed

@@ -93,6 +93,21 @@ std::string LinkedBodies::reduced_in_words() const {
                              tree_->cut().size(), tree_->cut().size() == 1 ? "" : "s");
 }
 
+std::vector<std::string> coordinates_in_words(const World& world) {
+  const Laws none;
+  RunCounters counters;
+  std::vector<std::string> all;
+  for (LinkedGroup& group : groups_of_linked_bodies(world)) {
+    const std::string first = world.bodies[static_cast<std::size_t>(group.bodies.front())].name;
+    const LinkedBodies linked(world, none, counters, {}, std::move(group));
+    const std::string& kept = linked.kept_maximal_by();
+    all.push_back(fmt::format("island of '{}': {}", first,
+                              kept.empty() ? "joint coordinates, " + linked.reduced_in_words()
+                                           : "six coordinates a body, for " + kept));
+  }
+  return all;
+}
+
 void LinkedBodies::stand_fixed_ends_at(double t) {
   for (std::size_t k = 0; k < fixed_.size(); ++k) {
     Body& seen = seen_[bodies_.size() + k];

@@ -28,8 +28,11 @@ namespace {
 const std::vector<std::pair<std::string, std::string>> kEventEngines = {
     {"ca", "conservative advancement"}, {"tw", "timewarp"}};
 const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince",
-                  kFehlberg = "Fehlberg 7(8)", kLocated = "RK4, plastic impacts located";
+                  kFehlberg = "Fehlberg 7(8)", kRungeKuttaInJoints = "RK4, joint coordinates",
+                  kFehlbergInJoints = "Fehlberg 7(8), joint coordinates",
+                  kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
+// In joint coordinates nothing is projected: a step is as long as the time between samples.
 constexpr double kAdaptiveStep = 1.0 / 30, kAdaptiveStepOfTop = 1.0, kAdaptiveStepOfBob = 1.0 / 480;
 
 class Clock final : public TrajectorySink {
@@ -71,10 +74,12 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
   laws.impulse_source = laws.integrator_source = laws.constraint_source = "reference";
   if (setting.method == kDormandPrince)
     laws.integrate_step = step_of(method_named("dopri5"), setting.tolerance);
-  if (setting.method == kFehlberg)
+  if (setting.method == kFehlberg || setting.method == kFehlbergInJoints)
     laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
   scene::Scene scene = bench.scene;
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
+  if (setting.method == kRungeKuttaInJoints || setting.method == kFehlbergInJoints)
+    scene.coordinates = scene::Coordinates::kReduced;
   std::string engine = "rd";
   for (const auto& [word, method] : kEventEngines)
     if (setting.method == method) engine = word;
@@ -108,6 +113,13 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
   if (scene == "S8") {  // one step each: what does not finish takes the whole cap
     const double step = bench.steps.size() > 2 ? bench.steps[2] : bench.steps.front();
     all = {{{kRungeKutta, step}}, {{kLocated, step}}};
+  }
+  if (scene == "S2" || scene == "S6") {
+    all.emplace_back();
+    for (const double step : bench.steps) all.back().push_back({kRungeKuttaInJoints, step});
+    all.emplace_back();
+    for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12})
+      all.back().push_back({kFehlbergInJoints, bench.sample_times.front(), tolerance});
   }
   if (scene == "S1" || scene == "S2" || scene == "S6") {
     const double within = scene == "S1"   ? kAdaptiveStepOfTop
