@@ -10,6 +10,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_start(app, context);
   add_run(app, context);
   add_poke(app, context);
+  add_live(app, context);
   add_engines(app, context);
   add_cost(app, context);
   add_plots(app, context);
