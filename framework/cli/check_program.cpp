@@ -216,10 +216,9 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
                object.string(), "--quick"};
   } else {
     const ProgramOutcome built = grading::run_program(
-        command.is_installed
-            ? grading::own_compilation(command.root, command.build, file, object)
-            : std::vector<std::string>{"ninja", "-C", command.build.string(), "--quiet",
-                                       "check_" + id},
+        command.is_installed ? grading::own_compilation(command.root, command.build, file, object)
+                             : std::vector<std::string>{"ninja", "-C", command.build.string(),
+                                                        "--quiet", "check_" + id},
         Output::kCaptured);
     if (built.code != 0) return {grading::compiler_story(built.printed, file, header), {}};
     program = {(programs / ("check_" + id)).string()};
@@ -233,10 +232,11 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
   program.insert(program.end(), {"--json", results.string()});
   const ProgramOutcome ran = grading::run_program(program, Output::kCaptured);
   if (!fs::exists(results))
-    return {"the program with your code ended before its tests could be judged: look for code that "
-            "runs before main\n" +
-                ran.printed,
-            {}};
+    return {
+        "the program with your code ended before its tests could be judged: look for code that "
+        "runs before main\n" +
+            ran.printed,
+        {}};
   return {"", grading::read_results(results.string())};
 }
 

@@ -46,8 +46,7 @@ std::string scene_of_assignment(const Context& context, std::string& word) {
 /// judged; empty: none
 std::vector<std::string> words_of_part(const LiveWords& words, const std::string& part,
                                        const std::string& id) {
-  std::vector<std::string> all = {fs::read_symlink("/proc/self/exe").string(), "live",
-                                  words.scene};
+  std::vector<std::string> all = {fs::read_symlink("/proc/self/exe").string(), "live", words.scene};
   const auto add = [&](const char* flag, const std::string& value) {
     if (!value.empty()) all.insert(all.end(), {flag, value});
   };
@@ -85,20 +84,19 @@ std::vector<live::Watched> watched_files(const Context& context, const ModuleWor
 
 /// A handout as a page, made by pandoc; as it is written where that is missing.
 std::string handout_page(const Context& context, const std::string& name) {
-  const bool is_plain =
-      std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return std::isalnum(c) || c == '_' || c == '.';
-      });
+  const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '.';
+  });
   const fs::path folder = context.root / "handouts",
                  file = folder / (fs::path(name).stem().string() + ".md");
   if (!is_plain || name.starts_with('.') || !fs::is_regular_file(file)) return "";
   if (name.ends_with(".md")) return text_of(file);
   const fs::path drawn = context.root / "out" / "handouts" / name;
   if (fs::is_regular_file(drawn)) return text_of(drawn);
-  const auto made = grading::run_program(
-      {"pandoc", "--from=markdown", "--to=html5", "--mathml", "--standalone", "--quiet",
-       "--metadata=title:" + file.stem().string(), file.string()},
-      grading::Output::kCaptured, 30.0);
+  const auto made =
+      grading::run_program({"pandoc", "--from=markdown", "--to=html5", "--mathml", "--standalone",
+                            "--quiet", "--metadata=title:" + file.stem().string(), file.string()},
+                           grading::Output::kCaptured, 30.0);
   return made.code == 0 ? made.printed : "";
 }
 
@@ -157,8 +155,9 @@ void add_live(CLI::App& app, Context& context) {
               "A scene file, the bare name of one, a .3ds file, or an assignment: a1")
       .required()
       .type_name("SCENE");
-  verb.option("--modules", words->modules,
-              "Whose laws, as in tumble run: student, reference, library, PATH.cpp; for all or each")
+  verb.option(
+          "--modules", words->modules,
+          "Whose laws, as in tumble run: student, reference, library, PATH.cpp; for all or each")
       .type_name("WORDS");
   verb.option("--engine", words->engine, "rd, ca, tw, ordered; default: the scene's own, or rd")
       .type_name("WORD");

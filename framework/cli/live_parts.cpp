@@ -45,8 +45,7 @@ std::string dumped(const Json& json) {
 }
 
 scene::Scene scene_of(const Context& context, const RunWords& words, const live::Recipe& recipe) {
-  if (!recipe.document.empty())
-    return scene::parse_scene(live::document_of(recipe), recipe.file);
+  if (!recipe.document.empty()) return scene::parse_scene(live::document_of(recipe), recipe.file);
   scene::Scene scene = scene_of_words(context, words, true);
   live::apply(recipe, scene);
   return scene;
@@ -69,8 +68,7 @@ live::Simulation simulation_of(const Context& context, RunWords words, const Jso
     simulation.options.engine = simulation.scene.engine.empty() ? "rd" : simulation.scene.engine;
   simulation.root = context.root;
   for (const ChosenModule& module : chosen.modules)
-    simulation.modules +=
-        (simulation.modules.empty() ? "" : ",") + module.id + "=" + module.source;
+    simulation.modules += (simulation.modules.empty() ? "" : ",") + module.id + "=" + module.source;
   const auto times = std::make_shared<VirtualTimes>();
   simulation.options.timewarp = engines::fast_timewarp(times.get());
   simulation.times = times;
@@ -104,9 +102,8 @@ void refuse(int records, const std::string& where, const std::string& problem,
 /// The line of a file on which a function is defined: the first at which its name stands before a
 /// bracket and behind a type. 0: none
 int line_of_function(const std::string& text, const std::string& function) {
-  if (function.empty() ||
-      !std::all_of(function.begin(), function.end(),
-                   [](unsigned char c) { return std::isalnum(c) || c == '_'; }))
+  if (function.empty() || !std::all_of(function.begin(), function.end(),
+                                       [](unsigned char c) { return std::isalnum(c) || c == '_'; }))
     return 0;
   const std::regex definition(R"(^[A-Za-z_:<>&\* 0-9]+[ &\*])" + function + R"(\()");
   std::istringstream lines(text);
@@ -131,7 +128,8 @@ std::vector<OwnSource> own_sources(const Context& context, const RunWords& words
     const auto word = modules.contains(kind->id) ? modules.find(kind->id) : modules.find("");
     const bool is_path = word != modules.end() && word->second.ends_with(".cpp");
     if (is_path || word == modules.end() || word->second == "student")
-      sources.push_back({kind->id, is_path ? fs::path(word->second) : own_file(context, kind->folder),
+      sources.push_back({kind->id,
+                         is_path ? fs::path(word->second) : own_file(context, kind->folder),
                          kind->functions});
   }
   return sources;
@@ -176,10 +174,10 @@ int line_of_offset(const Context& context, const fs::path& source, const fs::pat
   if (compiled.code != 0) return 0;
   for (const Symbol& symbol : symbols_of(with_lines)) {
     if (symbol.name != function.name) continue;
-    const auto told = grading::run_program(
-        {"addr2line", "-i", "-e", with_lines.string(),
-         fmt::format("{:#x}", symbol.start + offset - function.start)},
-        grading::Output::kCaptured, 20.0);
+    const auto told =
+        grading::run_program({"addr2line", "-i", "-e", with_lines.string(),
+                              fmt::format("{:#x}", symbol.start + offset - function.start)},
+                             grading::Output::kCaptured, 20.0);
     // Innermost first; inlined library code is passed over.
     std::istringstream lines(told.printed);
     for (std::string line; std::getline(lines, line);)

@@ -16,7 +16,6 @@ void simulate_for_page(Context& context, const RunWords& words);
 /// Prints the verdicts on the user's file as the page reads them (live/session.h).
 void judge_for_page(Context& context, const RunWords& words, const std::string& id);
 
-
 /// Reads what a process said that ended badly, and prints the line of the user's file, where it can
 /// be found: of the innermost frame of the stack in the user's code, else of a function that is
 /// named.

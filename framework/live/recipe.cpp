@@ -65,8 +65,7 @@ Json changed(const Recipe& recipe) {
   if (changes.step_s) scene["step_s"] = *changes.step_s;
   if (!changes.engine.empty()) scene["engine"] = changes.engine;
   if (recipe.duration_s) scene["duration_s"] = *recipe.duration_s;
-  for (const std::string& push : recipe.pushes)
-    scene["point_forces"].push_back(Json::parse(push));
+  for (const std::string& push : recipe.pushes) scene["point_forces"].push_back(Json::parse(push));
   return scene;
 }
 
@@ -111,8 +110,11 @@ void change(Changes& changes, const std::string& text) {
 
 std::string document_of(const Recipe& recipe) { return changed(recipe).dump(2) + "\n"; }
 
-std::string saved_document(const Recipe& recipe, const std::string& again) {
+std::string saved_document(Recipe recipe, double until_s, const std::string& again) {
+  recipe.pushes = before(recipe.pushes, until_s);
   Json scene = changed(recipe);
+  const double step_s = scene.value("step_s", scene::Scene{}.step_s);
+  scene["duration_s"] = until_s + 2 * step_s;  // the last step of a run may be a part of one
   scene["title"] = scene.value("title", std::string("A scene")) + ", with a hand in it";
   scene["about"] = "Made by tumble live. Runs again by: " + again;
   // The scene's checks apply to a run without a hand: those that hold for any run are kept.
@@ -166,12 +168,9 @@ std::vector<std::string> before(const std::vector<std::string>& pushes, double t
 
 std::string as_text(const Recipe& recipe) {
   const Changes& changes = recipe.changes;
-  Json all{{"document", recipe.document},
-              {"file", recipe.file.string()},
-              {"engine", changes.engine},
-              {"method", changes.method},
-              {"mass_kg", changes.mass_kg},
-              {"pushes", recipe.pushes}};
+  Json all{{"document", recipe.document}, {"file", recipe.file.string()},
+           {"engine", changes.engine},    {"method", changes.method},
+           {"mass_kg", changes.mass_kg},  {"pushes", recipe.pushes}};
   if (changes.gravity_m_s2) all["gravity_m_s2"] = triple_of(*changes.gravity_m_s2);
   if (changes.restitution) all["restitution"] = *changes.restitution;
   if (changes.friction) all["friction"] = *changes.friction;
@@ -189,8 +188,7 @@ Recipe recipe_of(const std::string& text) {
   recipe.changes.method = all.at("method");
   recipe.changes.mass_kg = all.at("mass_kg").get<std::map<std::string, double>>();
   recipe.pushes = all.at("pushes").get<std::vector<std::string>>();
-  if (all.contains("gravity_m_s2"))
-    recipe.changes.gravity_m_s2 = vector_in(all.at("gravity_m_s2"));
+  if (all.contains("gravity_m_s2")) recipe.changes.gravity_m_s2 = vector_in(all.at("gravity_m_s2"));
   if (all.contains("restitution")) recipe.changes.restitution = all.at("restitution");
   if (all.contains("friction")) recipe.changes.friction = all.at("friction");
   if (all.contains("step_s")) recipe.changes.step_s = all.at("step_s");

@@ -39,9 +39,11 @@ void change(Changes& changes, const std::string& change);
 /// own
 std::string document_of(const Recipe& recipe);
 
-/// The file that is saved: title and checks say that a hand was here.
-/// @param again  the command that runs it again, in the text about the scene
-std::string saved_document(const Recipe& recipe, const std::string& again);
+/// The file that is saved: what was done until a frame, which lies in a whole step of its run, so
+/// that it comes out the same to the last bit. Title and checks say that a hand was here.
+/// @param until_s  time of the last frame
+/// @param again    the command that runs it again, in the text about the scene
+std::string saved_document(Recipe recipe, double until_s, const std::string& again);
 
 /// The same changes on a scene that is made by code.
 void apply(const Recipe& recipe, scene::Scene& scene);

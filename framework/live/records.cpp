@@ -10,8 +10,8 @@
 namespace tumble::live {
 namespace {
 
-constexpr std::size_t kHeadBytes = 5;               // a kind, and a length of four bytes
-constexpr std::uint32_t kMostOfRecord = 256u << 20;    // longer is no record: the pipe is out of step
+constexpr std::size_t kHeadBytes = 5;                // a kind, and a length of four bytes
+constexpr std::uint32_t kMostOfRecord = 256u << 20;  // longer is no record: the pipe is out of step
 
 // Numbers of a record, one after the other.
 class Numbers {
@@ -88,8 +88,7 @@ std::optional<Record> RecordReader::next() {
   std::memcpy(&length, waiting_.data() + at_ + 1, sizeof length);
   if (length > kMostOfRecord) throw std::runtime_error("live: the bytes of a pipe are no record");
   if (waiting_.size() - at_ < kHeadBytes + length) return std::nullopt;
-  Record record{static_cast<RecordKind>(waiting_[at_]),
-                waiting_.substr(at_ + kHeadBytes, length)};
+  Record record{static_cast<RecordKind>(waiting_[at_]), waiting_.substr(at_ + kHeadBytes, length)};
   at_ += kHeadBytes + length;
   if (at_ == waiting_.size() || at_ > (1u << 20)) {
     waiting_.erase(0, at_);

@@ -3,6 +3,8 @@
 #include <sys/random.h>
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 
@@ -14,9 +16,9 @@
 namespace tumble::live {
 namespace {
 
-constexpr std::size_t kThreads = 16;              // a stream holds one
-constexpr std::size_t kMostPosted = 1u << 16;     // bytes
-constexpr double kHeartbeat = 1.0;                // s: a page that is gone is noticed after it
+constexpr std::size_t kThreads = 16;           // a stream holds one
+constexpr std::size_t kMostPosted = 1u << 16;  // bytes
+constexpr double kHeartbeat = 1.0;             // s: a page that is gone is noticed after it
 
 // Nothing is loaded from elsewhere, no script stands in the page itself, and no page frames it.
 constexpr const char* kPolicy =
@@ -47,6 +49,7 @@ struct Server::Parts {
   ServerHooks hooks;
   httplib::Server http;
   std::thread thread;
+  std::atomic<bool> has_ended{false};
   std::string token = drawn_token();
   int port = 0;
 
@@ -113,6 +116,11 @@ Server::Server(ServerHooks hooks, int port) : parts_(std::make_unique<Parts>()) 
   parts.http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   parts.http.set_payload_max_length(kMostPosted);
   parts.http.set_tcp_nodelay(true);
+  // The library's own would share the port with another program that listens there.
+  parts.http.set_socket_options([](int socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   parts.http.set_default_headers({{"Content-Security-Policy", kPolicy},
                                   {"X-Content-Type-Options", "nosniff"},
                                   {"X-Frame-Options", "DENY"},
@@ -146,10 +154,16 @@ Server::Server(ServerHooks hooks, int port) : parts_(std::make_unique<Parts>()) 
     throw UserError("--port " + std::to_string(port), "another program listens there",
                     "Leave --port out, and a free one is taken.");
   parts.port = port;
-  parts.thread = std::thread([&parts] { parts.http.listen_after_bind(); });
+  parts.thread = std::thread([&parts] {
+    parts.http.listen_after_bind();
+    parts.has_ended = true;
+  });
 }
 
 Server::~Server() {
+  // stop() is lost on a server that does not listen yet.
+  while (!parts_->http.is_running() && !parts_->has_ended)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   parts_->http.stop();
   parts_->thread.join();
 }

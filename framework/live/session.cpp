@@ -34,7 +34,7 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostPages = 8;
-constexpr double kComparesEvery = 0.4;      // s
+constexpr double kComparesEvery = 0.4;       // s
 constexpr std::size_t kTalkKept = 1u << 14;  // bytes of what a process said
 
 std::string dumped(const Json& json) {
@@ -60,7 +60,7 @@ struct Simulator {
   RecordReader records;
   std::string talk;  // on its standard error
   double from_s;
-  std::string reason;  // "begin", "code", "change", "back", "push"
+  std::string reason;      // "begin", "code", "change", "back", "push"
   bool has_ended = false;  // it has said how
 };
 
@@ -137,7 +137,7 @@ class Session {
   std::unique_ptr<Child> locator_;
   std::string place_;                    // that it has found
   std::unique_ptr<Simulator> checking_;  // whether a saved scene runs again byte for byte
-  std::size_t frames_checked_ = 0;
+  std::size_t frames_checked_ = 0, frames_to_check_ = 0;
   std::string checked_file_, first_wrong_;
 };
 
@@ -175,18 +175,17 @@ std::optional<Served> Session::file(const std::string& path) const {
     std::string text = "'use strict';\n(() => {\n";
     for (const char* part : {"model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js"})
       text += std::string(report::player_source(part)) + "\n";
-    for (const char* part : {"live_run.js", "live_stage.js", "live_curves.js", "live_panes.js",
-                             "live_main.js"})
+    for (const char* part :
+         {"live_run.js", "live_stage.js", "live_curves.js", "live_panes.js", "live_main.js"})
       text += std::string(page_file(part)) + "\n";
     return Served{"text/javascript; charset=utf-8", text + "})();\n"};
   }
   if (path.starts_with("handouts/") && sitting_.handout)
     if (const std::string text = sitting_.handout(path.substr(9)); !text.empty())
-      return Served{path.ends_with(".html") ? "text/html; charset=utf-8"
-                                            : "text/plain; charset=utf-8",
-                    text,
-                    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri "
-                    "'none'; form-action 'none'; frame-ancestors 'none'"};
+      return Served{
+          path.ends_with(".html") ? "text/html; charset=utf-8" : "text/plain; charset=utf-8", text,
+          "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri "
+          "'none'; form-action 'none'; frame-ancestors 'none'"};
   return std::nullopt;
 }
 
@@ -311,10 +310,8 @@ void Session::forward(const std::string& line) {
 
 void Session::begin(const std::string& reason, double from_s) {
   starting_ = std::make_unique<Simulator>(sitting_.simulator, from_s, reason);
-  starting_->child.say(dumped({{"recipe", as_text(recipe_)},
-                               {"from_s", from_s},
-                               {"speed", speed_},
-                               {"paused", true}}));
+  starting_->child.say(dumped(
+      {{"recipe", as_text(recipe_)}, {"from_s", from_s}, {"speed", speed_}, {"paused", true}}));
   tell({{"kind", "starting"}, {"reason", reason}});
 }
 
@@ -533,8 +530,8 @@ void Session::compare() {
   const Trajectory a = former_.part(compared_until_, until),
                    b = current_.part(compared_until_, until);
   if (a.frames.empty() || b.frames.empty()) return;
-  const auto found = report::compare(current_.outline(), current_.radii_m(), a, "the run before", b,
-                                     "this run");
+  const auto found =
+      report::compare(current_.outline(), current_.radii_m(), a, "the run before", b, "this run");
   compared_until_ = until;
   Json words{{"kind", "difference"}, {"same_until_s", until}};
   if (found.first) {
@@ -552,27 +549,23 @@ void Session::save() {
     throw UserError(sitting_.name, "is made by code and has no scene file to add pushes to",
                     "Begin with a scene file.");
   if (current_.frames().empty()) throw UserError(sitting_.name, "has not moved yet", "");
-  Recipe saved = recipe_;
-  saved.duration_s = current_.end_s();
-  saved.pushes = before(recipe_.pushes, *saved.duration_s);
   fs::path file;
   for (int number = 1; file.empty() || fs::exists(file); ++number)
     file = sitting_.saves / fmt::format("{}_{}.json", sitting_.name, number);
   const Json head = Json::parse(current_.head());
   const std::string again =
       sitting_.again ? sitting_.again(file, recipe_.changes, head.value("modules", "")) : "";
-  write_whole(file, saved_document(saved, again));
+  write_whole(file, saved_document(recipe_, current_.end_s(), again));
   // The same code runs what stands in the file.
   Recipe written;
   written.document = tumble::text_of(file);
   written.file = sitting_.recipe.file;
   written.changes.method = recipe_.changes.method;
   checking_ = std::make_unique<Simulator>(sitting_.simulator, 0.0, "check");
-  checking_->child.say(dumped({{"recipe", as_text(written)},
-                               {"from_s", 0.0},
-                               {"speed", 1e30},
-                               {"paused", false}}));
+  checking_->child.say(
+      dumped({{"recipe", as_text(written)}, {"from_s", 0.0}, {"speed", 1e30}, {"paused", false}}));
   frames_checked_ = 0;
+  frames_to_check_ = current_.frames().size();
   first_wrong_.clear();
   checked_file_ = file.string();
   saved_ = dumped({{"kind", "saved"}, {"file", checked_file_}, {"again", again}});
@@ -585,18 +578,17 @@ void Session::check_saved() {
   Child::read_some(checking_->child.talk(), checking_->talk);
   checking_->records.feed(bytes);
   while (auto record = checking_->records.next()) {
-    if (record->kind == RecordKind::kRefused)
+    if (record->kind == RecordKind::kRefused && first_wrong_.empty())
       first_wrong_ = Json::parse(record->bytes).value("problem", "refused");
-    if (record->kind != RecordKind::kFrame) continue;
-    const bool is_there = frames_checked_ < current_.frames().size();
-    if (first_wrong_.empty() &&
-        !(is_there && record->bytes == current_.frames()[frames_checked_]))
-      first_wrong_ =
-          fmt::format("the frame at {:.6g} s differs", History::time_of(record->bytes));
+    if (record->kind != RecordKind::kFrame || frames_checked_ == frames_to_check_) continue;
+    const bool is_there = frames_checked_ < current_.frames().size();  // else it was begun anew
+    if (first_wrong_.empty() && !(is_there && record->bytes == current_.frames()[frames_checked_]))
+      first_wrong_ = fmt::format("the frame at {:.6g} s differs", History::time_of(record->bytes));
     ++frames_checked_;
   }
   if (is_open) return;
-  if (frames_checked_ == 0 && first_wrong_.empty()) first_wrong_ = "it did not run";
+  if (frames_checked_ < frames_to_check_ && first_wrong_.empty())
+    first_wrong_ = "it ended before its last frame";
   Json words = Json::parse(saved_);
   words["checked"] = true;
   words["frames"] = frames_checked_;
@@ -622,8 +614,8 @@ void Session::run(int stop) {
   to_judge_ = sitting_.first_judged;
   begin("begin", 0.0);
   for (;;) {
-    std::vector<pollfd> waiting = {{stop, POLLIN, 0}, {wake_, POLLIN, 0},
-                                   {saves_.descriptor(), POLLIN, 0}};
+    std::vector<pollfd> waiting = {
+        {stop, POLLIN, 0}, {wake_, POLLIN, 0}, {saves_.descriptor(), POLLIN, 0}};
     const auto wait_for = [&](const Simulator* simulator) {
       if (simulator != nullptr) waiting.push_back({simulator->child.output(), POLLIN, 0});
     };

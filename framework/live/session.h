@@ -33,8 +33,8 @@ struct Sitting {
   // badly, and prints "FILE:LINE: its text", or nothing; empty: none
   std::vector<std::string> locate;
   std::vector<Watched> watched;
-  std::string first_judged;                  // id; empty: none
-  std::filesystem::path saves;               // folder for scenes
+  std::string first_judged;     // id; empty: none
+  std::filesystem::path saves;  // folder for scenes
   // the command that runs a saved scene again
   std::function<std::string(const std::filesystem::path& file, const Changes& changes,
                             const std::string& modules)>

@@ -99,7 +99,7 @@ class LiveRun final : public TrajectorySink {
   void event(const Event& event) override {
     if (event.time >= simulation_.from_s) send(RecordKind::kEvent, pack(event));
   }
-  void virtual_times(const VirtualTimes& times) override { send_times(times, 0); }
+  void virtual_times(const VirtualTimes& times) override { send_times(times, moves_sent_); }
   void end(const Counters& counters, const std::string& stopped_by) override;
 
   /// The hand of run_options.h.
@@ -163,8 +163,8 @@ void LiveRun::send_head(const Frame& first) {
   has_head_ = true;
   const World world = build_world(simulation_.scene);
   Json head;
-  head["scene"] = Json::parse(
-      report::player_scene_text(simulation_.scene, simulation_.root, first));
+  head["scene"] =
+      Json::parse(report::player_scene_text(simulation_.scene, simulation_.root, first));
   head["engine"] = info_.engine;
   head["step_s"] = info_.step_s;
   head["frame_rate_hz"] = info_.frame_rate_hz;

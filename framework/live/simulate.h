@@ -27,9 +27,9 @@ struct Simulation {
   std::filesystem::path root;   // for models
   // moves of a timewarp while they are made; null: none
   std::shared_ptr<const VirtualTimes> times;
-  std::string modules;          // in words, for people and for the command that runs it again
-  double from_s = 0.0;          // frames before are neither sent nor waited for
-  double speed = 1.0;           // seconds of the run in a second; infinite: as fast as it goes
+  std::string modules;  // in words, for people and for the command that runs it again
+  double from_s = 0.0;  // frames before are neither sent nor waited for
+  double speed = 1.0;   // seconds of the run in a second; infinite: as fast as it goes
   bool is_paused = false;
   // The first face that a ray hits, by the laws' ray function.
   // posed: the scene with bodies where they are now

@@ -124,8 +124,7 @@ std::string three_js(const fs::path& folder) {
 
 std::string_view player_source(std::string_view name) { return player_file(name); }
 
-std::string player_scene_text(const scene::Scene& scene, const fs::path& root,
-                              const Frame& first) {
+std::string player_scene_text(const scene::Scene& scene, const fs::path& root, const Frame& first) {
   return player_scene(scene, shapes_of(scene, root), first)
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }

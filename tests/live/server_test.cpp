@@ -117,14 +117,15 @@ TEST_F(LiveServer, TwoServersHaveDifferentTokens) {
 
 TEST_F(LiveServer, AnotherHostIsRefused) {
   // A name that was made to point here (DNS rebinding) is the other page's origin.
-  for (const std::string& host : {std::string("evil.example"), "evil.example:" + std::to_string(port_),
-                                  std::string("127.0.0.1"), std::string("")})
+  for (const std::string& host :
+       {std::string("evil.example"), "evil.example:" + std::to_string(port_),
+        std::string("127.0.0.1"), std::string("")})
     EXPECT_EQ(status(answer("GET " + path_ + " HTTP/1.1\r\nHost: " + host +
                             "\r\nConnection: close\r\n\r\n")),
               403)
         << host;
-  EXPECT_EQ(status(answer("GET " + path_ + " HTTP/1.1\r\nHost: localhost:" +
-                          std::to_string(port_) + "\r\nConnection: close\r\n\r\n")),
+  EXPECT_EQ(status(answer("GET " + path_ + " HTTP/1.1\r\nHost: localhost:" + std::to_string(port_) +
+                          "\r\nConnection: close\r\n\r\n")),
             200);
 }
 
@@ -159,8 +160,8 @@ TEST_F(LiveServer, OtherMethodsAreRefused) {
 }
 
 TEST_F(LiveServer, StreamsWhatIsPut) {
-  const std::string text = answer(
-      "GET " + path_ + "stream HTTP/1.1\r\nHost: " + host_ + "\r\n\r\n", "data: {}\n\n");
+  const std::string text =
+      answer("GET " + path_ + "stream HTTP/1.1\r\nHost: " + host_ + "\r\n\r\n", "data: {}\n\n");
   EXPECT_NE(text.find("Content-Type: text/event-stream"), std::string::npos);
   EXPECT_NE(text.find("event: say\ndata: {}\n\n"), std::string::npos);
   // A page that is gone closes its mailbox: at the next sign of life, a second later.
@@ -174,8 +175,7 @@ TEST_F(LiveServer, ListensOnThisMachineOnly) {
   ASSERT_EQ(::getifaddrs(&list), 0);
   for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
     if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-    const in_addr_t address =
-        reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr;
+    const in_addr_t address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr;
     if (address == htonl(INADDR_LOOPBACK)) continue;
     const int fd = connected(address, port_);
     EXPECT_LT(fd, 0) << one->ifa_name;

@@ -50,7 +50,7 @@ struct Membership {
 
 /// An instant at which a hand may act: the end of a step, in the coordinates that the engine uses.
 struct HandMoment {
-  double time;                                // [s]
+  double time;  // [s]
   const World& world;
   const std::vector<RigidBodyState>& states;  // by body
   Vector3d origin_world = Vector3d::Zero();   // of these coordinates [m]

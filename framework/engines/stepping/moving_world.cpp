@@ -227,10 +227,9 @@ void MovingWorld::take_in(const scene::Scene& more) {
     if (!effect.is_asked(more)) continue;
     require(!effect.traits().ties, "only steady forces begin while a world moves");
     effect.build(more, index, world_);
-    const auto place =
-        std::find_if(steady_.begin(), steady_.end(), [&](const Steady& forces) {
-          return forces.effect >= static_cast<int>(k);
-        });
+    const auto place = std::find_if(steady_.begin(), steady_.end(), [&](const Steady& forces) {
+      return forces.effect >= static_cast<int>(k);
+    });
     if (place != steady_.end() && place->effect == static_cast<int>(k)) continue;
     if (auto acting = effect.steady_forces({world_, laws_, counters_.effect_calls[k]}))
       steady_.insert(place, {static_cast<int>(k), std::move(acting)});

@@ -40,8 +40,8 @@ struct CallPlace {
   std::atomic<const char*> file{nullptr};      // its file
   std::atomic<unsigned long> outermost{0};     // number of outermost calls so far
   std::atomic<pthread_t> thread{};
-  unsigned long seen = 0;                      // used by watch() only
-  int checks = 0;                              // used by watch() only
+  unsigned long seen = 0;  // used by watch() only
+  int checks = 0;          // used by watch() only
 };
 
 constexpr std::size_t kThreads = 256;  // more run unguarded
@@ -112,8 +112,8 @@ void on_signal(int signal) {
       if (function == nullptr || call != place.seen)
         place.checks = 0;
       else if (++place.checks > static_cast<int>(kChecksPerSecond * limit_s)) {
-        std::snprintf(words, sizeof out_of_time_words, "out of time: no answer within %g s (an endless loop?)",
-                      limit_s.load());
+        std::snprintf(words, sizeof out_of_time_words,
+                      "out of time: no answer within %g s (an endless loop?)", limit_s.load());
         if (tells_frames) {
           ::pthread_kill(place.thread, kWhere);
           std::this_thread::sleep_for(kPeriod);

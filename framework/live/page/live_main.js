@@ -2,7 +2,7 @@
 
 const byId = id => document.getElementById(id);
 
-const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: true, ground: true, shadows: true };
+const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
 const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null };
 
 function post(command) {
@@ -390,7 +390,7 @@ function tick(now) {
     try {
       if (page.picture) {
         if (page.needsStage) { page.picture.setRun(run, page.former, page.hadStage); page.needsStage = false; page.hadStage = true; }
-        page.picture.draw(page.time, page.chosen);
+        if (page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);
       }
     } catch (error) {
       noPicture(error);
@@ -403,6 +403,7 @@ function tick(now) {
       document.body.dataset.fps = (page.drawn * 1000 / (now - page.since)).toFixed(1);
       document.body.dataset.frameRate = ((page.frames - page.framesThen) * 1000 / (now - page.since)).toFixed(1);
       page.since = undefined;
+      if (page.picture) page.picture.adapt(Number(document.body.dataset.fps), page.paused);
     }
   }
   requestAnimationFrame(tick);

@@ -181,6 +181,7 @@ class LivePicture {
     this.stage.marks.strongest = { impulse: 1e-12, contact: 1e-12, force: 1e-12 };
     this.ghost = former && former.length > 1 && former.about.bodies.length === run.about.bodies.length ? new Ghost(this.stage, former) : null;
     this.vectors = new Vectors(this.stage, run);
+    this.drawn = '';
     this.handArrow = new Pool(this.stage.scene, arrowGeometry(), kHandColor);
     this.handLine = new Pool(this.stage.scene, rodGeometry(8), kHandColor);
     this.handBall = new Pool(this.stage.scene, ballGeometry(false, 12), kHandColor);
@@ -216,6 +217,22 @@ class LivePicture {
     this.renderer.setSize(width, height, false);
     this.width = width;
     this.height = height;
+  }
+
+  // Whether anything has changed since the last picture.
+  needsDrawing(t, chosen) {
+    const now = `${t} ${chosen} ${this.camera.position.toArray()} ${this.camera.quaternion.toArray()} ${this.width} ${this.height} ${this.ratio} ${JSON.stringify(this.shown)} ${this.run.about.forces.length}`;
+    const is = now !== this.drawn || Boolean(this.drag);
+    this.drawn = now;
+    return is;
+  }
+
+  // Fewer pixels where pictures come slowly; all of them where the run is paused.
+  adapt(picturesPerSecond, isPaused) {
+    const full = Math.min(2, window.devicePixelRatio || 1), ratio = isPaused ? full : picturesPerSecond < 22 ? Math.max(0.4 * full, 0.75 * this.ratio) : this.ratio;
+    if (ratio === this.ratio) return;
+    this.ratio = ratio;
+    this.resize();
   }
 
   draw(t, chosen) {
