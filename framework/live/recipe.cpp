@@ -53,6 +53,9 @@ Json changed(const Recipe& recipe) {
       if (changes.restitution) body["restitution"] = *changes.restitution;
       if (changes.friction) body["friction"] = *changes.friction;
     }
+  // Friction acts in persistent contact only.
+  if (changes.friction.value_or(0.0) > 0 && !scene.contains("contact"))
+    scene["contact"] = Json::object();
   for (const auto& [name, kg] : changes.mass_kg) {
     Json* body = scene.contains("bodies") ? entry_of(scene, name) : nullptr;
     if (body == nullptr)
@@ -146,6 +149,7 @@ void apply(const Recipe& recipe, scene::Scene& scene) {
     body.mass_kg = mass->second;
     body.density_kg_m3.reset();
   }
+  if (changes.friction.value_or(0.0) > 0 && !scene.contact) scene.contact.emplace();
   if (changes.step_s) scene.step_s = *changes.step_s;
   if (!changes.engine.empty()) scene.engine = changes.engine;
   if (recipe.duration_s) scene.duration_s = *recipe.duration_s;

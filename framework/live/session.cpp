@@ -653,9 +653,13 @@ class StopSignals {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&signals_, signal);
     ::pthread_sigmask(SIG_BLOCK, &signals_, &before_);
     ::signal(SIGPIPE, SIG_IGN);
-    fd_ = ::signalfd(-1, &signals_, SFD_CLOEXEC);
+    fd_ = ::signalfd(-1, &signals_, SFD_CLOEXEC | SFD_NONBLOCK);
   }
   ~StopSignals() {
+    // What has come is taken, so that it ends nobody when it is let through again.
+    signalfd_siginfo one;
+    while (::read(fd_, &one, sizeof one) == sizeof one) {
+    }
     ::close(fd_);
     ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
   }

@@ -78,11 +78,11 @@ export class Page {
     return answer.result.value;
   }
 
-  // Waits until an expression holds. @throws with what it is then
+  // Waits until an expression holds; before the page is there it does not. @throws with the page's words
   async until(expression, what, seconds = 60) {
     const end = Date.now() + 1000 * seconds;
     for (;;) {
-      const value = await this.value(expression);
+      const value = await this.value(`(() => { try { return ${expression}; } catch { return false; } })()`);
       if (value) return value;
       if (Date.now() > end) throw new Error(`${what}: not within ${seconds} s; the page says "${await this.value('document.getElementById("state")?.textContent + " " + (document.body?.dataset.trouble || "")')}"`);
       await new Promise(resolve => setTimeout(resolve, 50));

@@ -128,6 +128,12 @@ test('300 bodies', async () => {
   const live = await Live.start('gas', '--n', '300', '--modules', 'reference'), page = await browser.open(live.address, { width: 1280, height: 720 });
   await page.until('tumble.run && tumble.run.length > 30', 'the motion', 120);
   await sleep(6000);
+  const cpu = pid => { const fields = readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' '); return (Number(fields[11]) + Number(fields[12])) / 100; };
+  const browsers = () => execFileSync('ps', ['-eo', 'pid=,args=']).toString().split('\n').filter(line => line.includes(browser.folder)).map(line => Number(line.trim().split(' ')[0])), seconds = pids => pids.reduce((sum, pid) => { try { return sum + cpu(pid); } catch { return sum; } }, 0);
+  const began = { cpu: seconds(browsers()), of: cpu(live.processes()[0]), frames: await page.value('tumble.frames'), drawn: await page.value('tumble.picture.renderer.info.render.frame') };
+  await sleep(8000);
+  const frames_ = await page.value('tumble.frames') - began.frames, drawn_ = await page.value('tumble.picture.renderer.info.render.frame') - began.drawn;
+  console.log(`  CPU: ${(1000 * (cpu(live.processes()[0]) - began.of) / frames_).toFixed(1)} ms a frame to simulate, ${(1000 * (seconds(browsers()) - began.cpu) / Math.max(1, drawn_)).toFixed(0)} ms a picture in all processes of the browser (${drawn_} pictures, pixel ratio ${await page.value('tumble.picture.ratio.toFixed(2)')})`);
   const [shown, frames] = await page.value('[document.body.dataset.fps, document.body.dataset.frameRate]');
   console.log(`  300 bodies at 1280x720, drawn by the processor: ${shown} pictures a second, ${frames} frames a second from the program (load ${loadavg()[0].toFixed(1)})`);
   expect(Number(frames) > 0 && Number(shown) > 0, 'it moves');
