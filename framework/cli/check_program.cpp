@@ -201,6 +201,49 @@ fs::path checked_file(const Command& command, const CheckWords& words) {
   return words.file ? fs::absolute(*words.file) : own_file(command, folder);
 }
 
+CheckedTests check_quietly(const Command& command, const CheckWords& words) {
+  const std::string& id = words.id;
+  const std::string folder = folder_of(id);
+  const fs::path file = checked_file(command, words), own = own_file(command, folder),
+                 header = command.root / "assignments" / folder / (folder + ".h");
+  if (!fs::exists(file)) throw missing_file(command, id, file);
+  const PrivateFolder temporary;
+  const fs::path object = temporary.path() / (id + ".so"), results = temporary.path() / "results",
+                 programs = command.build / "bin";
+  std::error_code missing;
+  std::vector<std::string> program;
+  if (!fs::equivalent(file, own, missing)) {  // somebody's: compiled and called in the sandbox
+    const auto built = grading::build_module(command.root, command.build, id, folder, file, object);
+    if (built.outcome != grading::BuiltSubmission::Outcome::kBuilt)
+      return {grading::compiler_story(built.said, file, header), {}};
+    program = {(programs / ("check_" + id + "_sandboxed")).string(), "--submission",
+               object.string(), "--quick"};
+  } else {
+    const ProgramOutcome built = grading::run_program(
+        command.is_installed ? grading::own_compilation(command.root, command.build, file, object)
+                             : std::vector<std::string>{"ninja", "-C", command.build.string(),
+                                                        "--quiet", "check_" + id},
+        Output::kCaptured);
+    if (built.code != 0) return {grading::compiler_story(built.printed, file, header), {}};
+    program = {(programs / ("check_" + id)).string()};
+    if (command.is_installed) program.push_back(object.string());
+    if (!starts(program))
+      return {fmt::format("does not start within {:g} s: the initial value of a global or static "
+                          "variable is a loop that does not end",
+                          kLoadLimit),
+              {}};
+  }
+  program.insert(program.end(), {"--json", results.string()});
+  const ProgramOutcome ran = grading::run_program(program, Output::kCaptured);
+  if (!fs::exists(results))
+    return {
+        "the program with your code ended before its tests could be judged: look for code that "
+        "runs before main\n" +
+            ran.printed,
+        {}};
+  return {"", grading::read_results(results.string())};
+}
+
 ExitCode check_once(const Command& command, const CheckWords& words) {
   const fs::path file = checked_file(command, words);
   if (!fs::exists(file)) throw missing_file(command, words.id, file);

@@ -8,6 +8,7 @@
 
 #include "framework/cli/command.h"
 #include "framework/cli/words.h"
+#include "framework/grading/verdicts/verdict.h"
 
 namespace tumble::cli {
 
@@ -28,6 +29,14 @@ std::filesystem::path public_rubric(const Command& command, const CheckWords& wo
 
 /// The checked file.
 std::filesystem::path checked_file(const Command& command, const CheckWords& words);
+
+/// The public tests of a file, as data.
+struct CheckedTests {
+  std::string said;  // of the compiler, or why no test ran; empty where tests ran
+  std::vector<grading::TestResult> results;
+};
+/// Builds, then runs the public tests. @throws UserError where the file is missing
+CheckedTests check_quietly(const Command& command, const CheckWords& words);
 
 /// Builds, then runs the public tests, which print their table. A compiler error is a verdict with
 /// its position.

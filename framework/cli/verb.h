@@ -31,6 +31,7 @@ void add_export(CLI::App& app, Context& context);
 void add_grade(CLI::App& app, Context& context);
 void add_ledger(CLI::App& app, Context& context);
 void add_package(CLI::App& app, Context& context);
+void add_live(CLI::App& app, Context& context);
 void add_poke(CLI::App& app, Context& context);
 void add_regrade(CLI::App& app, Context& context);
 void add_release(CLI::App& app, Context& context);

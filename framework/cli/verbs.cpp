@@ -12,6 +12,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_scenes(app, context);
   add_run(app, context);
   add_poke(app, context);
+  add_live(app, context);
   add_explain(app, context);
   add_inspect(app, context);
   begin_group(app, "what accuracy costs");

@@ -64,6 +64,11 @@ Word& Word::needs(const Word& other) {
   return *this;
 }
 
+Word& Word::hidden() {
+  option_->group("");
+  return *this;
+}
+
 Verb::Verb(CLI::App& app, const std::string& name, const std::string& help)
     : app_(app.add_subcommand(name, help)) {}
 

@@ -29,6 +29,7 @@ class Word {
   Word& default_text(const std::string& text);  // help shows this instead
   Word& excludes(const std::string& name);      // refused together with that word
   Word& needs(const Word& other);               // refused without it
+  Word& hidden();                               // of no help: one program says it to another
 
  private:
   CLI::Option* option_;

@@ -217,6 +217,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   if (!(options.frame_rate_hz > 0))
     throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
   check_callbacks(options.callbacks, scene);
+  require(!options.hand || options.engine == "rd", "a hand acts in rd only");
   check_laws(scene, laws);
 
   TrajectoryInfo info;
@@ -241,6 +242,10 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);
   options.callbacks = guarded_callbacks(asked.callbacks, scene, origin_world);
+  if (asked.hand)
+    options.hand = [&asked, origin_world](const HandMoment& moment) {
+      return asked.hand({moment.time, moment.world, moment.states, origin_world});
+    };
   if (origin_world.isZero(0.0)) return run_from_apart(engine, scene, laws, options, watch, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;

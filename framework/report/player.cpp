@@ -14,6 +14,7 @@
 #include "framework/report/html.h"
 #include "framework/report/packed_run.h"
 #include "framework/report/player_files.h"
+#include "framework/report/player_parts.h"
 #include "framework/report/player_scene.h"
 #include "framework/report/player_still.h"
 #include "framework/scene/build_shape.h"
@@ -96,6 +97,12 @@ std::string record_and_notices(const std::vector<PlayedRun>& runs) {
   return record;
 }
 
+std::vector<Shape> shapes_of(const scene::Scene& scene, const fs::path& root) {
+  std::vector<Shape> shapes;
+  for (const scene::Solid& solid : scene::build_solids(scene, root)) shapes.push_back(solid.shape);
+  return shapes;
+}
+
 void check(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
   require(runs.size() == 1 || runs.size() == 2, "report: a page plays one run or two");
   for (const PlayedRun& played : runs) {
@@ -111,14 +118,23 @@ void check(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
 
 }  // namespace
 
+std::string three_js(const fs::path& folder) {
+  return library(folder, "three.min.js") + "\n" +
+         library(folder, "examples/js/controls/OrbitControls.js");
+}
+
+std::string_view player_source(std::string_view name) { return player_file(name); }
+
+std::string player_scene_text(const scene::Scene& scene, const fs::path& root, const Frame& first) {
+  return player_scene(scene, shapes_of(scene, root), first)
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs,
                         const PlayerOptions& options) {
   check(scene, runs);
-  const std::string three = library(options.three, "three.min.js"),
-                    controls = library(options.three, "examples/js/controls/OrbitControls.js");
-  std::vector<Shape> shapes;
-  for (const scene::Solid& solid : scene::build_solids(scene, options.root))
-    shapes.push_back(solid.shape);
+  const std::string three = three_js(options.three);
+  const std::vector<Shape> shapes = shapes_of(scene, options.root);
 
   Json head = player_scene(scene, shapes, runs.front().run.frames.front());
   Comparison comparison;
@@ -132,7 +148,7 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
   }
   const double sight_m = (scene.camera.eye_m - scene.camera.target_m).norm();
   std::vector<PackedRun> packed;
-  std::string data = data_element("three", deflated(three + "\n" + controls));
+  std::string data = data_element("three", deflated(three));
   head["runs"] = Json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     packed.push_back(pack_run(scene, runs[r], r == 0 ? comparison.apart_m : std::vector<double>{},

@@ -91,6 +91,7 @@ void ActingPointForces::turn(const Switch& what, const std::vector<RigidBodyStat
 void ActingPointForces::take_hold(int entry, const std::vector<RigidBodyState>& states) {
   const PointForce& force = forces_[static_cast<std::size_t>(entry)];
   const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
+  points_body_.resize(forces_.size(), unset_vector());  // entries may have been appended
   points_body_[static_cast<std::size_t>(entry)] =
       state.world_from_body.conjugate() * (force.point_world - state.com_world);
 }
@@ -126,6 +127,8 @@ Memory ActingPointForces::memory() const {
 
 Work PointForceMeter::since_last(double time, const std::vector<RigidBodyState>& states) {
   Work work;
+  points_body_.resize(forces_.size(), unset_vector());  // entries may have been appended
+  points_world_.resize(forces_.size(), unset_vector());
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     const PointForce& force = forces_[k];
     if (time < force.start) continue;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
 #include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -47,6 +48,19 @@ struct Membership {
   std::vector<int> first_members;  // by body: the least body that moves with it, perhaps itself
 };
 
+/// An instant at which a hand may act: the end of a step, in the coordinates that the engine uses.
+struct HandMoment {
+  double time;  // [s]
+  const World& world;
+  const std::vector<RigidBodyState>& states;  // by body
+  Vector3d origin_world = Vector3d::Zero();   // of these coordinates [m]
+};
+/// What a person does to a run while it goes: asked at the end of every step, it answers with a
+/// scene that holds new entries of steady forces and nothing else, which begin at that instant or
+/// later. Places are in the coordinates of the moment. The run is the same, bit for bit, as one
+/// whose scene had these entries, behind its own, from the start.
+using Hand = std::function<std::optional<scene::Scene>(const HandMoment&)>;
+
 struct RunOptions;
 /// An engine that stands outside the framework: timewarp, whose scheduler is an assignment's (see
 /// framework/README.md).
@@ -71,6 +85,8 @@ struct RunOptions {
   std::optional<double> duration_s;  // overrides the scene's
   double frame_rate_hz = 60.0;       // of recorded frames
   std::vector<Callback> callbacks;   // in order of time
+  // of rd only; empty: nobody acts
+  Hand hand;
   // called at each frame by the engines that go from event to event; empty: not called
   std::function<void(const Membership&)> on_membership;
   std::string command;  // for the record

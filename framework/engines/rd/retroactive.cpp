@@ -32,6 +32,7 @@ class RetroactiveRun : private StepStages {
         world_step_(build_world(scene), laws_, {step_, scene.rest_speed_m_s}, counters_, sink),
         moving_(world_step_.moving()),
         callbacks_(options.callbacks),
+        hand_(options.hand),
         recorder_(options.frame_rate_hz, duration_, sink),
         energy_watch_(scene.rest_speed_m_s, step_, true) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
@@ -64,6 +65,7 @@ class RetroactiveRun : private StepStages {
   void stop_for(const Runaway& runaway);
   void run_to_the_end();
   double next_target() const;
+  void take_from_hand();
   void switch_forces();
   void run_callbacks();
   void advance_to(double target);
@@ -96,6 +98,7 @@ class RetroactiveRun : private StepStages {
   MovingWorld& moving_;  // of world_step_
   const std::vector<Callback> callbacks_;
   std::size_t called_ = 0;
+  const Hand hand_;
   FrameRecorder recorder_;
   std::optional<ContactModes> modes_;  // where contacts may have friction
   std::optional<Sleepers> sleepers_;   // where the scene asks for sleep
@@ -118,6 +121,18 @@ double RetroactiveRun::next_target() const {
   if (built::kCallback && called_ < callbacks_.size())
     target = std::min(target, callbacks_[called_].time);
   return target;
+}
+
+void RetroactiveRun::take_from_hand() {
+  if (!hand_) return;
+  const auto more = hand_({moving_.time(), moving_.world(), moving_.states()});
+  if (!more) return;
+  moving_.take_in(*more);
+  energy_watch_.take_in(moving_.world());
+  for (const effects::Effect* effect : effects::all())
+    if (effect->is_asked(*more))
+      for (const effects::Switch& one : effect->switches(moving_.world()))
+        if (one.event.time > moving_.time()) switch_times_.insert(one.event.time);
 }
 
 void RetroactiveRun::switch_forces() {
@@ -242,6 +257,7 @@ void RetroactiveRun::run_to_the_end() {
     advance_to(target);
     if (!stopped_by_.empty()) break;
     if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
+    take_from_hand();
     switch_forces();
     run_callbacks();
     watch_energy();

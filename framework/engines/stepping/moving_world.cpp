@@ -220,6 +220,22 @@ void MovingWorld::turn(const std::pair<std::size_t, effects::Switch>& what) {
   steady_[what.first].acting->turn(what.second, states_);
 }
 
+void MovingWorld::take_in(const scene::Scene& more) {
+  const effects::BodyIndex index(world_);
+  for (std::size_t k = 0; k < effects::all().size(); ++k) {
+    const effects::Effect& effect = *effects::all()[k];
+    if (!effect.is_asked(more)) continue;
+    require(!effect.traits().ties, "only steady forces begin while a world moves");
+    effect.build(more, index, world_);
+    const auto place = std::find_if(steady_.begin(), steady_.end(), [&](const Steady& forces) {
+      return forces.effect >= static_cast<int>(k);
+    });
+    if (place != steady_.end() && place->effect == static_cast<int>(k)) continue;
+    if (auto acting = effect.steady_forces({world_, laws_, counters_.effect_calls[k]}))
+      steady_.insert(place, {static_cast<int>(k), std::move(acting)});
+  }
+}
+
 RigidBodyState MovingWorld::still_state(int body, double t) const {
   const WorldBody& b = world_.bodies[body];
   RigidBodyState state = states_[body];

@@ -93,6 +93,8 @@ class MovingWorld {
   /// among those that act: hand each to turn().
   std::vector<std::pair<std::size_t, effects::Switch>> due_switches() const;
   void turn(const std::pair<std::size_t, effects::Switch>& what);
+  /// Takes in entries of steady forces that begin now or later. @param more  holds nothing else
+  void take_in(const scene::Scene& more);
   /// The work of what acts steadily on a body, along the way from one state of it to another. [J]
   double steady_work(int body, const RigidBodyState& from, const RigidBodyState& to) const {
     double sum = 0.0;

@@ -415,17 +415,24 @@ double EnergyWatch::work_since(double time, const std::vector<RigidBodyState>& s
   return work + most;
 }
 
+void EnergyWatch::take_in(const World& world) {
+  has_meters_ = true;
+  for (const effects::Effect* effect : effects::all()) {
+    if (std::find(metered_.begin(), metered_.end(), effect) != metered_.end()) continue;
+    if (auto meter = effect->work_meter(world)) {
+      meters_.push_back(std::move(meter));
+      metered_.push_back(effect);
+    }
+  }
+}
+
 std::optional<Runaway> EnergyWatch::look(double time, const World& world,
                                          const std::vector<RigidBodyState>& states) {
   const auto driven = [](const WorldBody& b) {
     return b.immovable() &&
            !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0));
   };
-  if (!has_meters_) {
-    has_meters_ = true;
-    for (const effects::Effect* effect : effects::all())
-      if (auto meter = effect->work_meter(world)) meters_.push_back(std::move(meter));
-  }
+  if (!has_meters_) take_in(world);
   if (std::any_of(meters_.begin(), meters_.end(),
                   [](const auto& meter) { return meter->is_unlimited(); }))
     return std::nullopt;

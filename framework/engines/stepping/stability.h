@@ -162,6 +162,8 @@ class EnergyWatch {
   /// in any amount, drive
   std::optional<Runaway> look(double time, const World& world,
                               const std::vector<RigidBodyState>& states);
+  /// Entries have been appended to the world: what they bring in is measured, too.
+  void take_in(const World& world);
   /// Notes what energy has risen by above the least it has been, where that is more than steps
   /// leave of all that the world had to give.
   void tell(const World& world, RunCounters& counters) const;
@@ -185,6 +187,7 @@ class EnergyWatch {
   // of the effects that bring energy into the world, from the first look on
   std::vector<std::unique_ptr<effects::WorkMeter>> meters_;
   bool has_meters_ = false;
+  std::vector<const effects::Effect*> metered_;
   // what effects have brought in, at most, and without its sign [J]
   double work_ = 0.0, given_ = 0.0;
   // [J]

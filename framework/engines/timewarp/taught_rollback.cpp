@@ -112,6 +112,7 @@ void TaughtTimewarp::look_at_gvt(bool is_over) {
   since_gvt_ = 0;
   if (!times_.moves.empty())
     times_.moves.back().global_virtual_time_s = std::min(gvt_, run_.duration());
+  tell_moves();
   commit();
   if (!is_over) return purge();
   const double left = run_.next_frame();

@@ -103,6 +103,13 @@ class TaughtTimewarp {
   void commit_event();
   void commit_frame();
   void purge();
+  // The sink may show moves while they are made. All are handed over each time, so that times grow
+  // apart as their number does.
+  void tell_moves() {
+    if (times_.moves.size() < told_moves_ + 8 + told_moves_ / 64) return;
+    told_moves_ = times_.moves.size();
+    sink_.virtual_times(times_);
+  }
   void move(int body, double from, double to) {
     if (times_.moves.size() < kMostTaughtMoves)
       times_.moves.push_back({place_[static_cast<std::size_t>(body)], from, to, gvt_});
@@ -124,7 +131,8 @@ class TaughtTimewarp {
   std::map<int, int> groups_;
   std::vector<Executed> executed_;
   VirtualTimes times_;
-  double gvt_ = 0.0;  // global virtual time [s]
+  std::size_t told_moves_ = 0;  // how many of them the sink has had
+  double gvt_ = 0.0;            // global virtual time [s]
   // the last committed item, frame or event
   Stamp committed_{-1.0, 0, WorkKind::kCallback, -1, -1};
   EventStamp committed_key_{-1.0, 0, StampKind::kCallback, -1, -1};  // the last committed event

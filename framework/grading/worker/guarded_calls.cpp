@@ -1,5 +1,8 @@
 #include "framework/grading/worker/guarded_calls.h"
 
+#include <dlfcn.h>
+#include <execinfo.h>
+#include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -23,7 +26,11 @@ namespace tumble::grading {
 namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(250);  // between two checks of the calls
-constexpr int kMostChecks = static_cast<int>(kGuardedCallLimit / 0.25);
+constexpr double kChecksPerSecond = 4.0;
+std::atomic<double> limit_s{kGuardedCallLimit};
+std::atomic<bool> tells_frames{false};
+// A call has been too long: its thread is to say where it is.
+constexpr int kWhere = SIGUSR2;
 constexpr std::array kSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr const char* kLoading = "its global and static variables";
 
@@ -32,8 +39,9 @@ struct CallPlace {
   std::atomic<const char*> function{nullptr};  // the innermost guarded function; null: none
   std::atomic<const char*> file{nullptr};      // its file
   std::atomic<unsigned long> outermost{0};     // number of outermost calls so far
-  unsigned long seen = 0;                      // used by watch() only
-  int checks = 0;                              // used by watch() only
+  std::atomic<pthread_t> thread{};
+  unsigned long seen = 0;  // used by watch() only
+  int checks = 0;          // used by watch() only
 };
 
 constexpr std::size_t kThreads = 256;  // more run unguarded
@@ -45,6 +53,27 @@ char signal_words[kSignals.size()][256];
 
 void say(const char* text) {
   [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
+}
+
+void say_frames() {
+  void* places_in_code[48];
+  const int count = ::backtrace(places_in_code, 48);
+  for (int i = 0; i < count; ++i) {
+    Dl_info object;
+    if (::dladdr(places_in_code[i], &object) == 0 || object.dli_fname == nullptr) continue;
+    // behind the call: one byte earlier is in its line
+    auto offset = reinterpret_cast<std::uintptr_t>(places_in_code[i]) -
+                  reinterpret_cast<std::uintptr_t>(object.dli_fbase) - 1;
+    char digits[24] = "0x";
+    int at = 2 + 2 * static_cast<int>(sizeof offset);
+    digits[at] = '\0';
+    for (; at > 2; offset >>= 4) digits[--at] = "0123456789abcdef"[offset & 15];
+    say("frame ");
+    say(object.dli_fname);
+    say(" ");
+    say(digits);
+    say("\n");
+  }
 }
 
 [[noreturn]] void leave(const char* what, const char* function, const char* file) {
@@ -59,8 +88,12 @@ void say(const char* text) {
   ::_exit(1);
 }
 
+char out_of_time_words[96];
+
 void on_signal(int signal) {
   const char* function = here != nullptr ? here->function.load() : nullptr;
+  if (tells_frames) say_frames();
+  if (signal == kWhere && function != nullptr) leave(out_of_time_words, function, here->file);
   if (function != nullptr)
     for (std::size_t i = 0; i < kSignals.size(); ++i)
       if (kSignals[i] == signal) leave(signal_words[i], function, here->file);
@@ -69,9 +102,7 @@ void on_signal(int signal) {
 }
 
 [[noreturn]] void watch() {
-  static char words[96];
-  std::snprintf(words, sizeof words, "out of time: no answer within %g s (an endless loop?)",
-                kGuardedCallLimit);
+  char* const words = out_of_time_words;
   for (;;) {
     std::this_thread::sleep_for(kPeriod);
     for (std::size_t i = 0; i < std::min(threads.load(), kThreads); ++i) {
@@ -80,8 +111,15 @@ void on_signal(int signal) {
       const unsigned long call = place.outermost.load();
       if (function == nullptr || call != place.seen)
         place.checks = 0;
-      else if (++place.checks > kMostChecks)
+      else if (++place.checks > static_cast<int>(kChecksPerSecond * limit_s)) {
+        std::snprintf(words, sizeof out_of_time_words,
+                      "out of time: no answer within %g s (an endless loop?)", limit_s.load());
+        if (tells_frames) {
+          ::pthread_kill(place.thread, kWhere);
+          std::this_thread::sleep_for(kPeriod);
+        }
         leave(words, function, place.file);
+      }
       place.seen = call;
     }
   }
@@ -98,6 +136,7 @@ void start_guard() {
                     signal_words_of(kSignals[i]).c_str());
       ::sigaction(kSignals[i], &action, nullptr);
     }
+    ::sigaction(kWhere, &action, nullptr);
     std::thread(watch).detach();
   });
 }
@@ -110,6 +149,7 @@ void enter_thread() {
   const std::size_t index = threads.fetch_add(1);
   if (index >= kThreads) return;
   here = &places[index];
+  here->thread = ::pthread_self();
   stack = std::make_unique<char[]>(kStack);
   const stack_t aside{stack.get(), 0, kStack};
   ::sigaltstack(&aside, nullptr);
@@ -150,6 +190,13 @@ class Guard : public modules::CallWatcher {
 Guard& lasting_guard(const std::string& file) { return *new Guard(file); }
 
 }  // namespace
+
+void guard_for_another(double seconds) {
+  limit_s = seconds;
+  void* unused[1];
+  ::backtrace(unused, 1);  // loads what it needs: not in a signal handler
+  tells_frames = true;
+}
 
 modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module,
                            const std::string& file) {

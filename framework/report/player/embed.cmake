@@ -1,9 +1,15 @@
-# cmake -D OUT=file.cpp -D "FILES=a.js;b.css" -P embed.cmake: text files as string literals, so that the program needs no data folder.
-set(text "// Made by framework/report/player/embed.cmake.\n#include \"framework/report/player_files.h\"\n\nnamespace tumble::report {\n\nstd::string_view player_file(std::string_view name) {\n")
+# cmake -D OUT=file.cpp -D "FILES=a.js;b.css" [-D HEADER=... -D NAMESPACE=... -D FUNCTION=...] -P embed.cmake: text files as string literals, so
+# that the program needs no data folder.
+if(NOT HEADER)
+  set(HEADER framework/report/player_files.h)
+  set(NAMESPACE tumble::report)
+  set(FUNCTION player_file)
+endif()
+set(text "// Made by framework/report/player/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n\nstd::string_view ${FUNCTION}(std::string_view name) {\n")
 foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)
   file(READ ${file} content)
   string(APPEND text "  if (name == \"${name}\") return R\"~~~~(${content})~~~~\";\n")
 endforeach()
-string(APPEND text "  return {};\n}\n\n}  // namespace tumble::report\n")
+string(APPEND text "  return {};\n}\n\n}  // namespace ${NAMESPACE}\n")
 file(WRITE ${OUT} "${text}")

@@ -5,9 +5,13 @@ const kCollision = 1;
 
 class Run {
   constructor(head, bytes) {
-    const reader = new ChannelReader(bytes), n = head.frames;
     this.head = head;
     this.label = head.label;
+    if (bytes) this.read(new ChannelReader(bytes));   // without: frames come later, from a run that goes on
+  }
+
+  read(reader) {
+    const head = this.head, n = head.frames;
     this.times = reader.channel(n, Float64Array);
     this.moving = new Map();   // by body index
     for (const body of head.moving) {

@@ -1,6 +1,7 @@
 // One run in three dimensions, with the camera, light and colours of the program's pictures.
 
-const kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd, kChosen = 0xffd24a;
+const kChosen = 0xffd24a;
+let kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd;   // a page that follows the dark scheme has others
 
 class Stage {
   constructor(about, run) {

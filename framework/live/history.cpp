@@ -1,0 +1,99 @@
+#include "framework/live/history.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/live/records.h"
+#include "framework/report/channels.h"
+
+namespace tumble::live {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostKept = 400u << 20;  // of a run that is kept
+
+Vector3d vector_from(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+}  // namespace
+
+History::History(std::string head) : head_(std::move(head)) {
+  const Json json = Json::parse(head_), &scene = json.at("scene");
+  outline_.camera.eye_m = vector_from(scene.at("camera").at("eye"));
+  outline_.camera.target_m = vector_from(scene.at("camera").at("target"));
+  for (const Json& body : scene.at("bodies")) {
+    scene::BodySpec spec;
+    spec.name = body.at("name");
+    spec.immovable = body.at("immovable");
+    outline_.bodies.push_back(std::move(spec));
+    radii_.push_back(body.at("radius").is_null() ? std::numeric_limits<double>::infinity()
+                                                 : body.at("radius").get<double>());
+  }
+}
+
+void History::add_frame(std::string bytes) {
+  bytes_ += bytes.size();
+  is_full_ = is_full_ || bytes_ > kMostKept;
+  if (!is_full_) frames_.push_back(std::move(bytes));
+}
+
+void History::add_event(std::string bytes) {
+  bytes_ += bytes.size();
+  if (!is_full_) events_.push_back(std::move(bytes));
+}
+
+void History::cut(double time_s) {
+  constexpr double kRounding = 1e-9;  // s, of frame times
+  const auto is_later = [&](const std::string& packed) {
+    return time_of(packed) >= time_s - kRounding;
+  };
+  for (std::vector<std::string>* list : {&frames_, &events_}) {
+    const auto first = std::find_if(list->begin(), list->end(), is_later);
+    for (auto it = first; it != list->end(); ++it) bytes_ -= it->size();
+    list->erase(first, list->end());
+  }
+}
+
+double History::time_of(const std::string& packed) {
+  double time = 0.0;
+  std::memcpy(&time, packed.data(), std::min(sizeof time, packed.size()));
+  return time;
+}
+
+Trajectory History::part(double from_s, double until_s) const {
+  Trajectory run;
+  for (const scene::BodySpec& body : outline_.bodies)
+    run.bodies.push_back({body.name, body.immovable});
+  const auto is_before = [](const std::string& packed, double time) {
+    return time_of(packed) < time;
+  };
+  const auto first = std::lower_bound(frames_.begin(), frames_.end(), from_s, is_before);
+  for (auto it = first; it != frames_.end() && time_of(*it) < until_s; ++it)
+    run.frames.push_back(unpack_frame(*it));
+  for (const std::string& event : events_)
+    if (time_of(event) >= from_s && time_of(event) < until_s)
+      run.events.push_back(unpack_event(event));
+  return run;
+}
+
+std::string numbers_for_page(const std::string& packed, const std::string& first) {
+  const auto number = [](const std::string& bytes, std::size_t i) {
+    double x = 0.0;
+    std::memcpy(&x, bytes.data() + i * sizeof x, sizeof x);
+    return x;
+  };
+  const std::size_t count = packed.size() / sizeof(double);
+  std::vector<float> numbers;
+  for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<float>(number(packed, i)));
+  const auto energy = [&](const std::string& frame) { return number(frame, 1) + number(frame, 2); };
+  if (!first.empty()) numbers.push_back(static_cast<float>(energy(packed) - energy(first)));
+  return report::base64(
+      {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)});
+}
+
+}  // namespace tumble::live

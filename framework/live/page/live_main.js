@@ -1,0 +1,430 @@
+// Assembles the page: the stream from the program, time, the panes.
+
+const byId = id => document.getElementById(id);
+
+const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
+const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null };
+
+function post(command) {
+  return fetch('do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(command) }).catch(() => say('the program has ended', 'bad'));
+}
+
+function say(text, kind = '') {
+  byId('state').textContent = text;
+  byId('state').className = kind;
+}
+
+function showTrouble(trouble) {
+  const box = byId('trouble');
+  box.hidden = !trouble;
+  if (!trouble) return;
+  const [title, text, remedy] = box.querySelectorAll('h2, pre, .remedy');
+  title.textContent = trouble.where ? `${trouble.title}: ${trouble.where}` : trouble.title;
+  text.textContent = trouble.text || '';
+  remedy.textContent = trouble.remedy || 'The page goes on: mend the file and save it.';
+  document.body.dataset.trouble = `${trouble.title} ${trouble.where || ''} ${trouble.text || ''}`;
+}
+
+// ---- Time ----
+
+function goTo(time) {
+  page.follows = false;
+  page.time = Math.max(0, Math.min(time, page.run ? page.run.end : 0));
+  if (!page.paused) setPace(true, page.speed);
+  showTime();
+}
+
+function newest() {
+  page.follows = true;
+  if (page.run) page.time = page.run.end;
+  showTime();
+}
+
+function setPace(paused, speed) {
+  page.paused = paused;
+  page.speed = speed;
+  post({ do: 'pace', paused, speed });
+  showTime();
+}
+
+function showTime() {
+  const run = page.run, end = run && run.length ? run.end : 0;
+  byId('clock').textContent = `${page.time.toFixed(3)} s`;
+  byId('scrub').max = String(Math.max(end, 1e-3));
+  byId('scrub').value = String(page.time);
+  byId('go').textContent = page.paused ? 'Go' : 'Pause';
+  const isPast = run && !page.follows && page.time < end - 1e-6;
+  byId('here').hidden = byId('newest').hidden = !isPast;
+  byId('on').disabled = !page.paused;
+}
+
+function toggle() {
+  if (!page.paused) return setPace(true, page.speed);
+  newest();
+  setPace(false, page.speed);
+}
+
+function stepBack() {
+  if (!page.run || page.run.length === 0) return;
+  const at = page.run.frameAt(page.time);
+  goTo(page.run.times[Math.max(0, at.k - (at.part > 1e-3 ? 0 : 1))]);
+}
+
+function stepOn() {
+  const run = page.run;
+  if (!run || run.length === 0) return;
+  const k = run.frameAt(page.time).k;
+  if (k + 1 < run.length) { page.time = run.times[k + 1]; page.follows = k + 2 >= run.length; return showTime(); }
+  newest();
+  post({ do: 'step' });
+}
+
+function drawMarks() {
+  const canvas = byId('marks'), width = canvas.clientWidth, height = canvas.clientHeight, run = page.run, ratio = window.devicePixelRatio || 1;
+  if (!run || !width) return;
+  canvas.width = width * ratio;
+  canvas.height = height * ratio;
+  const g = canvas.getContext('2d'), inset = 8, end = run.end || 1, x = t => inset + t / end * (width - 2 * inset), style = getComputedStyle(document.body);
+  g.scale(ratio, ratio);
+  g.fillStyle = style.getPropertyValue('--before');
+  g.globalAlpha = run.events.count > 300 ? 0.3 : 0.9;
+  for (let i = Math.max(0, run.events.count - 3000); i < run.events.count; ++i) if (run.events.kind[i] === kCollision) g.fillRect(x(run.events.time[i]) - 0.5, 2, 1, height - 2);
+  g.globalAlpha = 1;
+  g.fillStyle = '#d0306c';
+  for (const push of page.pushes.slice(-400)) g.fillRect(x(push.start_s) - 1, 0, 2, height);
+  if (page.difference && page.difference.time_s !== undefined) {
+    g.fillStyle = style.getPropertyValue('--bad');
+    g.beginPath();
+    g.moveTo(x(page.difference.time_s), height);
+    g.lineTo(x(page.difference.time_s) - 5, 0);
+    g.lineTo(x(page.difference.time_s) + 5, 0);
+    g.fill();
+  }
+}
+
+// ---- The hand ----
+
+// The drag of a push is an arrow; its length is the velocity that it gives, four metres a second a
+// metre, so that light and heavy bodies are pushed alike.
+const kSpeedOfDrag = 4;
+
+function pushOf(body, way) {
+  const mass = page.run.facts.bodies[body].mass_kg, seconds = Math.min(10, Math.max(0.001, Number(byId('pushTime').value) || 0.1));
+  return { force: way.map(x => x * kSpeedOfDrag * mass / seconds), mass, seconds };
+}
+
+function wordsOfPush(body, way) {
+  const { force, mass, seconds } = pushOf(body, way), size = Math.hypot(...force);
+  return `${page.run.about.bodies[body].name}: F = ${short(size, 3)} N for ${short(seconds)} s; a = F / m = ${short(size / mass, 3)} m/s² of its centre (m = ${short(mass)} kg)`;
+}
+
+const pullQueue = { last: 0, timer: 0 };
+const hand = {
+  tool: () => (page.follows ? page.tool : 'look'),
+  choose(body) { page.chosen = body; byId('body').value = String(body); showPanes(true); },
+  aim(ray) { post({ do: 'aim', ray }); },
+  showPush(body, way) { byId('aimed').textContent = wordsOfPush(body, way); },
+  push(body, way) {
+    const { force, seconds } = pushOf(body, way);
+    byId('aimed').textContent = wordsOfPush(body, way);
+    post({ do: 'push', force_n: force, duration_s: seconds });
+  },
+  pull(to) {   // at most 60 times a second
+    clearTimeout(pullQueue.timer);
+    const send = () => { pullQueue.last = performance.now(); post({ do: 'pull', to_m: to }); }, wait = pullQueue.last + 16 - performance.now();
+    if (wait <= 0) send(); else pullQueue.timer = setTimeout(send, wait);
+  },
+  release() { clearTimeout(pullQueue.timer); post({ do: 'release' }); },
+};
+
+function setTool(tool) {
+  page.tool = tool;
+  for (const [id, word] of [['toolPush', 'push'], ['toolPull', 'pull'], ['toolLook', 'look']]) byId(id).setAttribute('aria-checked', String(tool === word));
+  showHint();
+}
+
+function showHint() {
+  const run = page.run;
+  if (!run) return;
+  const words = { push: 'Drag from a body and let go: a force pushes it.', pull: run.facts.can_pull ? 'Drag a body: the spring of a3 holds it.' : 'Pulling needs the engine rd and the spring of a3.', look: 'Drag turns the view.' };
+  byId('hint').textContent = page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.';
+}
+
+// ---- What the program says ----
+
+function begin(message) {
+  const head = message.head, isBack = head.from_s > 0 && page.run;
+  page.pushes = message.pushes;
+  page.changes = message.changes;
+  if (isBack) {
+    page.run.cut(head.from_s);
+    page.run.facts = head;
+  } else {
+    if (page.run && page.run.length > 1) page.former = page.run;
+    page.run = new LiveRun(head, 'now');
+    page.difference = null;
+    byId('difference').hidden = true;
+    times.clear();
+  }
+  page.run.about.forces = [...head.scene.forces.filter(force => !page.pushes.some(push => Math.abs(force.start - push.start_s) < 1e-9)), ...page.pushes.map(forceOf)];
+  page.needsStage = !isBack;
+  page.follows = true;
+  if (!isBack) page.time = 0;
+  showTrouble(null);
+  delete document.body.dataset.trouble;
+  byId('title').textContent = head.scene.title;
+  byId('about').textContent = head.scene.about;
+  document.title = `${head.scene.title} – Tumble live`;
+  const list = byId('body');
+  list.textContent = '';
+  list.append(html('option', { value: '-1' }, 'body …'), ...head.scene.bodies.map((body, i) => html('option', { value: String(i) }, body.name)));
+  if (page.chosen >= head.scene.bodies.length) page.chosen = -1;
+  if (page.chosen < 0) page.chosen = head.scene.bodies.findIndex(body => !body.immovable);
+  list.value = String(page.chosen);
+  say('running');
+  showHint();
+  showTime();
+  panes.change.show(page.run, page.changes, page.chosen);
+  document.body.dataset.runs = String(Number(document.body.dataset.runs || 0) + 1);
+  document.body.dataset.reason = message.reason;
+  addTimesTab();
+}
+
+function forceOf(push) {
+  return { body: page.run.about.bodies.findIndex(body => body.name === push.body), force: push.force_n, point: push.point_m, start: push.start_s, duration: push.duration_s };
+}
+
+const told = {
+  hello(message) {
+    page.canSave = message.can_save;
+    page.paused = message.paused;
+    page.speed = message.speed;
+    byId('save').disabled = !message.can_save;
+    if (!message.can_save) byId('save').title = 'This scene is made by code and has no file to add pushes to';
+    byId('speed').value = String(message.speed);
+    page.run = page.former = null;   // all comes again
+    say('connected');
+  },
+  run: begin,
+  starting(message) { say({ code: 'compiling …', change: 'starting over …' }[message.reason] || 'starting …', 'busy'); },
+  code_saved(message) { say(`${message.file} was saved: compiling …`, 'busy'); document.body.dataset.saved = String(performance.now()); },
+  pace(message) { page.paused = message.paused; page.speed = message.speed; byId('speed').value = String(message.speed); showTime(); },
+  aimed(message) {
+    const run = page.run;
+    if (!run) return;
+    if (message.problem) byId('aimed').textContent = message.problem;
+    else if (message.body < 0) byId('aimed').textContent = 'your ray function hits nothing that can move here';
+    else byId('aimed').textContent = `hit ${run.about.bodies[message.body].name}${message.face !== undefined ? `, face ${message.face}` : ''}, at (${message.point_body_m.map(x => short(x, 3)).join(', ')}) m of its frame, by your ray function`;
+    if (page.picture) page.picture.aimed(message.body, message.point_body_m || [0, 0, 0]);
+    document.body.dataset.aimed = String(message.body);
+  },
+  push(message) {
+    page.pushes.push(message.push);
+    if (page.run) page.run.about.forces.push(forceOf(message.push));
+    document.body.dataset.pushes = String(page.pushes.length);
+  },
+  times(message) { times.add(message); addTimesTab(); },
+  end(message) {
+    page.run.stopped = message.stopped_by;
+    if (message.stopped_by) showTrouble({ title: 'The run stopped', text: message.stopped_by, where: '' });
+    else if (message.faults) showTrouble({ title: 'This run cannot be trusted', text: message.faults, where: '', remedy: ' ' });
+    say(message.stopped_by ? `stopped at ${short(message.time_s)} s` : `ended at ${short(message.time_s)} s`, message.stopped_by ? 'bad' : '');
+    page.ended = true;
+  },
+  trouble(message) { showTrouble(message); say(message.title.toLowerCase(), 'bad'); },
+  notice(message) { byId('aimed').textContent = message.text; },
+  judging(message) { panes.verdicts.busy(message.id); },
+  verdicts(message) {
+    panes.verdicts.set(message);
+    document.body.dataset.verdicts = JSON.stringify(Object.fromEntries(message.tests.map(test => [test.test, test.verdict])));
+    document.body.dataset.judged = String(Number(document.body.dataset.judged || 0) + 1);
+  },
+  difference(message) {
+    page.difference = message;
+    const line = byId('difference'), isDifferent = message.time_s !== undefined;
+    line.hidden = false;
+    line.classList.toggle('same', !isDifferent);
+    line.querySelector('button').hidden = !isDifferent;
+    line.querySelector('span').textContent = isDifferent ? `First difference from the run before, at ${short(message.time_s, 6)} s: ${message.what}` : `The same as the run before until ${short(message.same_until_s, 4)} s.`;
+    document.body.dataset.difference = isDifferent ? String(message.time_s) : '';
+  },
+  saved(message) {
+    const line = byId('saved');
+    line.hidden = false;
+    line.classList.toggle('wrong', Boolean(message.wrong));
+    const checked = !message.checked ? 'it is run again to compare …' : message.wrong ? `but it does not run again alike: ${message.wrong}` : `it runs again, the same to the last bit in ${message.frames} frames`;
+    line.textContent = `Saved ${message.file}; ${checked}. ${message.again}`;
+    document.body.dataset.savedScene = message.file;
+    document.body.dataset.savedCheck = message.checked ? message.wrong || `same ${message.frames}` : '';
+  },
+};
+
+function listen() {
+  const stream = new EventSource('stream');
+  stream.addEventListener('say', event => { const message = JSON.parse(event.data); if (told[message.kind]) told[message.kind](message); });
+  stream.addEventListener('f', event => {
+    if (!page.run) return;
+    page.run.addFrame(floatsOf(event.data));
+    ++page.frames;
+    page.ended = false;
+  });
+  stream.addEventListener('e', event => { if (page.run) page.run.addEvent(floatsOf(event.data)); });
+  stream.onerror = () => say('the program has ended, or is gone for a moment', 'bad');
+}
+
+// ---- Panes ----
+
+const times = new TimesChart();
+const panes = {
+  verdicts: new VerdictPane(),
+  change: new ChangePane(changes => post({ do: 'change', changes, keep: panes.change.keep.checked })),
+  body: new BodyPane((body, point, force, seconds) => {
+    if (!page.follows) newest();
+    post({ do: 'aim', body, point_body_m: point }).then(() => post({ do: 'push', force_n: force, duration_s: seconds }));
+  }),
+};
+const plots = kCurvePlots.map(about => new GrowingPlot(about));
+const tabs = [['Verdicts', panes.verdicts.box], ['Curves', html('div', {}, ...plots.map(plot => plot.box))], ['Change', panes.change.box], ['Body', panes.body.box]];
+let opened = 0;
+
+function addTab([title, box], i) {
+  const tab = html('button', {}, title), pane = html('div', { className: 'pane', tabIndex: 0 }, box);
+  tab.setAttribute('role', 'tab');
+  pane.setAttribute('role', 'tabpanel');
+  tab.addEventListener('click', () => openTab(i));
+  byId('tabs').append(tab);
+  byId('panes').append(pane);
+}
+
+function openTab(at) {
+  opened = at;
+  [...byId('tabs').children].forEach((tab, i) => tab.setAttribute('aria-selected', String(i === at)));
+  [...byId('panes').children].forEach((pane, i) => { pane.hidden = i !== at; });
+  if (at === 2 && page.run) panes.change.show(page.run, page.changes, page.chosen);
+  showPanes(true);
+}
+
+function addTimesTab() {
+  if (tabs.length > 4 || !page.run || page.run.facts.engine !== 'tw') return;
+  tabs.push(['Virtual times', times.box]);
+  addTab(tabs[4], 4);
+  openTab(opened);
+}
+
+let panesShown = 0;
+function showPanes(isNow) {
+  const now = performance.now();
+  if (!page.run || page.run.length === 0 || (!isNow && now - panesShown < 180)) return;
+  panesShown = now;
+  const former = shown.ghost && page.former && page.former.length > 1 ? page.former : null;
+  if (opened === 1) for (const plot of plots) plot.draw(page.run, former, page.time);
+  if (opened === 3) panes.body.show(page.run, page.chosen, page.time, page.pushes);
+  if (opened === 4) times.draw(page.run.end);
+  drawMarks();
+  showScales();
+}
+
+function showScales() {
+  if (!page.picture || !page.picture.vectors) return;
+  const words = Object.entries(kVectors).filter(([name]) => shown[name] && page.picture.vectors.scaleOf(name) > 0).map(([name, about]) => {
+    const scale = page.picture.vectors.scaleOf(name), unit = roundDown(0.1 * page.picture.stage.sight / scale);
+    return `${about.text}: ${short(unit)} ${about.unit} are ${short(unit * scale, 2)} m long`;
+  });
+  byId('scales').textContent = '';
+  byId('scales').append(...words.map(text => html('div', {}, text)));
+}
+
+function addOptions() {
+  const options = [...Object.entries(kVectors).map(([name, about]) => [name, about.text, cssColor(about.color)]), ['axes', 'principal axes'], ['centres', 'centres of mass'], ['chosenOnly', 'of the chosen body only'],
+    ['ghost', 'the run before, as a ghost', cssColor(kGhost)], ['forces', 'forces on points', cssColor(kColors.force)], ['links', 'springs, rods, joints', cssColor(kColors.rod)], ['halo', 'chosen body highlighted', cssColor(kChosen)], ['ground', 'ground and grid'], ['shadows', 'shadows']];
+  for (const [name, text, color] of options) {
+    const box = html('input', { type: 'checkbox', checked: shown[name], id: `show_${name}` }), swatch = html('i');
+    if (color) swatch.style.background = color;
+    box.addEventListener('change', () => { shown[name] = box.checked; showPanes(true); });
+    byId('options').append(html('label', {}, box, ' ', swatch, text));
+  }
+}
+
+function addControls() {
+  const click = (id, act) => byId(id).addEventListener('click', act);
+  click('over', () => post({ do: 'begin', keep: false }));
+  click('again', () => post({ do: 'begin', keep: true }));
+  click('go', toggle);
+  click('back', stepBack);
+  click('on', stepOn);
+  click('here', () => post({ do: 'back', time_s: page.time }));
+  click('newest', newest);
+  click('home', () => page.picture && page.picture.reset());
+  click('save', () => post({ do: 'save' }));
+  click('closeTrouble', () => showTrouble(null));
+  click('toDifference', () => goTo(page.difference.time_s));
+  click('toolPush', () => setTool('push'));
+  click('toolPull', () => setTool('pull'));
+  click('toolLook', () => setTool('look'));
+  byId('scrub').addEventListener('input', () => goTo(Number(byId('scrub').value)));
+  for (const s of [0.05, 0.1, 0.25, 0.5, 1, 2, 4]) byId('speed').append(html('option', { value: String(s) }, `${s} ×`));
+  byId('speed').value = '1';
+  byId('speed').addEventListener('change', event => setPace(page.paused, Number(event.target.value)));
+  byId('body').addEventListener('change', event => hand.choose(Number(event.target.value)));
+  window.addEventListener('keydown', event => {
+    const target = event.target instanceof Element ? event.target : document.body;
+    if (event.ctrlKey || event.metaKey || event.altKey || target.closest('select, input[type=number], input[type=text]')) return;
+    const onButton = target.closest('button, summary, input[type=checkbox], a');
+    const acts = { ' ': onButton ? null : toggle, ArrowLeft: target.closest('[type=range]') ? null : stepBack, ArrowRight: target.closest('[type=range]') ? null : stepOn, r: () => post({ do: 'begin', keep: false }), 1: () => setTool('push'), 2: () => setTool('pull'), 3: () => setTool('look') };
+    const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!act) return;
+    act();
+    event.preventDefault();
+  });
+}
+
+function tick(now) {
+  const run = page.run, dt = page.last === undefined ? 0 : Math.min(0.25, (now - page.last) / 1000);
+  page.last = now;
+  if (run && run.length > 0) {
+    if (page.follows) {
+      // Between the frames, a little behind the newest; straight to it where it is far ahead.
+      page.time = page.paused || page.ended ? run.end : Math.min(run.end, page.time + dt * page.speed);
+      if (run.end - page.time > 0.12 * Math.max(page.speed, 0.1)) page.time = run.end - 0.02 * page.speed;
+    }
+    try {
+      if (page.picture) {
+        if (page.needsStage) { page.picture.setRun(run, page.former, page.hadStage); page.needsStage = false; page.hadStage = true; }
+        if (page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);
+      }
+    } catch (error) {
+      noPicture(error);
+    }
+    if (page.follows) showTime();
+    showPanes(false);
+    page.drawn = (page.drawn || 0) + 1;
+    if (page.since === undefined) [page.since, page.drawn, page.framesThen] = [now, 0, page.frames];
+    else if (now - page.since > 1000) {
+      document.body.dataset.fps = (page.drawn * 1000 / (now - page.since)).toFixed(1);
+      document.body.dataset.frameRate = ((page.frames - page.framesThen) * 1000 / (now - page.since)).toFixed(1);
+      page.since = undefined;
+      if (page.picture) page.picture.adapt(Number(document.body.dataset.fps), page.paused);
+    }
+  }
+  requestAnimationFrame(tick);
+}
+
+function noPicture(error) {
+  byId('noPicture').textContent = `The motion cannot be drawn here (${error.message}). Curves and verdicts work.`;
+  byId('noPicture').hidden = false;
+  page.picture = null;
+}
+
+tabs.forEach(addTab);
+openTab(0);
+addOptions();
+addControls();
+try {
+  page.picture = new LivePicture(byId('picture'), byId('scene'), shown, hand);
+  page.picture.dark.addEventListener('change', () => { page.needsStage = true; });
+} catch (error) {
+  noPicture(error);
+}
+window.tumble = page;   // for the browser's console
+listen();
+requestAnimationFrame(tick);

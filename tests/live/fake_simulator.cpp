@@ -1,0 +1,41 @@
+// A process that simulates, for tests of the session: it does what a file says, whose name is its
+// first word. "right": frames until nobody reads; "crash": three, then the message of a guarded
+// call and exit code 1; "die": three, then a signal; "refuse": a compiler's error.
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "framework/live/records.h"
+
+int main(int argc, char** argv) {
+  using namespace tumble;
+  using live::RecordKind;
+  std::signal(SIGPIPE, SIG_IGN);
+  std::string line, what;
+  std::getline(std::cin, line);
+  std::ifstream(argc > 1 ? argv[1] : "") >> what;
+  if (what == "refuse") {
+    live::write_record(1, RecordKind::kRefused,
+                       R"({"where": "a1_impulse.cpp", "problem": "does not compile:\nline 7", )"
+                       R"("remedy": "Correct it."})");
+    return 2;
+  }
+  live::write_record(1, RecordKind::kHead, R"({"from_s": 0, "scene": {"camera": {"eye": [0, -5, 0],)"
+                                           R"( "target": [0, 0, 0]}, "bodies": [{"name": "box",)"
+                                           R"( "immovable": false, "radius": 1}]}})");
+  Frame frame{};
+  frame.poses.push_back({Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
+                         Vector3d::Zero()});
+  for (int k = 0;; ++k) {
+    frame.time = k / 60.0;
+    frame.poses[0].com_world.x() = (what == "right" ? 1.0 : 2.0) * frame.time;
+    if (!live::write_record(1, RecordKind::kFrame, live::pack(frame))) return 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (k < 3 || what == "right") continue;
+    if (what == "die") std::raise(SIGKILL);
+    std::cerr << "frame /somewhere/a1_student.so 0x1234\n\ntumble: a1_impulse.cpp: crashed, in "
+                 "collision_impulse\n";
+    return 1;
+  }
+}

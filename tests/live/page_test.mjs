@@ -1,0 +1,181 @@
+// The live page in a browser. Usage: node page_test.mjs ROOT BUILD [SECONDS of poking, 20]
+// Exit 0: right; 1: wrong; 77: skipped, with the reason. Needs chromium; the reference modules for
+// all but the first test. Wall times are printed with the machine's load and judged by nobody.
+import { spawn, execFileSync } from 'node:child_process';
+import { createServer } from 'node:http';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, readdirSync, readlinkSync, rmSync, writeFileSync } from 'node:fs';
+import { loadavg, tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { Browser } from './browser.mjs';
+
+const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
+function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
+try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
+if (!existsSync(tumble)) skip(`${tumble} is not built`);
+const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
+const folder = mkdtempSync(join(tmpdir(), 'tumble_live_test_'));
+let failed = 0;
+const sleep = ms => new Promise(resolve => setTimeout(resolve, ms));
+function expect(holds, what) { if (!holds) { failed = 1; console.log(`  WRONG: ${what}`); } }
+const near = (a, b, share) => Math.abs(a - b) <= share * Math.abs(b);
+
+// The program with a page; ends with stop().
+class Live {
+  static async start(...words) {
+    const live = new Live();
+    live.child = spawn(tumble, ['live', ...words, '--saves', join(folder, 'saves')], { cwd: root, env: { ...process.env, TUMBLE_ROOT: root } });
+    live.said = '';
+    live.child.stderr.on('data', bytes => { live.said += bytes; });
+    live.address = await new Promise((resolve, reject) => {
+      live.child.stdout.once('data', bytes => resolve(String(bytes).trim()));
+      live.child.once('exit', code => reject(new Error(`tumble live ended with ${code}: ${live.said}`)));
+    });
+    return live;
+  }
+  processes() { return execFileSync('ps', ['-o', 'pid=', '--ppid', String(this.child.pid)]).toString().trim().split(/\s+/).map(Number); }
+  memory() { return Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${this.child.pid}/status`, 'utf8'))[1]); }
+  descriptors() { return readdirSync(`/proc/${this.child.pid}/fd`).length; }
+  async stop(signal = 'SIGINT') {
+    const ended = new Promise(resolve => this.child.once('exit', resolve));
+    this.child.kill(signal);
+    return ended;
+  }
+}
+
+const tests = [];
+const test = (name, run, needsReference = true) => tests.push({ name, run, needsReference });
+const browser = new Browser();
+
+test('a push accelerates a body as F / m says', async () => {
+  const scene = join(folder, 'floating.json');
+  writeFileSync(scene, JSON.stringify({ title: 'A box that floats', duration_s: 5, step_s: 1 / 240, needs: ['a1'], bodies: [{ name: 'box', shape: { box: { size_m: [0.6, 0.6, 0.6] } }, mass_kg: 3, position_m: [0, 0, 1] }],
+    camera: { eye_m: [0, -4, 1], target_m: [0, 0, 1], field_of_view_deg: 40 }, grid: { spacing_m: 0.5 } }));
+  const live = await Live.start(scene, '--modules', 'reference'), page = await browser.open(live.address);
+  await page.until('window.tumble && tumble.run && tumble.run.length > 5 && tumble.hadStage', 'the motion');
+  const box = JSON.parse(await page.value('JSON.stringify(document.getElementById("picture").getBoundingClientRect())')), x = box.x + box.width / 2, y = box.y + box.height / 2;
+  await page.drag([x, y], [x + 80, y]);
+  const push = JSON.parse(await page.until('tumble.pushes.length > 0 && JSON.stringify(tumble.pushes[0])', 'the push'));
+  const force = Math.hypot(...push.force_n);
+  expect(force > 0.1 && Math.abs(push.force_n[0]) > 0.99 * force, `the force is along the drag: ${push.force_n}`);
+  await page.until(`tumble.run.end > ${push.start_s + push.duration_s + 0.1}`, 'the end of the push');
+  const speed = await page.value('Math.hypot(...tumble.run.velocity(0, tumble.run.length - 1))');
+  expect(near(speed, force * push.duration_s / 3, 1e-5), `F T / m is ${force * push.duration_s / 3} m/s, the page says ${speed}`);   // float32: 6e-8, times the cosines of a turning view
+  const acceleration = await page.value(`(() => { const r = tumble.run, from = r.times.findIndex(t => t > ${push.start_s} + 0.01), k = from + 2; return Math.hypot(...r.velocity(0, k).map((v, i) => v - r.velocity(0, from)[i])) / (r.times[k] - r.times[from]); })()`);
+  expect(near(acceleration, force / 3, 1e-3), `F / m is ${force / 3} m/s^2, the page says ${acceleration}`);   // float32 times of frames: 1e-7 s in 0.03 s
+  expect(await page.value('document.body.dataset.aimed') === '0', 'the ray function says which body was hit');
+  // What was done by hand is a scene, and runs again byte for byte.
+  await page.value('document.getElementById("save").click()');
+  const check = await page.until('document.body.dataset.savedCheck', 'the saved scene is run again');
+  expect(/^same \d+$/.test(check), `saved: ${check}`);
+  expect(existsSync(await page.value('document.body.dataset.savedScene')), 'the scene is a file');
+  if (pictures) await page.picture(join(pictures, 'push.png'));
+  expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
+  await live.stop();
+});
+
+test('a page of another origin gets nothing', async () => {
+  const live = await Live.start('poked_box', '--modules', 'reference'), address = new URL(live.address);
+  const foreign = createServer((request, response) => { response.setHeader('Content-Type', 'text/html'); response.end('<title>foreign</title>'); });
+  await new Promise(resolve => foreign.listen(0, '127.0.0.1', resolve));
+  const page = await browser.open(`http://127.0.0.1:${foreign.address().port}/`);
+  await page.until('document.title === "foreign"', 'the foreign page');
+  const tries = await page.value(`(async () => {
+    const got = [], url = ${JSON.stringify(address.href)};
+    for (const path of ['', 'live.js', 'stream']) try { got.push(path + ' ' + (await (await fetch(url + path)).text()).length); } catch { }
+    try { const answer = await fetch(url + 'do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: '{"do":"save"}' }); got.push('post ' + answer.status); } catch { }
+    await fetch(url + 'do', { method: 'POST', mode: 'no-cors', headers: { 'Content-Type': 'text/plain' }, body: '{"do":"save"}' }).catch(() => {});
+    const loads = make => new Promise(resolve => { const e = make(); e.onload = () => resolve(true); e.onerror = () => resolve(false); document.head.append(e); setTimeout(() => resolve(false), 3000); });
+    if (await loads(() => Object.assign(document.createElement('script'), { src: url + 'live.js' }))) got.push('script');
+    const stream = new EventSource(url + 'stream');
+    if (await new Promise(resolve => { stream.onopen = () => resolve(true); stream.onerror = () => resolve(false); setTimeout(() => resolve(false), 3000); })) got.push('stream opened');
+    return got;
+  })()`);
+  expect(tries.length === 0, `the foreign page got: ${tries.join(', ')}`);
+  expect(!existsSync(join(folder, 'saves/poked_box_1.json')), 'the foreign page saved a scene');
+  foreign.close();
+  await live.stop('SIGHUP');
+}, false);
+
+test('a saved slip shows its verdict; errors, loops and crashes are shown and the page lives on', async () => {
+  const file = join(folder, 'a1_impulse.cpp'), right = readFileSync(join(root, 'solutions_private/a1_impulse/a1_impulse.cpp'), 'utf8');
+  writeFileSync(file, right);
+  const live = await Live.start('ball_against_wall', '--modules', `a1=${file},a2=reference`), page = await browser.open(live.address);
+  await page.until('tumble.run && tumble.run.length > 5', 'the motion', 120);
+  await page.until('document.body.dataset.verdicts', 'the verdicts of a right file', 240);
+  expect(!/wrong|crashed/.test(await page.value('document.body.dataset.verdicts')), 'the reference is right');
+  const save = async (text, what, until) => {
+    const runs = Number(await page.value('document.body.dataset.runs')), from = Date.now();
+    writeFileSync(file, text);
+    await page.until(until(runs), what, 240);
+    console.log(`  ${what}: ${((Date.now() - from) / 1000).toFixed(1)} s, load ${loadavg()[0].toFixed(1)}`);
+  };
+  const slipped = right.replace('(1.0 + restitution)', '(1.0 - restitution)');
+  expect(slipped !== right, 'the slip is in the file');
+  await save(slipped, 'save to new motion', runs => `Number(document.body.dataset.runs) > ${runs} && tumble.run.length > 2`);
+  await page.until('/wrong/.test(document.body.dataset.verdicts)', 'the verdict of the slip', 240);
+  await page.until('document.body.dataset.difference', 'the first difference from the run before', 60);
+  expect((await page.value('document.querySelector("#panes").textContent')).includes('wrong'), 'the pane shows a story');
+  if (pictures) await page.picture(join(pictures, 'slip.png'));
+  await save(right.replace('return', 'retrun'), 'save to the compiler\'s error', () => '/not compile/.test(document.body.dataset.trouble || "")');
+  expect(/a1_impulse\.cpp.*\d+/s.test(await page.value('document.body.dataset.trouble')), 'the error has file and line');
+  if (pictures) await page.picture(join(pictures, 'error.png'));
+  await save(right, 'mended', runs => `Number(document.body.dataset.runs) > ${runs} && !document.body.dataset.trouble && tumble.run.length > 2`);
+  expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
+  await live.stop('SIGTERM');
+});
+
+test('300 bodies', async () => {
+  const live = await Live.start('gas', '--n', '300', '--modules', 'reference'), page = await browser.open(live.address, { width: 1280, height: 720 });
+  await page.until('tumble.run && tumble.run.length > 30', 'the motion', 120);
+  await sleep(6000);
+  const cpu = pid => { const fields = readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' '); return (Number(fields[11]) + Number(fields[12])) / 100; };
+  const browsers = () => execFileSync('ps', ['-eo', 'pid=,args=']).toString().split('\n').filter(line => line.includes(browser.folder)).map(line => Number(line.trim().split(' ')[0])), seconds = pids => pids.reduce((sum, pid) => { try { return sum + cpu(pid); } catch { return sum; } }, 0);
+  const began = { cpu: seconds(browsers()), of: cpu(live.processes()[0]), frames: await page.value('tumble.frames'), drawn: await page.value('tumble.picture.renderer.info.render.frame') };
+  await sleep(8000);
+  const frames_ = await page.value('tumble.frames') - began.frames, drawn_ = await page.value('tumble.picture.renderer.info.render.frame') - began.drawn;
+  console.log(`  CPU: ${(1000 * (cpu(live.processes()[0]) - began.of) / frames_).toFixed(1)} ms a frame to simulate, ${(1000 * (seconds(browsers()) - began.cpu) / Math.max(1, drawn_)).toFixed(0)} ms a picture in all processes of the browser (${drawn_} pictures, pixel ratio ${await page.value('tumble.picture.ratio.toFixed(2)')})`);
+  const [shown, frames] = await page.value('[document.body.dataset.fps, document.body.dataset.frameRate]');
+  console.log(`  300 bodies at 1280x720, drawn by the processor: ${shown} pictures a second, ${frames} frames a second from the program (load ${loadavg()[0].toFixed(1)})`);
+  expect(Number(frames) > 0 && Number(shown) > 0, 'it moves');
+  await live.stop();
+});
+
+test('poking leaks nothing', async () => {
+  const live = await Live.start('poked_box', '--modules', 'reference'), page = await browser.open(live.address);
+  await page.until('tumble.run && tumble.run.length > 5', 'the motion');
+  const before = { memory: live.memory(), descriptors: live.descriptors() }, end = Date.now() + 1000 * Number(seconds);
+  let pokes = 0;
+  for (let round = 0; Date.now() < end; ++round) {
+    await page.value('(async () => { const post = c => fetch("do", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(c) }); for (let i = 0; i < 20; ++i) { await post({ do: "aim", body: 0, point_body_m: [0.1, 0.1, 0] }); await post({ do: "push", force_n: [i - 9.5, 0, 0], duration_s: 0.02 }); } })()');
+    pokes += 20;
+    if (round % 5 === 4) await page.value('document.getElementById("over").click()');
+    await sleep(100);
+  }
+  await sleep(1500);
+  const after = { memory: live.memory(), descriptors: live.descriptors() };
+  console.log(`  ${pokes} pokes in ${seconds} s: memory ${before.memory} to ${after.memory} KiB, descriptors ${before.descriptors} to ${after.descriptors}, processes ${live.processes().length}`);
+  expect(after.descriptors <= before.descriptors + 4, 'descriptors are closed');
+  expect(live.processes().length <= 2, 'processes end');
+  expect(after.memory < before.memory + 60000, 'memory stays');   // a run and the one before it are kept: some MB
+  const children = live.processes();
+  await live.stop('SIGKILL');   // even so nothing is left
+  await sleep(1500);
+  expect(children.filter(pid => pid > 0 && existsSync(`/proc/${pid}`) && /tumble/.test((() => { try { return readlinkSync(`/proc/${pid}/exe`); } catch { return ''; } })())).length === 0, 'processes are left');
+});
+
+try {
+  const only = process.env.LIVE_ONLY;
+  for (const { name, run, needsReference } of tests) {
+    if (only && !name.includes(only)) continue;
+    if (needsReference && !hasReference) { console.log(`skipped: ${name}: this tree has no reference modules`); continue; }
+    const before = failed;
+    failed = 0;
+    try { await run(); } catch (error) { failed = 1; console.log(`  WRONG: ${error.message}`); }
+    console.log(`${failed ? 'wrong' : 'right'}: ${name}`);
+    failed = failed || before;
+  }
+} finally {
+  await browser.close();
+  rmSync(folder, { recursive: true, force: true });
+}
+process.exit(failed);

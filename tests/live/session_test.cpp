@@ -1,0 +1,184 @@
+// A sitting at the page: what a page is told when code is saved, refused, or ends badly. The
+// process that simulates is a small one of the test's own (fake_simulator.cpp).
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <future>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/files.h"
+#include "framework/live/session.h"
+
+namespace tumble::testing::live_session_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LiveSession : public ::testing::Test {
+ protected:
+  LiveSession() {
+    // The session ends by a signal of the process, which no other thread may take.
+    sigset_t signals;
+    ::sigemptyset(&signals);
+    ::sigaddset(&signals, SIGTERM);
+    ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
+    code("right");
+    sitting_.name = "box";
+    sitting_.recipe.document = R"({"title": "A box", "duration_s": 1, "bodies": []})";
+    sitting_.simulator = {TUMBLE_FAKE_SIMULATOR, file().string()};
+    sitting_.judge = [this](const std::string& id) {
+      return std::vector<std::string>{
+          "/bin/sh", "-c", "echo '{\"id\": \"" + id + "\", \"tests\": [], \"said\": \"judged as " +
+                               text_of(file()) + "\"}'"};
+    };
+    sitting_.locate = {"/bin/sh", "-c", "grep -q '^frame .*a1_student.so 0x1234' && "
+                                        "echo 'a1_impulse.cpp:26: return 1 / n;'"};
+    sitting_.watched = {{file(), "a1"}};
+    sitting_.saves = folder_.path() / "saves";
+    std::promise<std::string> address;
+    thread_ = std::thread([this, &address] {
+      live::serve(sitting_, [&](const std::string& at) { address.set_value(at); });
+    });
+    const std::string at = address.get_future().get();
+    const std::size_t colon = at.rfind(':'), slash = at.find('/', colon);
+    host_ = at.substr(7, slash - 7);
+    path_ = at.substr(slash);
+    stream_ = connected(std::stoi(at.substr(colon + 1)));
+    write("GET " + path_ + "stream HTTP/1.1\r\nHost: " + host_ + "\r\n\r\n", stream_);
+  }
+  ~LiveSession() override {
+    stop();
+    ::close(stream_);
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  void stop() {
+    if (!thread_.joinable()) return;
+    ::kill(::getpid(), SIGTERM);
+    thread_.join();
+  }
+
+  fs::path file() const { return folder_.path() / "code.txt"; }
+  void code(const std::string& what) const { std::ofstream(file()) << what; }
+
+  static int connected(int port) {
+    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{60, 0};
+    ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    EXPECT_EQ(::connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+    return fd;
+  }
+  static void write(const std::string& text, int fd) {
+    ASSERT_EQ(::send(fd, text.data(), text.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(text.size()));
+  }
+  /// Reads the stream until a text has come, and forgets all until behind it.
+  /// @return whether it came
+  bool hears(const std::string& text) {
+    for (;;) {
+      if (const std::size_t at = heard_.find(text); at != std::string::npos) {
+        heard_.erase(0, at + text.size());
+        return true;
+      }
+      char buffer[1 << 14];
+      const ssize_t n = ::read(stream_, buffer, sizeof buffer);
+      if (n <= 0) return false;
+      heard_.append(buffer, static_cast<std::size_t>(n));
+    }
+  }
+  void post(const std::string& json) const {
+    const int fd = connected(std::stoi(host_.substr(host_.find(':') + 1)));
+    write("POST " + path_ + "do HTTP/1.1\r\nHost: " + host_ + "\r\nOrigin: http://" + host_ +
+              "\r\nContent-Type: application/json\r\nContent-Length: " +
+              std::to_string(json.size()) + "\r\nConnection: close\r\n\r\n" + json,
+          fd);
+    char buffer[256];
+    while (::read(fd, buffer, sizeof buffer) > 0) {
+    }
+    ::close(fd);
+  }
+
+  PrivateFolder folder_;
+  live::Sitting sitting_;
+  std::thread thread_;
+  std::string host_, path_, heard_;
+  int stream_ = -1;
+  sigset_t before_;
+};
+
+TEST_F(LiveSession, RunsAndTellsThePageOfEveryFrame) {
+  EXPECT_TRUE(hears("\"kind\":\"hello\""));
+  EXPECT_TRUE(hears("\"kind\":\"run\""));
+  for (int k = 0; k < 5; ++k) EXPECT_TRUE(hears("event: f\ndata: "));
+}
+
+TEST_F(LiveSession, SavedCodeBeginsAnewAndIsJudged) {
+  ASSERT_TRUE(hears("event: f"));
+  code("right");
+  EXPECT_TRUE(hears("\"kind\":\"code_saved\""));
+  EXPECT_TRUE(hears("\"reason\":\"code\""));
+  EXPECT_TRUE(hears("\"said\":\"judged as right\""));
+  EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, CrashIsToldWithItsLineAndThePageLivesOn) {
+  ASSERT_TRUE(hears("event: f"));
+  code("crash");
+  EXPECT_TRUE(hears("\"title\":\"Crashed\",\"text\":\"a1_impulse.cpp: crashed, in collision"));
+  EXPECT_TRUE(hears("\"where\":\"a1_impulse.cpp:26\""));
+  post(R"({"do": "pace", "speed": 0.5, "paused": false})");
+  EXPECT_TRUE(hears("\"kind\":\"pace\",\"speed\":0.5"));
+  code("die");
+  EXPECT_TRUE(hears("ended by signal 9"));
+  code("right");
+  EXPECT_TRUE(hears("\"reason\":\"code\""));
+  for (int k = 0; k < 10; ++k) EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, CompilersErrorLeavesTheRunGoing) {
+  ASSERT_TRUE(hears("event: f"));
+  code("refuse");
+  EXPECT_TRUE(hears("\"title\":\"Does not compile\""));
+  EXPECT_TRUE(hears("event: f"));
+  EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, FirstDifferenceFromTheRunBeforeIsTold) {
+  ASSERT_TRUE(hears("event: f"));
+  for (int k = 0; k < 30; ++k) ASSERT_TRUE(hears("event: f"));
+  code("crash");  // it moves twice as fast
+  EXPECT_TRUE(hears("\"kind\":\"difference\""));
+  EXPECT_TRUE(hears("from where it is in this run"));
+}
+
+TEST_F(LiveSession, NonsenseFromThePageIsToldAndEndsNothing) {
+  for (const char* text : {"", "{", "[]", "{}", R"({"do": "fly"})", R"({"do": "pace"})",
+                           R"({"do": "change", "changes": {"restitution": 7}})",
+                           R"({"do": "change", "changes": 3})"}) {
+    post(text);
+    EXPECT_TRUE(hears("\"kind\":\"notice\"")) << text;
+  }
+  EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, EndsBySignalAndLeavesNoProcess) {
+  ASSERT_TRUE(hears("event: f"));
+  stop();
+  EXPECT_FALSE(hears("never said"));  // the stream is closed
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
+  EXPECT_EQ(errno, ECHILD);
+}
+
+}  // namespace
+}  // namespace tumble::testing::live_session_test
