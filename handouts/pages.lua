@@ -1,5 +1,6 @@
--- What a handout needs on its way from Markdown to a page or a PDF. Metadata: root, the way from the page to the source tree.
+-- What a handout needs on its way from Markdown to a page or a PDF. Metadata: root, the way from the page to the source tree; alone, where the page lies without it.
 local root = ''
+local alone = false
 local latex = FORMAT:match 'latex'
 
 -- <a id="x"></a> is where "#x" leads, on paper too.
@@ -11,6 +12,7 @@ local function anchor(element)
 end
 
 local function link(element)
+  if alone and not element.target:match '^#' then return element.content end   -- beside a report lies nothing else
   local handout, rest = element.target:match '^([%w_]+)%.md(.*)$'
   if handout then
     element.target = handout .. (latex and '.pdf' or '.html') .. rest
@@ -64,7 +66,10 @@ local function columns(element)
 end
 
 return {
-  { Meta = function(meta) root = meta.root and pandoc.utils.stringify(meta.root) or '' end },
+  { Meta = function(meta)
+      root = meta.root and pandoc.utils.stringify(meta.root) or ''
+      alone = meta.alone ~= nil
+    end },
   { RawInline = anchor, RawBlock = anchor, Link = link, Table = columns },
   { Code = code },   -- after the columns, which count its letters
   { Pandoc = title },

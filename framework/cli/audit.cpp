@@ -9,8 +9,10 @@
 #include <unistd.h>
 
 #include "framework/cli/verb.h"
+#include "framework/core/files.h"
 #include "framework/grading/grades/touched_lines.h"
 #include "framework/grading/grades/audit.h"
+#include "framework/grading/grades/causes_file.h"
 #include "framework/grading/grades/scoring.h"
 
 namespace tumble::cli {
@@ -116,6 +118,17 @@ void print_lines(const grading::TouchedLines& lines, bool json) {
                range.code_lines, range.text.substr(0, kWidth));
 }
 
+// What graded pages take their likely causes from.
+void write_causes(const grading::Course& course, const std::string& id,
+                  const std::vector<AuditResult>& results) {
+  const auto file = grading::causes_file(course, id);
+  const std::string text = grading::causes_json(
+      id, grading::audited_slips(results, course.registry->find(id).functions));
+  if (std::filesystem::exists(file) && text_of(file) == text) return;
+  write_whole(file, text);
+  fmt::print(stderr, "wrote {}\n", file.string());
+}
+
 void audit(Context& context, const AuditWords& words) {
   const grading::Course course{context.root, context.build, &context.registry,
                                context.command_line};
@@ -151,6 +164,8 @@ void audit(Context& context, const AuditWords& words) {
       fmt::print("{}; --lines lists the others\n",
                  share_touched(grading::touched_lines_of_reference(course, words.id, all)));
   }
+  if (words.only.empty() && words.mutants.empty() && caught == wrong && whole == right)
+    write_causes(course, words.id, results);
   context.exit = caught == wrong && whole == right ? ExitCode::kFine : ExitCode::kCheckFailed;
 }
 
@@ -180,6 +195,8 @@ void add_audit(CLI::App& app, Context& context) {
       "touched "
       "where a slip takes it out or writes it anew; comments, #include, namespaces and braces "
       "alone do not count.\n"
+      "A whole audit in which all is as it should be writes solutions_private/aN_name/causes.json, "
+      "from which graded pages take their likely causes.\n"
       "Exit: 0 all caught and no right solution accused, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });
 }

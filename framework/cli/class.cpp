@@ -105,8 +105,10 @@ void page(const Class& all) {
   if (std::mismatch(out.begin(), out.end(), to.begin(), to.end()).first == out.end())
     throw UserError(to.string(), "is in the folder of results, which belongs to the grader",
                     "Name another folder.");
+  grading::PageView view;
+  view.is_alone = true;
   grading::submission_page(all.context.registry.find(all.settings.assignment), grade,
-                           version_in_words(kProgramVersion), true)
+                           version_in_words(kProgramVersion), view)
       .write(to / "index.html");
   if (fs::is_directory(out / grade.folder / "media"))
     fs::copy(out / grade.folder / "media", to / "media",

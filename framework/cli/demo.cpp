@@ -98,15 +98,38 @@ void add_scores(report::Page& page, const std::vector<Graded>& all) {
   page.table(table);
 }
 
+// Every scene in small, with the pages that say more.
+void add_scenes(report::Page& page, const Graded& graded) {
+  const fs::path folder = graded.kind->id;
+  const Grade& flawed = graded.grades[kFlawed];
+  page.heading(fmt::format("{} {}: the flawed submission has {}", graded.kind->id,
+                           graded.kind->title, grading::summary_of(flawed)),
+               2, "scenes-" + graded.kind->id);
+  page.links(
+      {{"What it should mend first", report::link_to(folder / flawed.folder / "index.html")},
+       {"The same for its student", report::link_to(folder / flawed.folder / "student.html")},
+       {"All submissions", report::link_to(folder / "index.html")},
+       {"Gradebook", report::link_to(folder / "gradebook.csv")}});
+  std::vector<report::Figure> figures;
+  for (const grading::SceneMedia& scene : flawed.media) {
+    const fs::path media = folder / flawed.folder / "media";
+    report::Figure figure;
+    if (!scene.picture.empty()) figure.picture = media / scene.picture;
+    if (!scene.video.empty()) figure.video = media / scene.video;
+    figure.caption = scene.title;
+    if (!scene.page.empty()) figure.link = report::link_to(media / scene.page);
+    figures.push_back(figure);
+  }
+  page.thumbnails(figures);
+}
+
 void write_index(const Context& context, const std::vector<Graded>& all, const fs::path& out) {
   report::Page page(
       "Tumble",
       "three submissions of each assignment, graded; every scene, submission beside reference");
   std::vector<report::Cell> links{{"Scores", "#scores"}};
-  for (const Graded& graded : all) {
-    links.push_back({"Stories of " + graded.kind->id, "#stories-" + graded.kind->id});
+  for (const Graded& graded : all)
     links.push_back({"Scenes of " + graded.kind->id, "#scenes-" + graded.kind->id});
-  }
   links.push_back(
       {"Three engines on the paper's scenes", report::link_to(fs::path(kEngines) / "index.html")});
   page.links(links);
@@ -118,22 +141,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
       "), "
       "and judged from outside it. The names link to the student's page.");
   add_scores(page, all);
-  for (const Graded& graded : all) {
-    const fs::path folder = graded.kind->id;
-    page.links({{graded.kind->id + ": all submissions", report::link_to(folder / "index.html")},
-                {"gradebook", report::link_to(folder / "gradebook.csv")}});
-  }
-  for (const Graded& graded : all) {
-    const Grade& flawed = graded.grades[kFlawed];
-    page.heading(
-        fmt::format("{} {}: report of the flawed submission", graded.kind->id, graded.kind->title),
-        2, "stories-" + graded.kind->id);
-    grading::add_stories(page, flawed);
-    page.heading(fmt::format("{} {}: scenes, flawed submission beside reference", graded.kind->id,
-                             graded.kind->title),
-                 2, "scenes-" + graded.kind->id);
-    grading::add_media(page, flawed.media, fs::path(graded.kind->id) / flawed.folder / "media");
-  }
+  for (const Graded& graded : all) add_scenes(page, graded);
   page.record(record_of(context));
   page.write(out / "index.html");
 }

@@ -127,7 +127,12 @@ void write_players(const Context& context, const scene::Scene& scene,
       if (!run.run.virtual_times.moves.empty())
         options.panels.push_back(report::virtual_times_panel(run.run.virtual_times));
     }
-  if (!played.empty()) report::write_player(file, scene, played, options);
+  if (played.empty()) return;
+  // one for all scenes, in the report's folder
+  options.three_file = "../three.js";
+  const fs::path three = file.parent_path() / options.three_file;
+  if (!fs::exists(three)) report::write_three(three, options);
+  report::write_player(file, scene, played, options);
 }
 
 /// Timewarp's run of the whole scene where engines were compared over a part of it: for pictures,

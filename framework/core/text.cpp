@@ -9,6 +9,10 @@ std::string lowercase(std::string text) {
   return text;
 }
 
+std::string counted(std::size_t n, const std::string& noun) {
+  return std::to_string(n) + ' ' + noun + (n == 1 ? "" : "s");
+}
+
 std::string without_middle(const std::string& text, std::size_t width) {
   if (text.size() <= width) return text;
   const std::size_t head = (width - 2) / 2;

@@ -26,6 +26,12 @@ class Connection {
   virtual Channel& begin_call(const char* function) = 0;
   /// The worker has answered: it waits for the next call.
   virtual void end_call() {}
+  /// A call before it is sent, a question to a function argument with what it was answered, and the
+  /// call's answer, as they travel. Arguments begin behind the number of the function; functions
+  /// among them are numbers.
+  virtual void note_call(const char*, const Bytes& /*call*/) {}
+  virtual void note_callback(const Bytes& /*question*/, const Bytes& /*answer*/) {}
+  virtual void note_answer(const Bytes& /*answer*/) {}
   /// The call ends without its answer because a callback threw; the worker still waits inside the
   /// call.
   virtual void abandon_call() {}
@@ -83,6 +89,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
   (write(arguments), ...);
 
   Channel& channel = connection.begin_call(name);
+  connection.note_call(name, writer.bytes);
   const auto deadline = connection.deadline();
   const auto transport = [&](auto&& action) {
     try {
@@ -117,6 +124,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
                   answer_sizes<Module>().problem(index, name, result, arguments...);
               !problem.empty())
             connection.wrong_size(name, problem);
+          connection.note_answer(message.payload);
           connection.end_call();
           return result;
         });
@@ -137,6 +145,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
             throw;
           }
         });
+        connection.note_callback(message.payload, answer);
         connection.resume_call();
         transport([&] {
           channel.send(MessageKind::kCallbackReturn, answer, deadline);

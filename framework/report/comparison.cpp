@@ -76,6 +76,13 @@ std::optional<Difference> first_event(const Trajectory& a, const std::string& la
                     event.body_a};
 }
 
+std::optional<EarlyEnd> early_end_of(const Trajectory& a, const Trajectory& b) {
+  if (a.frames.empty() || b.frames.empty()) return std::nullopt;
+  const double end_a = a.frames.back().time, end_b = b.frames.back().time;
+  if (std::abs(end_a - end_b) <= kSameInstant) return std::nullopt;
+  return EarlyEnd{std::min(end_a, end_b), end_a < end_b};
+}
+
 }  // namespace
 
 const char* name_of_event(EventKind kind) {
@@ -127,6 +134,7 @@ Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_
   }
   result.first = first_event(a, label_a, b, label_b);
   if (moved && (!result.first || moved->time_s < result.first->time_s)) result.first = moved;
+  result.early_end = early_end_of(a, b);
   return result;
 }
 

@@ -18,11 +18,19 @@ struct Difference {
   int body = -1;  // -1: not of a particular body
 };
 
+/// One run ended, and the other went on: from there on nothing is compared.
+struct EarlyEnd {
+  double time_s;  // of its last frame
+  bool is_first;  // of the two runs
+};
+
 struct Comparison {
   // by frame of the first run: largest distance of any point of any body from its place in the
   // other run; NaN where the other run has no such frame
   std::vector<double> apart_m;
-  std::optional<Difference> first;  // none: equal to round-off
+  // none: equal to round-off, for as long as both ran
+  std::optional<Difference> first;
+  std::optional<EarlyEnd> early_end;
 };
 
 /// Bodies differ where a point of one is farther than `kApart`, relative to the distance of the

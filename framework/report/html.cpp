@@ -19,11 +19,11 @@ constexpr std::size_t kManyColumns = 7;
 // Colours have a contrast of at least 4.5:1 to their background and differ in lightness, not only
 // in hue.
 constexpr const char* kStyle = R"(
-:root { --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b;
+:root { color-scheme: light dark; --paper: #fff; --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b;
   --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
 * { box-sizing: border-box; }
 body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var(--ink);
-  background: #fff;
+  background: var(--paper);
   font: 16px/1.5 "DejaVu Sans", "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
 header { border-bottom: 3px solid var(--ink); margin-bottom: 1.4rem; }
 h1 { font-size: 1.75rem; margin: 0 0 .2rem; }
@@ -47,11 +47,20 @@ tbody tr:nth-child(even) { background: var(--wash); }
 pre { background: var(--wash); border-left: 4px solid var(--line); padding: .7rem 1rem;
   overflow-x: auto; white-space: pre-wrap; overflow-wrap: anywhere;
   font: .84rem/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; }
+.box { border: 1px solid var(--line); border-top: 4px solid var(--bad); padding: .2rem 1.2rem 1rem;
+  margin: 1.4rem 0; } .box h2 { border: 0; margin: .8rem 0 .2rem; }
+.card { border-top: 1px solid var(--line); margin-top: 1rem; overflow: hidden; }
+.card h3 { font-size: 1.1rem; } .card p { margin: .3rem 0; }
+.card .figures { float: right; width: 19rem; max-width: 100%; margin: .3rem 0 .6rem 1.2rem; }
+@media screen and (max-width: 60rem) { .card .figures { float: none; margin: .6rem 0; } }
 details { margin: .5rem 0; } summary { cursor: pointer; font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: 1rem 0; }
 figure { margin: 0; flex: 1 1 20rem; max-width: 100%; }
-figure img, figure video { width: 100%; height: auto; display: block;
-  border: 1px solid var(--line); }
+figure img, figure video { max-width: 100%; height: auto; display: block;
+  border: 1px solid var(--line); } figure .in-print { display: none; }
+.wide:focus-visible, summary:focus-visible, a:focus-visible { outline: 2px solid var(--link);
+  outline-offset: 2px; } ul { margin: .4rem 0; padding-left: 1.4rem; }
+.thumbs { gap: .7rem; } .thumbs figure { flex: 0 0 12.5rem; } .thumbs figure video { width: 100%; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tiles { display: flex; flex-wrap: wrap; gap: 1rem; }
@@ -63,14 +72,19 @@ figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 svg.plot { width: 100%; height: auto; display: block; }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft);
   font-size: .8rem; overflow-wrap: anywhere; }
+@media screen and (prefers-color-scheme: dark) { :root { --paper: #161d24; --ink: #e4eaf0;
+  --soft: #a3b0bd; --line: #3a4652; --wash: #1f2831; --good: #5ecfae; --warn: #f0bd5a;
+  --bad: #ff8a5c; --link: #7cc0f0; }
+  .plot-figure svg { background: #fff; border-radius: 4px; } }
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
-  th, td { padding: .3rem .5rem; } .plot-figure { overflow-x: auto; }
+  th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
+  .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
   .plot-figure svg { min-width: 35rem; } }
-@media print { .wide { overflow: visible; } table { font-size: 9pt; }
+@media print { figure video { display: none; } figure .in-print { display: block; } .wide { overflow: visible; } table { font-size: 9pt; }
   body { padding: 0; max-width: none; font-size: 11pt; }
   a { color: inherit; text-decoration: none; }
   tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; }
-  details > * { display: block; } }
+  details > * { display: block; } .box { break-inside: auto; } }
 )";
 
 const char* class_of(Look look) {
@@ -103,13 +117,18 @@ std::string figure_html(const Figure& figure) {
   if (!figure.label.empty()) html += "<p class=\"label\">" + html_escape(figure.label) + "</p>";
   const std::string alt = html_escape(figure.caption);
   if (!figure.video.empty()) {
-    html += "<video controls loop muted preload=\"metadata\" src=\"" + link_to(figure.video) + '"';
+    html += "<video controls loop muted preload=\"none\" src=\"" + link_to(figure.video) + '"';
     if (!figure.picture.empty()) html += " poster=\"" + link_to(figure.picture) + '"';
     html += " aria-label=\"" + alt + "\"></video>";
+    // on paper a video is its picture
+    if (!figure.picture.empty())
+      html +=
+          "<img class=\"in-print\" src=\"" + link_to(figure.picture) + "\" alt=\"" + alt + "\">";
   } else if (!figure.picture.empty()) {
     html += "<img src=\"" + link_to(figure.picture) + "\" alt=\"" + alt + "\">";
   }
-  if (!figure.caption.empty()) html += "<figcaption>" + alt + "</figcaption>";
+  if (!figure.caption.empty())
+    html += "<figcaption>" + linked({figure.caption, figure.link}) + "</figcaption>";
   return html + "</figure>\n";
 }
 
@@ -135,8 +154,47 @@ void Page::links(const std::vector<Cell>& links) {
   body_ += "</nav>\n";
 }
 
+void Page::list(const std::vector<Cell>& items) {
+  body_ += "<ul>";
+  for (const Cell& item : items) body_ += "<li>" + linked(item) + "</li>";
+  body_ += "</ul>\n";
+}
+
 void Page::preformatted(std::string_view text) {
   body_ += "<pre>" + html_escape(text) + "</pre>\n";
+}
+
+void Page::preformatted(std::string_view text, const std::vector<Cell>& links) {
+  std::string html;
+  while (!text.empty()) {
+    // the next place that leads somewhere
+    std::size_t at = text.size();
+    const Cell* next = nullptr;
+    for (const Cell& link : links)
+      if (const auto found = text.find(link.text); !link.text.empty() && found < at)
+        at = found, next = &link;
+    html += html_escape(text.substr(0, at));
+    if (next != nullptr) html += linked(*next);
+    text.remove_prefix(next == nullptr ? at : at + next->text.size());
+  }
+  body_ += "<pre>" + html + "</pre>\n";
+}
+
+void Page::begin(Part part, std::string_view summary, std::string_view id) {
+  const std::string name = id.empty() ? "" : " id=\"" + html_escape(id) + '"';
+  switch (part) {
+    case Part::kBox: body_ += "<section class=\"box\"" + name + ">\n"; break;
+    case Part::kCard: body_ += "<article class=\"card\"" + name + ">\n"; break;
+    case Part::kFold:
+      body_ += "<details" + name + "><summary>" + html_escape(summary) + "</summary>\n";
+  }
+  open_.push_back(part == Part::kBox ? "section" : part == Part::kCard ? "article" : "details");
+}
+
+void Page::end() {
+  require(!open_.empty(), "report: a part ends that was not begun");
+  body_ += std::string("</") + open_.back() + ">\n";
+  open_.pop_back();
 }
 
 void Page::fold(std::string_view summary, std::string_view text, bool open) {
@@ -145,8 +203,9 @@ void Page::fold(std::string_view summary, std::string_view text, bool open) {
 }
 
 void Page::table(const Table& table) {
-  body_ += table.columns.size() > kManyColumns ? "<div class=\"wide\"><table class=\"many\">"
-                                               : "<div class=\"wide\"><table>";
+  body_ += table.columns.size() > kManyColumns
+               ? "<div class=\"wide\" tabindex=\"0\"><table class=\"many\">"
+               : "<div class=\"wide\" tabindex=\"0\"><table>";
   if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
   body_ += "<thead><tr>";
   for (const Column& column : table.columns)
@@ -171,6 +230,12 @@ void Page::figures(const std::vector<Figure>& figures) {
   body_ += "</div>\n";
 }
 
+void Page::thumbnails(const std::vector<Figure>& figures) {
+  body_ += "<div class=\"figures thumbs\">\n";
+  for (const Figure& figure : figures) body_ += figure_html(figure);
+  body_ += "</div>\n";
+}
+
 void Page::figure(const std::string& svg, const std::string& caption) {
   body_ += "<figure class=\"plot-figure\">" + svg;
   if (!caption.empty()) body_ += "<figcaption>" + html_escape(caption) + "</figcaption>";
@@ -191,6 +256,7 @@ void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
 void Page::record(std::string_view text) { record_ = html_escape(text); }
 
 std::string Page::html() const {
+  require(open_.empty(), "report: a part of the page has no end");
   const std::string title = html_escape(title_);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   html +=

@@ -49,7 +49,15 @@ struct Figure {
   std::filesystem::path picture;
   std::filesystem::path video;
   std::string caption;
-  std::string label;  // small heading above, e.g. "reference"
+  std::string label;      // small heading above, e.g. "reference"
+  std::string link = {};  // of the caption: result of link_to; empty: none
+};
+
+/// A part of a page that holds other parts.
+enum class Part {
+  kBox,   // with a border: what to read first
+  kCard,  // one of several in a box
+  kFold,  // opens on a click, and is open in print
 };
 
 /// One page, written top to bottom. Every `text` is escaped.
@@ -64,13 +72,23 @@ class Page {
   void paragraph(std::string_view text, Look look = Look::kPlain);
   /// A line of links: {{text, link}, ...}
   void links(const std::vector<Cell>& links);
+  /// A list, one item a line.
+  void list(const std::vector<Cell>& items);
   /// Preformatted text in a fixed-width font: stories, commands, compiler output.
   void preformatted(std::string_view text);
+  /// The same, with links: where the text holds a cell's text, it leads where the cell does.
+  void preformatted(std::string_view text, const std::vector<Cell>& links);
+  /// Begins a part, which holds what follows until its end.
+  /// @param summary  the line of a fold; empty for others
+  void begin(Part part, std::string_view summary = "", std::string_view id = "");
+  void end();
   /// A section that opens on a click and is open in print: one line, then preformatted text.
   void fold(std::string_view summary, std::string_view text, bool open = false);
   void table(const Table& table);
   /// Side by side while the page is wide enough.
   void figures(const std::vector<Figure>& figures);
+  /// Small, as many in a row as fit: a table of contents in pictures.
+  void thumbnails(const std::vector<Figure>& figures);
   /// Draws it in the page, with its caption.
   void plot(const Plot& plot);
   void plot(const StackedBars& bars);
@@ -80,6 +98,7 @@ class Page {
   void record(std::string_view text);
 
   /// The whole page.
+  /// @pre  every part has its end
   std::string html() const;
   /// Writes the file whole or not at all. Creates missing folders.
   /// @throws UserError when the file cannot be written
@@ -89,6 +108,7 @@ class Page {
   void figure(const std::string& svg, const std::string& caption);
 
   std::string title_, subtitle_, body_, record_;
+  std::vector<const char*> open_;  // tags of parts without their end
 };
 
 }  // namespace tumble::report

@@ -49,6 +49,8 @@ std::string library(const fs::path& folder, const char* file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+std::string packed_three(const PlayerOptions& options) { return deflated(three_js(options.three)); }
+
 std::string script_text() {
   std::string text = "'use strict';\n(() => {\n";
   for (const char* name : kScripts) text += std::string(player_file(name)) + "\n";
@@ -133,7 +135,6 @@ std::string player_scene_text(const scene::Scene& scene, const fs::path& root, c
 std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs,
                         const PlayerOptions& options) {
   check(scene, runs);
-  const std::string three = three_js(options.three);
   const std::vector<Shape> shapes = shapes_of(scene, options.root);
 
   Json head = player_scene(scene, shapes, runs.front().run.frames.front());
@@ -145,10 +146,16 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
                                                  {"what", comparison.first->what},
                                                  {"body", comparison.first->body}}
                                           : Json();
+    if (const auto& end = comparison.early_end)
+      head["stopped"] = {{"time", end->time_s},
+                         {"run", end->is_first ? 0 : 1},
+                         {"end", runs[end->is_first ? 1 : 0].run.frames.back().time}};
   }
   const double sight_m = (scene.camera.eye_m - scene.camera.target_m).norm();
   std::vector<PackedRun> packed;
-  std::string data = data_element("three", deflated(three));
+  const bool is_alone = options.three_file.empty();
+  std::string data = is_alone ? data_element("three", packed_three(options))
+                              : "<script src=\"" + link_to(options.three_file) + "\"></script>\n";
   head["runs"] = Json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     packed.push_back(pack_run(scene, runs[r], r == 0 ? comparison.apart_m : std::vector<double>{},
@@ -158,7 +165,8 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
   }
   head["panels"] = panels_json(options.panels);
   return filled(player_file("page.html"),
-                {{"title", html_escape(scene.title.empty() ? scene.name : scene.title)},
+                {{"beside", is_alone ? "" : " 'self' file:"},
+                 {"title", html_escape(scene.title.empty() ? scene.name : scene.title)},
                  {"about", html_escape(scene.about)},
                  {"style", std::string(player_file("player.css"))},
                  {"script", script_text()},
@@ -173,6 +181,10 @@ std::size_t write_player(const fs::path& file, const scene::Scene& scene,
   const std::string page = player_page(scene, runs, options);
   write_whole(file, page);
   return page.size();
+}
+
+void write_three(const fs::path& file, const PlayerOptions& options) {
+  write_whole(file, "window.tumbleThree = '" + base64(packed_three(options)) + "';\n");
 }
 
 }  // namespace tumble::report

@@ -15,6 +15,7 @@ namespace {
 // Units of the drawing. Numbers are at the left of the frame, names below it.
 constexpr double kWidth = 640, kHeight = 360, kLeft = 78, kRight = 622, kTop = 34, kBottom = 306;
 constexpr std::size_t kMostPoints = 2000, kParts = 1000;
+constexpr std::size_t kLeastTicks = 3;  // numbers on an axis: fewer do not tell its scale
 constexpr double kTextHeight = 17;
 constexpr double kLetter = 0.64;  // mean width of a bold letter over its size
 // on a logarithmic axis: smaller values are rounding, drawn at the edge
@@ -236,6 +237,13 @@ std::vector<double> ticks_of(double low, double high, Scale scale) {
               last = static_cast<int>(std::floor(std::log10(high) + 1e-9));
     const int stride = std::max(1, (last - first + 6) / 7);
     for (int power = first; power <= last; power += stride) ticks.push_back(std::pow(10.0, power));
+    if (ticks.size() >= kLeastTicks) return ticks;
+    ticks.clear();  // between the powers, too
+    for (int power = first - 1; power <= last; ++power)
+      for (const double part : {1.0, 2.0, 5.0}) {
+        const double tick = part * std::pow(10.0, power);
+        if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) ticks.push_back(tick);
+      }
     return ticks;
   }
   const double rough = (high - low) / 6, power = std::pow(10.0, std::floor(std::log10(rough)));

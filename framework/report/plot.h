@@ -50,7 +50,7 @@ struct Plot {
 };
 
 /// The ticks of an axis: about 4 to 8 round numbers in [low, high]; powers of ten (or some of them)
-/// on a logarithmic axis.
+/// on a logarithmic axis, and numbers between them where there are fewer than three.
 /// @pre low < high, finite; positive where logarithmic
 std::vector<double> ticks_of(double low, double high, Scale scale);
 

@@ -63,5 +63,23 @@ TEST(Page, ForbidsScriptsAndTheNetwork) {
   EXPECT_EQ(html.find("https:"), std::string::npos);
 }
 
+TEST(Page, APartHoldsWhatFollowsUntilItsEnd) {
+  Page page("T");
+  page.begin(Part::kFold, "two <rows>");
+  page.paragraph("inside");
+  EXPECT_THROW(page.html(), PreconditionError);  // it has no end
+  page.end();
+  EXPECT_NE(page.html().find("<summary>two &lt;rows&gt;</summary>\n<p>inside</p>\n</details>"),
+            std::string::npos);
+  EXPECT_THROW(page.end(), PreconditionError);
+}
+
+TEST(Page, PreformattedTextLeadsWhereItsLinksDo) {
+  Page page("T");
+  page.preformatted("read: a.md#x & a.md", {{"a.md#x", "a.html#x"}});
+  EXPECT_NE(page.html().find("<pre>read: <a href=\"a.html#x\">a.md#x</a> &amp; a.md</pre>"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace tumble::report

@@ -179,6 +179,19 @@ TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
             std::string::npos);
 }
 
+TEST_F(PlayerInBrowser, ARunThatStoppedIsNotCalledTheSame) {
+  Trajectory stopped = thrown_run();
+  stopped.frames.resize(13);
+  std::erase_if(stopped.events, [](const Event& event) { return event.time > 0.2; });
+  const std::string elements = browser.elements(browser.serve(
+      player_page(thrown_ball(), {{stopped, "submission"}, {thrown_run(), "reference"}})));
+  EXPECT_EQ(body_data(elements, "error"), "");
+  EXPECT_NE(
+      elements.find("submission stopped at 0.2 s of 0.8 s; both runs are the same until then."),
+      std::string::npos);
+  EXPECT_EQ(elements.find("class=\"same\""), std::string::npos);
+}
+
 // A runs ahead to 0.4 s; B is found to hit it at 0.2 s: A rolls back alone, then both are
 // committed.
 VirtualTimes one_rollback() {

@@ -150,6 +150,21 @@ TEST(Comparison, NamesAnEventThatOnlyOneRunHas) {
   EXPECT_EQ(first->what, "comes to rest of box and floor only in submission");
 }
 
+// A run that stopped is neither the same nor different: the page must not praise it.
+TEST(Comparison, SaysWhereOneRunStoppedThatWasTheSameUntilThen) {
+  Trajectory stopped = thrown_run();
+  stopped.frames.resize(13);
+  std::erase_if(stopped.events, [](const Event& event) { return event.time > 0.2; });
+  const Comparison found =
+      compare(thrown_ball(), kRadii, stopped, "submission", thrown_run(), "reference");
+  EXPECT_FALSE(found.first.has_value());
+  ASSERT_TRUE(found.early_end.has_value());
+  EXPECT_EQ(found.early_end->time_s, stopped.frames.back().time);
+  EXPECT_TRUE(found.early_end->is_first);
+  EXPECT_FALSE(
+      compare(thrown_ball(), kRadii, thrown_run(), "a", thrown_run(), "b").early_end.has_value());
+}
+
 // The page contains Debian's libjs-three, which packages.txt lists.
 TEST(PlayerPage, IsSelfContained) {
   const std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});

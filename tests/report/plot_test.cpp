@@ -35,6 +35,10 @@ TEST(Ticks, AreRoundNumbersWithinTheAxis) {
       EXPECT_LE(ticks.back(), (low + 1 + 1e-6) * size);
     }
   EXPECT_LE(ticks_of(1e-17, 1e3, Scale::kLog).size(), 8u);
+  // fewer than three numbers do not tell that an axis is logarithmic
+  for (const double low : {0.9, 2.0, 4.7})
+    for (const double times : {20.0, 50.0, 300.0})
+      EXPECT_GE(ticks_of(low, low * times, Scale::kLog).size(), 3u) << low << ", " << times;
 }
 
 TEST(Ticks, OfAnAxisWithoutLengthBreakAPrecondition) {

@@ -24,6 +24,18 @@ bool is_float(const Values& values) {
   return true;
 }
 
+// A tolerance in two digits, with the reason that its size gives it: what is left of 16 digits after
+// the roundings of a formula, or what the test allows a method.
+std::string allowance(double tolerance, double scale) {
+  constexpr double kRoundings = 1e-10;  // of the scale: a thousand times what a long formula loses
+  std::ostringstream text;
+  text.precision(2);
+  text << " (allowed " << tolerance;
+  if (tolerance > 0 && scale > 0 && tolerance <= kRoundings * scale) text << ", for rounding";
+  text << ')';
+  return text.str();
+}
+
 double largest_difference(const Values& a, const Values& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
@@ -91,7 +103,7 @@ void expect_near(double found, double expected, double tolerance, const std::str
   if (difference <= tolerance) return;
   const std::string seen = slip_in_the_digits({&found, 1, 1}, {&expected, 1, 1}, tolerance, story);
   report_failure(tell(with_slip(story, seen), show(expected), show(found), unit,
-                      show(difference) + " (allowed " + show(tolerance) + ")"));
+                      show(difference) + allowance(tolerance, std::abs(expected))));
 }
 
 void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, double tolerance,
@@ -106,7 +118,9 @@ void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, 
       same_size
           ? with_slip(given, slip_in_the_digits(found_numbers, expected_numbers, tolerance, given))
           : given;
-  const std::string off_by = show(difference) + " (allowed " + show(tolerance) + ")";
+  const std::string off_by =
+      show(difference) +
+      allowance(tolerance, expected.size() > 0 ? expected.cwiseAbs().maxCoeff() : 0.0);
   constexpr Eigen::Index kReadable = 16;  // numbers in a line
   if (same_size && expected.size() > kReadable && found.allFinite()) {
     Eigen::Index row = 0, column = 0;

@@ -147,13 +147,14 @@ std::vector<GradeRecord> records_of(const fs::path& out, const std::string& assi
 }
 
 Grade for_student(Grade grade) {
-  std::set<std::string> hidden;
+  std::map<std::string, std::string> hidden;  // name -> the name that the student sees
   std::size_t number = 0;
   for (ScoredTest& test : grade.tests) {
     if (!test.item.hidden) continue;
-    hidden.insert(test.item.test);
-    test.item.title = fmt::format("Hidden test {}", ++number);
-    test.item.test = fmt::format("Hidden.Test{}", number);
+    const std::string shown = fmt::format("Hidden.Test{}", ++number);
+    hidden[test.item.test] = shown;
+    test.item.title = fmt::format("Hidden test {}", number);
+    test.item.test = shown;
     const Verdict verdict = test.result.verdict;
     test.result = {};
     test.result.test = test.item.test;
@@ -161,6 +162,10 @@ Grade for_student(Grade grade) {
   }
   std::erase_if(grade.changes,
                 [&](const TestChange& change) { return hidden.contains(change.test); });
+  // a cause keeps its words, which say nothing of a test
+  for (Cause& cause : grade.causes)
+    for (std::string& test : cause.tests)
+      if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
   grade.remarks.clear();
   return grade;
 }

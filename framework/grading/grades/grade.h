@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/grading/grades/cause.h"
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/grades/media.h"
@@ -76,6 +77,7 @@ struct Grade {
   std::string story;
   std::vector<std::string> notes;
   std::vector<ScoredTest> tests;  // in the rubric's order
+  std::vector<Cause> causes;      // of what is not right, the costliest first
   std::vector<SceneMedia> media;
   CostSection cost;  // only on the page, not in the record
   double score = 0.0, possible = 0.0;
@@ -88,6 +90,7 @@ struct Grade {
   std::string student_id;            // of the submission
   std::string sandbox;               // what protected the grader, in words
   bool is_official = true;           // the policy accepts that protection
+  bool has_handout = false;          // OUT/handout.html, which stories link to
 
   /// Whether no test ended in a fault of the grader or because the machine was too busy.
   bool is_final() const;

@@ -11,6 +11,8 @@
 
 #include "framework/core/files.h"
 #include "framework/core/version.h"
+#include "framework/grading/course/handout_page.h"
+#include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/cost_json.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_pages.h"
@@ -67,7 +69,7 @@ Json media_json(const SceneMedia& media) {
           {"about", media.about},          {"picture", media.picture.string()},
           {"video", media.video.string()}, {"story", media.story},
           {"attempted", media.attempted},  {"checks", checks},
-          {"page", media.page.string()}};
+          {"page", media.page.string()},   {"functions", media.functions}};
 }
 
 // JSON has no infinity, so it is stored as null.
@@ -85,6 +87,7 @@ SceneMedia media_of(const Json& json) {
   media.story = json.at("story");
   media.attempted = json.at("attempted");
   media.page = json.value("page", std::string());
+  media.functions = json.value("functions", std::vector<std::string>());
   for (const Json& c : json.at("checks"))
     media.checks.push_back({c.at("kind"), c.at("subject"), number_or_infinity(c.at("value")),
                             number_or_infinity(c.at("threshold")), c.at("unit"), c.at("passed"),
@@ -118,6 +121,34 @@ ScoredTest test_of(const Json& json) {
   test.result.calls = json.at("calls");
   test.result.not_run = json.at("not_run");
   return test;
+}
+
+constexpr std::array kCauseKinds = {"slip", "crash", "out of time or memory", "not written",
+                                    "unknown"};
+
+Json json_of_causes(const std::vector<Cause>& causes) {
+  Json list = Json::array();
+  for (const Cause& c : causes)
+    list.push_back({{"kind", kCauseKinds.at(static_cast<std::size_t>(c.kind))},
+                    {"says", c.says},
+                    {"or_else", c.or_else},
+                    {"functions", c.functions},
+                    {"places", c.places},
+                    {"tests", c.tests},
+                    {"same_numbers", c.same_numbers}});
+  return list;
+}
+
+std::vector<Cause> causes_in(const Json& json) {
+  std::vector<Cause> causes;
+  for (const Json& c : json) {
+    Cause cause{Cause::Kind::kUnknown, c.at("says"),  c.at("or_else"),     c.at("functions"),
+                c.at("places"),        c.at("tests"), c.at("same_numbers")};
+    for (std::size_t i = 0; i < kCauseKinds.size(); ++i)
+      if (c.at("kind") == kCauseKinds[i]) cause.kind = static_cast<Cause::Kind>(i);
+    causes.push_back(std::move(cause));
+  }
+  return causes;
 }
 
 Json changes_json(const std::vector<TestChange>& changes) {
@@ -156,8 +187,10 @@ GradeRecord record_of(const Json& json) {
   grade.notes = json.at("notes").get<std::vector<std::string>>();
   grade.sandbox = json.at("sandbox");
   grade.is_official = json.at("official");
+  grade.has_handout = json.value("handout", false);
   for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
   for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
+  if (json.contains("causes")) grade.causes = causes_in(json.at("causes"));
   grade.cost = cost_of(json.at("cost"));
   return record;
 }
@@ -287,8 +320,10 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   json["notes"] = grade.notes;
   json["sandbox"] = grade.sandbox;
   json["official"] = grade.is_official;
+  json["handout"] = grade.has_handout;
   json["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) json["tests"].push_back(test_json(test));
+  json["causes"] = json_of_causes(grade.causes);
   json["media"] = Json::array();
   for (const SceneMedia& media : grade.media) json["media"].push_back(media_json(media));
   json["cost"] = cost_json(grade.cost);
@@ -326,7 +361,12 @@ EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignmen
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
                  const fs::path& folder, const std::string& machine_key) {
   write_whole(folder / "results.json", gradescope_json(grade));
-  submission_page(kind, grade, graded_from(grade, key)).write(folder / "index.html");
+  const std::string record = graded_from(grade, key);
+  PageView view;
+  if (grade.has_handout) view = {std::string("../") + kHandoutPage, kind.folder};
+  submission_page(kind, grade, record, view).write(folder / "index.html");
+  view.is_alone = true;
+  submission_page(kind, for_student(grade), record, view).write(folder / "student.html");
   write_whole(folder / kRecord,
               record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
 }

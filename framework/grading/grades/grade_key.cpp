@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/digest.h"
+#include "framework/grading/grades/causes_file.h"
 #include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {
@@ -36,8 +37,10 @@ std::string judging_digest(const Course& course, const std::string& id) {
 }
 
 std::string grader_digest(const Course& course, const std::string& id, double budget_s) {
+  const fs::path causes = causes_file(course, id);
   return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) +
-                digest_of_file("/proc/self/exe"));
+                digest_of_file("/proc/self/exe") +
+                (fs::exists(causes) ? ' ' + digest_of_file(causes) : ""));
 }
 
 std::string rubric_digest(const Rubric& rubric) {

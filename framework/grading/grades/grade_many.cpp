@@ -23,6 +23,7 @@
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/ledger.h"
 #include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/course/handout_page.h"
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/grade_submission.h"
 #include "framework/grading/grades/output_folder.h"
@@ -426,6 +427,7 @@ class Batch {
     const fs::path& out = output_->path();
     write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
     index_page(kind_, grades).write(out / "index.html");
+    write_handout(course_, id_, out / kHandoutPage);
     write_whole(out / "times.json",
                 times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
     if (options_.overview) options_.overview(out, grades);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/core/version.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/grades/scoring.h"
@@ -36,24 +37,8 @@ std::size_t count(const Grade& grade, Verdict verdict) {
                     [&](const ScoredTest& t) { return t.result.verdict == verdict; }));
 }
 
-std::string anchor_of(const std::string& test) {
-  std::string id = "t-";
-  for (const char c : test) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
-  return id;
-}
-
 bool has_story(const ScoredTest& test) {
   return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted;
-}
-
-// Stories are indented for a terminal; a page has its own indentation.
-std::string flush_left(const std::string& story) {
-  std::string text;
-  std::istringstream in(story);
-  for (std::string line; std::getline(in, line);)
-    if (!text.empty() || !line.empty())
-      text += (line.starts_with("  ") ? line.substr(2) : line) + "\n";
-  return text;
 }
 
 void add_tiles(report::Page& page, const Grade& grade) {
@@ -73,30 +58,48 @@ void add_tiles(report::Page& page, const Grade& grade) {
   page.tiles(tiles);
 }
 
-void add_level(report::Page& page, const Grade& grade, const std::string& level) {
+report::Table table_of_tests(const Grade& grade, const std::vector<const ScoredTest*>& tests) {
   report::Table table;
   table.columns = {{"Test"}, {"Verdict"}, {"Points", true}, {"of", true}, {"Visibility"}};
-  double score = 0.0, possible = 0.0;
+  for (const ScoredTest* test : tests) {
+    const Verdict verdict = test->result.verdict;
+    const bool is_judged = grade.state == GradeState::kJudged;
+    const std::string link = has_story(*test) && is_judged && !test->result.story.empty()
+                                 ? "#" + anchor_of_story(test->item.test)
+                                 : "";
+    table.rows.push_back(
+        {{test->item.title, link},
+         {is_judged ? words(verdict) : "not run", "", is_judged ? look_of(verdict) : Look::kMuted},
+         {points_text(test->score)},
+         {points_text(test->item.points), "", Look::kMuted},
+         {test->item.hidden ? "hidden" : "", "", Look::kMuted}});
+  }
+  return table;
+}
+
+// What is right is folded: it needs nobody's eyes.
+void add_level(report::Page& page, const Grade& grade, const std::string& level) {
+  double score = 0.0, possible = 0.0, right_points = 0.0;
+  std::vector<const ScoredTest*> right, other;
   for (const ScoredTest& test : grade.tests) {
     if (test.item.level != level) continue;
     score += test.score;
     possible += test.item.points;
-    const Verdict verdict = test.result.verdict;
-    const std::string link = has_story(test) && grade.state == GradeState::kJudged
-                                 ? "#" + anchor_of(test.item.test)
-                                 : "";
-    table.rows.push_back({{test.item.title, link},
-                          {grade.state == GradeState::kJudged ? words(verdict) : "not run", "",
-                           grade.state == GradeState::kJudged ? look_of(verdict) : Look::kMuted},
-                          {points_text(test.score)},
-                          {points_text(test.item.points), "", Look::kMuted},
-                          {test.item.hidden ? "hidden" : "", "", Look::kMuted}});
+    const bool is_right =
+        grade.state == GradeState::kJudged && test.result.verdict == Verdict::kRight;
+    if (is_right) right_points += test.score;
+    (is_right ? right : other).push_back(&test);
   }
-  if (table.rows.empty()) return;
+  if (right.empty() && other.empty()) return;
   std::string name = level.empty() ? "Without points" : level;
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   page.heading(fmt::format("{}: {} of {}", name, points_text(score), points_text(possible)), 3);
-  page.table(table);
+  if (!other.empty()) page.table(table_of_tests(grade, other));
+  if (right.empty()) return;
+  page.begin(report::Part::kFold, fmt::format("{} right: {} points", counted(right.size(), "test"),
+                                              points_text(right_points)));
+  page.table(table_of_tests(grade, right));
+  page.end();
 }
 
 // The verdict that keeps a grade from being final.
@@ -120,6 +123,35 @@ std::string numbers_of(const engines::CheckResult& c) {
                      c.at_least ? ">=" : "<=", c.threshold, c.unit.empty() ? "" : " ", c.unit);
 }
 
+std::string title_of_check(std::string kind) {
+  std::replace(kind.begin(), kind.end(), '_', ' ');
+  if (!kind.empty()) kind[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(kind[0])));
+  return kind;
+}
+
+// The right ones are folded.
+void add_checks(report::Page& page, const SceneMedia& scene, bool passed) {
+  report::Table table;
+  table.columns = {{"Judged by"},
+                   {"Of"},
+                   {"Verdict"},
+                   {"Reached and allowed", true},
+                   {passed ? "Because" : "Where, and because"}};
+  for (const auto& c : scene.checks)
+    if (c.passed == passed)
+      table.rows.push_back(
+          {{title_of_check(c.kind)},
+           {c.subject},
+           {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad},
+           {numbers_of(c)},
+           {c.passed || c.detail.empty() ? c.why : c.detail + ". " + c.why, "", Look::kMuted}});
+  if (table.rows.empty()) return;
+  if (!passed) return page.table(table);
+  page.begin(report::Part::kFold, counted(table.rows.size(), "number") + " right");
+  page.table(table);
+  page.end();
+}
+
 }  // namespace
 
 std::string summary_of(const Grade& grade) {
@@ -135,32 +167,33 @@ std::string summary_of(const Grade& grade) {
                                  "; run the same command again");
 }
 
-void add_stories(report::Page& page, const Grade& grade) {
+void add_stories(report::Page& page, const Grade& grade, const PageView& view) {
   std::map<std::string, std::string> missing;  // story -> titles of its tests
   for (const ScoredTest& test : grade.tests) {
     if (test.result.verdict == Verdict::kNotAttempted)
       missing[test.result.story] += "\n    " + test.item.title;
-    if (!has_story(test)) continue;
+    if (!has_story(test) || test.result.story.empty()) continue;
     page.heading(fmt::format("{}: {}", words(test.result.verdict), test.item.title), 3,
-                 anchor_of(test.item.test));
+                 anchor_of_story(test.item.test));
     std::string facts = test.item.test + (test.item.hidden ? " (hidden)" : "");
     if (test.result.calls > 0)
-      facts += fmt::format(", {} call{}, the last to {}", test.result.calls,
-                           test.result.calls == 1 ? "" : "s", test.result.last_call);
+      facts += fmt::format(": {}, the last to {}",
+                           counted(static_cast<std::size_t>(test.result.calls), "call"),
+                           test.result.last_call);
     page.paragraph(facts, Look::kMuted);
-    page.preformatted(plain_text(flush_left(test.result.story)));
+    add_story(page, test.result.story, view);
   }
   if (missing.empty()) return;
   page.heading("not attempted", 3);
   std::string text;
   for (const auto& [story, titles] : missing) text += (text.empty() ? "" : "\n") + story + titles;
-  page.preformatted(text);
+  add_story(page, text, view);
 }
 
 void add_media(report::Page& page, const std::vector<SceneMedia>& media,
                const std::filesystem::path& folder) {
   for (const SceneMedia& scene : media) {
-    page.heading(scene.title, 3, "s-" + anchor_of(scene.scene));
+    page.heading(scene.title, 3, "s-" + anchor_of_story(scene.scene));
     const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(),
                                      [](const auto& c) { return !c.passed; });
     if (!scene.story.empty())
@@ -186,16 +219,8 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media,
       page.links(
           {{"Play the run: rotate it, step through it, see its curves and the first difference",
             report::link_to(folder / scene.page)}});
-    if (scene.checks.empty()) continue;
-    report::Table table;
-    table.columns = {{"Judged by"}, {"Of"}, {"Verdict"}, {"Reached and allowed", true}, {"Where"}};
-    for (const auto& c : scene.checks)
-      table.rows.push_back({{c.kind},
-                            {c.subject},
-                            {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad},
-                            {numbers_of(c)},
-                            {c.passed ? "" : c.detail, "", Look::kMuted}});
-    page.table(table);
+    add_checks(page, scene, false);
+    add_checks(page, scene, true);
   }
 }
 
@@ -219,12 +244,16 @@ void add_cost(report::Page& page, const CostSection& cost) {
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
-                             const std::string& record, bool is_alone) {
+                             const std::string& record, const PageView& view) {
   report::Page page(plain_name(grade.name),
                     fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
-  if (!is_alone) page.links({{"All submissions", "../index.html"}});
-  page.links({{"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
-  if (!grade.cost.scene.empty()) page.links({{"What accuracy costs", "#cost"}});
+  std::vector<Cell> links;
+  if (!view.is_alone) links.push_back({"All submissions", "../index.html"});
+  if (!grade.causes.empty()) links.push_back({"Mend first", "#mend-first"});
+  links.insert(links.end(), {{"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
+  if (!grade.cost.scene.empty()) links.push_back({"What accuracy costs", "#cost"});
+  if (!view.handout.empty()) links.push_back({"Handout", view.handout});
+  page.links(links);
   add_tiles(page, grade);
   for (const std::string& note : grade.notes)
     page.paragraph("Note: " + plain_text(note), Look::kWarning);
@@ -233,10 +262,19 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
     page.preformatted(plain_text(grade.story));
   }
   add_changes(page, grade);
+  add_mend_first(page, grade, view);
   page.heading("Tests", 2, "tests");
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
   page.heading("Stories", 2, "stories");
-  if (grade.state == GradeState::kJudged) add_stories(page, grade);
+  if (const auto stories = std::count_if(
+          grade.tests.begin(), grade.tests.end(),
+          [](const ScoredTest& test) { return !test.result.story.empty() && has_story(test); });
+      grade.state == GradeState::kJudged && count(grade, Verdict::kRight) < grade.tests.size()) {
+    page.begin(report::Part::kFold,
+               fmt::format("Of all tests that are not right: {} to read", stories));
+    add_stories(page, grade, view);
+    page.end();
+  }
   if (grade.state != GradeState::kJudged)
     page.paragraph("No test ran.", Look::kMuted);
   else if (count(grade, Verdict::kRight) == grade.tests.size())

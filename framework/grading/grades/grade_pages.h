@@ -5,20 +5,20 @@
 #include <vector>
 
 #include "framework/grading/grades/grade.h"
+#include "framework/grading/grades/mend_first.h"
 #include "framework/report/html.h"
 
 namespace tumble::grading {
 
 /// The page of one submission, for OUT/NAME/index.html. Its media are in media/ beside it.
-/// @param is_alone  there is no page of all submissions to go to
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
-                             const std::string& record, bool is_alone = false);
+                             const std::string& record, const PageView& view = {});
 
 /// The page over all submissions, for OUT/index.html.
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);
 
 /// Parts of a page, for other reports.
-void add_stories(report::Page& page, const Grade& grade);
+void add_stories(report::Page& page, const Grade& grade, const PageView& view = {});
 /// @param folder  of the media, relative to the page
 void add_media(report::Page& page, const std::vector<SceneMedia>& media,
                const std::filesystem::path& folder);

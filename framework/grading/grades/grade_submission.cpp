@@ -7,7 +7,10 @@
 
 #include "framework/core/files.h"
 #include "framework/grading/course/build_submission.h"
+#include "framework/grading/course/handout_page.h"
 #include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/grades/causes.h"
+#include "framework/grading/grades/causes_file.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/grade_pages.h"
@@ -73,9 +76,13 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   grade.name = submission.name;
   grade.folder = folder.filename().string();
   grade.notes = submission.notes;
+  grade.has_handout = has_handout(course, id);
   const ObjectFile object{folder / ("." + id + ".so")};
   judge(course, id, submission, rubric, object, options.budget_s, grade);
   add_up(grade);
+  if (grade.state == GradeState::kJudged)
+    grade.causes = causes_of(grade.tests, audited_slips_of(course, id),
+                             submission.source.filename().string(), text_of(submission.source));
   if (options.media && grade.state == GradeState::kJudged)
     grade.media =
         make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes,

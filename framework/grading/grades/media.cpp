@@ -1,5 +1,7 @@
 #include "framework/grading/grades/media.h"
 
+#include <set>
+
 #include "framework/engines/run.h"
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/course/laws_around.h"
@@ -16,10 +18,29 @@ namespace fs = std::filesystem;
 using modules::AnyModule;
 using modules::ModuleKind;
 
+constexpr const char* kThree = "three.js";
+
 struct Run {
   Trajectory trajectory;
   std::string story;
   bool attempted = true;
+  std::set<std::string> functions;
+};
+
+// Notes the names of functions that are called.
+class CalledFunctions : public modules::CallWatcher {
+ public:
+  const char* begin(const char* function) override {
+    if (function != last_) names.insert(last_ = function);
+    return nullptr;
+  }
+  void end(const char*) override {}
+  void threw(const char*, const std::exception&) override {}
+
+  std::set<std::string> names;
+
+ private:
+  const char* last_ = nullptr;
 };
 
 // Runs to the end, or until the submission fails; the recording up to there is kept.
@@ -53,8 +74,12 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
   worker.callback_budget = 100'000'000;
   call_log() = CallLog{};
   WorkerConnection connection(worker);
-  const Laws laws = laws_around(course, kind, kind.make_proxy(connection), "submission", scene);
-  return run(scene, laws);
+  CalledFunctions called;
+  const Laws laws = laws_around(course, kind, kind.watched(kind.make_proxy(connection), called),
+                                "submission", scene);
+  Run result = run(scene, laws);
+  result.functions = called.names;
+  return result;
 }
 
 void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs,
@@ -79,10 +104,12 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
                 const fs::path& folder, const Course& course, SceneMedia& media) {
   report::PlayerOptions player;
   player.root = course.root;
+  player.three_file = kThree;  // written once for all scenes
   std::vector<report::PlayedRun> played;
   if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty())
     player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
+  if (!fs::exists(folder / kThree)) report::write_three(folder / kThree, player);
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);
 }
@@ -107,6 +134,7 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
     const Run theirs = run_submission(course, kind, submission, scene, options);
     media.story = theirs.story;
     media.attempted = theirs.attempted;
+    media.functions.assign(theirs.functions.begin(), theirs.functions.end());
     if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
     const Run ours =
         reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};

@@ -32,6 +32,7 @@ struct SceneMedia {
   bool attempted = true;
   std::vector<engines::CheckResult> checks;  // the scene's checks on the submission's run
   std::filesystem::path page{};              // plays the run; empty if there is none
+  std::vector<std::string> functions{};      // of the submission that the run called, by name
 };
 
 /// Runs each scene on the submission (in its sandbox) and on the reference (in this process;

@@ -25,11 +25,11 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = ".tumble-grade.json";
 constexpr const char* kLock = ".tumble-lock";
 constexpr const char* kDraft = ".making-";
-constexpr std::array<std::string_view, 8> kOverview = {
-    "index.html",    "gradebook.csv", "ledger.jsonl",  "times.json",
-    "standing.json", "class.html",    "pictures.html", "similar.html"};
-constexpr std::array<std::string_view, 3> kOfASubmission = {"index.html", "results.json",
-                                                            "record.json"};
+constexpr std::array<std::string_view, 9> kOverview = {
+    "index.html", "gradebook.csv", "ledger.jsonl", "times.json",  "standing.json",
+    "class.html", "pictures.html", "similar.html", "handout.html"};
+constexpr std::array<std::string_view, 4> kOfASubmission = {"index.html", "student.html",
+                                                            "results.json", "record.json"};
 const char* const kElsewhere = "Give --out a folder of its own, or one that does not exist yet.";
 
 std::string shown(const fs::path& path) { return plain_name(path.string()); }
@@ -84,7 +84,8 @@ void refuse_foreign_in(const fs::path& folder) {
     for (const auto& media : fs::directory_iterator(entry.path())) {
       const std::string ending = media.path().extension().string();
       const bool is_ours = fs::is_regular_file(media.symlink_status()) &&
-                           (ending == ".png" || ending == ".mp4" || ending == ".html");
+                           (ending == ".png" || ending == ".mp4" || ending == ".html" ||
+                            media.path().filename() == "three.js");
       if (!is_ours) refuse_foreign(media.path());
     }
   }

@@ -22,6 +22,7 @@
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/verdicts/death.h"
 #include "framework/grading/verdicts/own_time.h"
+#include "framework/grading/verdicts/xray.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TUMBLE_SANITIZED \
@@ -67,6 +68,8 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
           std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
     constexpr const char* kFailed = "Failed\n";
     if (message.starts_with(kFailed)) message.erase(0, std::strlen(kFailed));
+    // the first failure is about the last answer, in nearly all tests
+    if (text.empty() && !bare) message += xray_of_last_call();
     if (message.size() > kStory) message.replace(kStory, std::string::npos, "\n[cut here]");
     if (text.size() <= kStory) text += (text.empty() ? "" : "\n") + message;
   }

@@ -15,6 +15,7 @@
 
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/verdicts/death.h"
+#include "framework/grading/verdicts/xray.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_wire.h"
 
@@ -188,6 +189,30 @@ void WorkerConnection::end_call() {
   --log.calls;
 }
 
+// For the story of a wrong answer, or of none. Long ones are not kept: nobody reads a thousand terms.
+// Of calls within calls the outer one is kept.
+void WorkerConnection::note_call(const char* function, const modules::Bytes& call) {
+  constexpr std::size_t kLongest = 1u << 14, kNumber = sizeof(std::uint32_t);
+  if (calls_.size() > 1) return;
+  LastCall& last = last_call();
+  last = {};
+  if (call.size() > kLongest) return;
+  last.function = function;
+  last.arguments.assign(call.begin() + kNumber, call.end());
+}
+
+void WorkerConnection::note_answer(const modules::Bytes& answer) {
+  if (calls_.size() == 1) last_call().answer = answer;
+}
+
+void WorkerConnection::note_callback(const modules::Bytes& question, const modules::Bytes& answer) {
+  constexpr std::size_t kMost = 8, kLongest = 1u << 12;  // the stages of a step
+  auto& asked = last_call().asked;
+  if (calls_.size() == 1 && asked.size() < kMost && question.size() <= kLongest &&
+      answer.size() <= kLongest)
+    asked.emplace_back(question, answer);
+}
+
 void WorkerConnection::count_callback() {
   end_turn();
   if (++callbacks_ > options_.callback_budget) {
@@ -296,7 +321,8 @@ void WorkerConnection::explain_death(const char* function) {
       if (outcome.code == SIGXCPU ||
           (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
         end_at_limit(function, options_.session_own_s);
-      end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(arguments_));
+      end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(arguments_) +
+                                 xray_of_last_call());
     case Ending::kExited: {
       const std::string said =
           outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);

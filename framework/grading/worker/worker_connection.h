@@ -65,6 +65,9 @@ class WorkerConnection : public modules::Connection {
   void end_call() override;
   void abandon_call() override { reset(); }
   void note_arguments(const std::string& words) override { arguments_ = words; }
+  void note_call(const char* function, const modules::Bytes& call) override;
+  void note_answer(const modules::Bytes& answer) override;
+  void note_callback(const modules::Bytes& question, const modules::Bytes& answer) override;
   void count_callback() override;
   void resume_call() override;
   modules::Channel::Clock::time_point deadline() const override { return calls_.back().next_check; }

@@ -1,8 +1,8 @@
 // Reads the channels of framework/report/channels.h.
 
-// The bytes of a data element of the page: base64, then zlib's format.
-async function openedBytes(id) {
-  const text = atob(document.getElementById(id).textContent);
+// The bytes of a data element of the page, or of a text: base64, then zlib's format.
+async function openedBytes(id, given) {
+  const text = atob(given === undefined ? document.getElementById(id).textContent : given);
   const packed = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
   if (typeof DecompressionStream === 'undefined') throw new Error('this browser cannot decompress the page\'s data (it has no DecompressionStream, which browsers have since 2023)');

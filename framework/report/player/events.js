@@ -2,6 +2,7 @@
 // goes to the event.
 
 const kRow = 26;   // px
+const kOften = new Set([1, 5, 6, 7, 8]);   // kinds that may come by the thousand without an impulse: collision, contact begins and ends, sticks, slides
 
 class EventPane {
   constructor(box, player) {
@@ -16,23 +17,32 @@ class EventPane {
     const kinds = new Set(this.all.map(({ r, i }) => player.runs[r].events.kind[i]));
     [...kinds].sort((a, b) => a - b).forEach(k => this.kind.append(html('option', { value: String(k) }, kEventNames[k])));
     this.ofBody = html('input', { type: 'checkbox' });
+    const idle = this.all.filter(entry => this.isIdle(entry)).length;
+    this.isFolded = idle > 0 && idle < this.all.length;
+    this.idle = html('input', { type: 'checkbox', checked: !this.isFolded });
     this.count = html('span', { className: 'count' });
     this.list = html('div', { className: 'events', tabIndex: 0 });
     this.list.style.setProperty('--run', `${Math.min(16, Math.max(...player.runs.map(run => (run.label || '').length)))}ch`);   // so that the fields after it are aligned
     this.sheet = html('div', { className: 'sheet' });
     this.list.append(this.sheet);
-    box.append(html('div', { className: 'filter' }, this.kind, html('label', {}, this.ofBody, ' of the chosen body'), this.count), this.list);
-    for (const control of [this.kind, this.ofBody]) control.addEventListener('change', () => this.filter());
+    box.append(html('div', { className: 'filter' }, this.kind, html('label', {}, this.ofBody, ' of the chosen body'),
+      ...(this.isFolded ? [html('label', {}, this.idle, ` ${idle} without impulse`)] : []), this.count), this.list);
+    for (const control of [this.kind, this.ofBody, this.idle]) control.addEventListener('change', () => this.filter());
     this.list.addEventListener('scroll', () => this.draw());
     new ResizeObserver(() => this.draw()).observe(this.list);
     this.filter();
+  }
+
+  isIdle({ r, i }) {
+    const e = this.player.runs[r].events;
+    return kOften.has(e.kind[i]) && !(e.impulse[i] > 0);
   }
 
   filter() {
     const kind = Number(this.kind.value), body = this.ofBody.checked ? this.player.chosen : -1;
     this.rows = this.all.filter(({ r, i }) => {
       const e = this.player.runs[r].events;
-      return (kind === 0 || e.kind[i] === kind) && (body < 0 || e.a[i] === body || e.b[i] === body);
+      return (this.idle.checked || !this.isIdle({ r, i })) && (kind === 0 || e.kind[i] === kind) && (body < 0 || e.a[i] === body || e.b[i] === body);
     });
     this.count.textContent = `${this.rows.length} of ${this.all.length}`;
     this.sheet.style.height = `${this.rows.length * kRow}px`;

@@ -10,7 +10,8 @@ window.addEventListener('error', event => complain(`This page's script failed: $
 window.addEventListener('unhandledrejection', event => complain(`This page's script failed: ${event.reason && event.reason.message || event.reason}. Plots and events are below.`));
 
 async function loadThree() {
-  const bytes = await openedBytes('three');
+  if (!byId('three') && !window.tumbleThree) throw new Error('three.js, which lies beside this page, is missing');
+  const bytes = await openedBytes('three', byId('three') ? undefined : window.tumbleThree);
   document.head.append(html('script', { textContent: new TextDecoder().decode(bytes) }));
   if (typeof THREE === 'undefined' || !THREE.OrbitControls) throw new Error('three.js did not load');
 }
@@ -36,7 +37,7 @@ class Picture {
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.setScissorTest(true);
     if (isSoftware) player.shown.shadows = false;
-    this.ratio = Math.min(2, window.devicePixelRatio || 1);
+    this.ratio = this.fullRatio = this.playRatio = Math.min(2, window.devicePixelRatio || 1);
     this.stages = player.runs.map(run => new Stage(player.about, run));
     const first = this.stages[0];
     this.camera = new THREE.PerspectiveCamera(player.about.camera.fov, 1, 0.01 * first.sight, 40 * first.sight + 2 * first.extent.getSize(new THREE.Vector3()).length());
@@ -68,9 +69,10 @@ class Picture {
     this.player.changed();
   }
 
-  // The views of the runs: side by side or one below the other, whichever gives the larger 4:3
-  // picture. Fractions of the canvas, y down.
+  // The views of the runs: one, with the second run as a ghost; or, on request, side by side or one
+  // below the other, whichever gives the larger 4:3 picture. Fractions of the canvas, y down.
   views() {
+    if (!this.player.shown.beside) return this.stages.map(() => ({ x: 0, y: 0, w: 1, h: 1 }));
     const count = this.stages.length, size = (w, h) => Math.min(h, 0.75 * w);
     const beside = size(this.width / count, this.height) >= size(this.width, this.height / count);
     return this.stages.map((_, r) => (beside ? { x: r / count, y: 0, w: 1 / count, h: 1 } : { x: 0, y: r / count, w: 1, h: 1 / count }));
@@ -111,8 +113,11 @@ class Picture {
     camera.updateProjectionMatrix();
     const pixels = 0.5 * views[0].h * this.height * this.ratio / (Math.tan(camera.fov * Math.PI / 360) * camera.position.distanceTo(this.orbit.target));
     stages.forEach((stage, r) => {
+      const isGhost = r > 0 && !player.shown.beside;
+      stage.haunt(isGhost);
+      renderer.autoClear = !isGhost;
       if (stage.chosen !== player.chosen) stage.choose(player.chosen);
-      stage.key.castShadow = player.shown.shadows;
+      stage.key.castShadow = player.shown.shadows && !isGhost;
       stage.refine(pixels);
       stage.show(Math.min(player.time, stage.run.end), player.speed, player.shown);
       const view = views[r], width = view.w * this.width, height = view.h * this.height, left = view.x * this.width, below = this.height - view.y * this.height - height;
@@ -149,9 +154,17 @@ class Picture {
       const box = [...document.querySelectorAll('#options label')].find(label => label.textContent.includes('shadows'));
       if (box) box.querySelector('input').checked = false;
     } else if (this.ratio > 0.6) {
-      this.ratio = Math.max(0.5, 0.7 * this.ratio);
+      this.ratio = this.playRatio = Math.max(0.5, 0.7 * this.ratio);
       this.resize();
     }
+  }
+
+  // A picture that stands still is drawn with all pixels.
+  sharpen(isPlaying) {
+    const ratio = isPlaying ? this.playRatio : this.fullRatio;
+    if (ratio === this.ratio) return;
+    this.ratio = ratio;
+    this.resize();
   }
 }
 
@@ -161,7 +174,7 @@ function addTabs(player) {
   for (const panel of player.about.panels)
     if (panelKinds[panel.kind]) panes.push([panel.title, box => { const made = panelKinds[panel.kind](box, panel.data, player); return { follow: (t, isFull) => isFull && made.at(t) }; }]);
   const tabs = panes.map(([title, make], i) => {
-    const tab = html('button', { role: 'tab', id: `tab${i}` }, title), box = html('div', { role: 'tabpanel', className: 'pane' });
+    const tab = html('button', { role: 'tab', id: `tab${i}` }, title), box = html('div', { role: 'tabpanel', className: 'pane', tabIndex: 0 });
     tab.setAttribute('role', 'tab');
     byId('tabs').append(tab);
     byId('panes').append(box);
@@ -204,7 +217,7 @@ function addWords(player, picture) {
   player.runs.forEach((run, r) => {
     const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
     const now = html('p', { className: 'now' });
-    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''),
+    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('i', {}, ' (ghost)'), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''),
       html('span', {}, run.head.faults ? ` cannot be trusted: ${run.head.faults}` : ''), now);
     player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
     labels.push(box);
@@ -212,10 +225,13 @@ function addWords(player, picture) {
     byId('words').append(box);
   });
   const place = () => (picture ? picture.views() : player.runs.map((_, r) => ({ x: r / player.runs.length, y: 0 }))).forEach((view, r) => {
+    const isGhost = picture && r > 0 && !player.shown.beside;
     labels[r].style.left = `${100 * view.x}%`;
-    labels[r].style.top = `calc(${100 * view.y}% + .4rem)`;
+    labels[r].style.top = isGhost ? `calc(.7rem + ${labels[0].offsetHeight}px)` : `calc(${100 * view.y}% + .4rem)`;
+    labels[r].classList.toggle('ghost', Boolean(isGhost));
   });
   new ResizeObserver(place).observe(byId('scene'));
+  player.listeners.push(() => { if (player.isTimeToTell()) place(); });
   place();
   const notes = [];
   if (picture && picture.stages[0].spacing) notes.push(`grid ${short(picture.stages[0].spacing)} m`);
@@ -238,6 +254,7 @@ function runLoop(player, picture) {
   let frames = 0, since, lastTime;
   const loop = now => {
     player.tick(now);
+    if (picture) picture.sharpen(player.isPlaying);
     if (picture && picture.isDirty) {
       picture.draw();
       if (player.isPlaying && lastTime !== undefined) picture.adapt(now - lastTime);

@@ -16,7 +16,7 @@ class Player {
     this.followed = -1;
     this.listeners = [];   // called with the player whenever something has changed
     this.events = [...new Set(runs.flatMap(run => Array.from(run.events.time)))].sort((a, b) => a - b);
-    this.shown = { impulses: true, contacts: true, forces: true, links: true, path: true, halo: true, ground: true, shadows: true, loop: false };
+    this.shown = { impulses: true, contacts: true, forces: true, links: true, path: true, halo: true, ground: true, shadows: true, loop: false, beside: false };
   }
 
   changed() {
@@ -134,9 +134,9 @@ class Controls {
   addOptions() {
     const hex = color => '#' + color.toString(16).padStart(6, '0');
     const has = { contacts: this.player.runs.some(run => run.head.contacts > 0), forces: this.player.about.forces.length > 0,
-      links: this.player.about.springs.length + this.player.about.rods.length + this.player.about.joints.length > 0 };
+      beside: this.player.runs.length > 1, links: this.player.about.springs.length + this.player.about.rods.length + this.player.about.joints.length > 0 };
     const options = [['impulses', 'impulses', kColors.impulse], ['contacts', 'contact points and their forces', kColors.contact], ['forces', 'point forces', kColors.force],
-      ['links', 'springs, rods, joints', kColors.rod], ['path', 'path of the chosen body', kColors.path], ['halo', 'chosen body highlighted', kChosen], ['ground', 'ground and grid', kLine], ['shadows', 'shadows'], ['loop', 'repeat']];
+      ['links', 'springs, rods, joints', kColors.rod], ['path', 'path of the chosen body', kColors.path], ['halo', 'chosen body outlined', kChosen], ['ground', 'ground and grid', kLine], ['shadows', 'shadows'], ['beside', 'two views instead of a ghost'], ['loop', 'repeat']];
     for (const [name, text, color] of options) {
       if (has[name] === false) continue;
       const box = html('input', { type: 'checkbox', checked: this.player.shown[name] }), swatch = html('i');
@@ -150,12 +150,21 @@ class Controls {
   addDifference() {
     const difference = this.player.about.difference;
     if (difference === undefined) return;
-    const line = byId('difference');
+    const line = byId('difference'), stopped = this.player.about.stopped, at = difference || stopped;
     line.hidden = false;
-    line.querySelector('span').textContent = difference ? `First difference at ${short(difference.time, 6)} s: ${difference.what}.` : 'Both runs are equal to a millionth of the view.';
-    line.classList.toggle('same', !difference);
-    line.querySelector('button').hidden = !difference;
-    line.querySelector('button').addEventListener('click', () => this.player.goTo(difference.time));
+    line.querySelector('span').textContent = this.differenceInWords(difference, stopped);
+    line.classList.toggle('same', !at);
+    line.classList.toggle('stopped', Boolean(stopped && !difference));
+    line.querySelector('button').hidden = !at;
+    line.querySelector('button').addEventListener('click', () => this.player.goTo(at.time));
+  }
+
+  // Three states: they differ, one stopped and they were the same until then, or they are the same.
+  differenceInWords(difference, stopped) {
+    const ended = stopped && `${this.player.runs[stopped.run].label} stopped at ${short(stopped.time, 6)} s of ${short(stopped.end, 6)} s`;
+    if (difference) return `First difference at ${short(difference.time, 6)} s: ${difference.what}.${ended ? ` Later ${ended}.` : ''}`;
+    if (!stopped) return 'Both runs are equal to a millionth of the view.';
+    return stopped.time > 0 ? `${ended}; both runs are the same until then.` : `${ended}, before anything could differ.`;
   }
 
   key(event) {
@@ -186,7 +195,7 @@ class Controls {
   }
 
   // Marks along the slider: a line for an event, a long one for a collision, a wedge for the first
-  // difference.
+  // difference and for an early end.
   drawMarks() {
     const canvas = byId('marks'), width = canvas.clientWidth, height = canvas.clientHeight, ratio = window.devicePixelRatio || 1;
     canvas.width = width * ratio;
@@ -203,14 +212,15 @@ class Controls {
         g.fillRect(x(run.events.time[i]) - 0.5, top + (1 - part) * size, 1, part * size);
       }
     });
-    const difference = this.player.about.difference;
-    if (!difference) return;
     g.globalAlpha = 1;
-    g.fillStyle = '#a82c00';
-    g.beginPath();
-    g.moveTo(x(difference.time), height);
-    g.lineTo(x(difference.time) - 5, 0);
-    g.lineTo(x(difference.time) + 5, 0);
-    g.fill();
+    for (const [at, color] of [[this.player.about.stopped, '#8a5a00'], [this.player.about.difference, '#a82c00']]) {
+      if (!at) continue;
+      g.fillStyle = color;
+      g.beginPath();
+      g.moveTo(x(at.time), height);
+      g.lineTo(x(at.time) - 5, 0);
+      g.lineTo(x(at.time) + 5, 0);
+      g.fill();
+    }
   }
 }

@@ -5,6 +5,7 @@ const panelKinds = {};
 // Plots over time, in the style of framework/report/plot.h: a frame, round ticks, units on both axes, curves that differ in lightness and dashes.
 
 const kStyles = [['#00446b', ''], ['#c14d00', '7 3'], ['#007a57', '2 2.5'], ['#9a4f86', '9 3 2 3'], ['#3d8fc4', '4 2'], ['#8a6d00', '1.5 4']];
+const kRunDashes = ['', '6 4'];
 const kFrame = { width: 480, height: 190, left: 66, right: 470, top: 10, bottom: 152 };
 
 function element(name, attributes = {}, text) {
@@ -31,7 +32,12 @@ function ticksOf(low, high, most = 6) {
 function decadesOf(low, high) {
   const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9), stride = Math.max(1, Math.floor((last - first + 5) / 5)), ticks = [];
   for (let power = first; power <= last; power += stride) ticks.push(Math.pow(10, power));
-  return ticks;
+  if (ticks.length >= 3) return ticks;
+  // at least three numbers: between powers of ten, or of equal distance
+  const between = [];
+  for (let power = first - 1; power <= last; ++power)
+    for (const part of [1, 2, 5]) if (part * Math.pow(10, power) >= low && part * Math.pow(10, power) <= high) between.push(part * Math.pow(10, power));
+  return between.length >= 3 ? between : ticksOf(low, high, 4);
 }
 
 // A few digits: 0.0123, 12.3, 1.2e-9.
@@ -40,6 +46,12 @@ function short(value, digits = 4) {
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-3 || size >= 1e5)) return Number(value.toPrecision(Math.max(2, digits - 1))).toExponential().replace('e+', 'e');
   return String(Number(value.toPrecision(digits)));
+}
+
+// Of two runs the colour says the quantity and the dashes the run; of one run both say the quantity.
+function stylesOf(curves) {
+  const quantities = [...new Set(curves.map(curve => curve.link))], isOfTwo = curves.some(curve => curve.run > 0);
+  return curves.map((curve, i) => (isOfTwo ? [kStyles[quantities.indexOf(curve.link) % kStyles.length][0], kRunDashes[curve.run]] : kStyles[i % kStyles.length]));
 }
 
 class TimePlot {
@@ -52,12 +64,13 @@ class TimePlot {
     this.find();
     this.svg = element('svg', { viewBox: `0 0 ${kFrame.width} ${kFrame.height}`, class: 'plot', role: 'img', 'aria-label': plot.title });
     this.drawFrame();
-    plot.curves.forEach((curve, i) => this.drawCurve(curve, kStyles[i % kStyles.length]));
+    const styles = stylesOf(plot.curves);
+    plot.curves.forEach((curve, i) => this.drawCurve(curve, styles[i]));
     // The cursor is an element above the drawing: moving it repaints nothing.
     this.cursor = html('div', { className: 'cursor' });
     const holder = html('div', { className: 'holder' }, this.svg, this.cursor);
     const legend = html('figcaption', { className: 'legend' });
-    plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, kStyles[i % kStyles.length])));
+    plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, styles[i])));
     this.box.append(html('h3', {}, plot.title), holder, legend);
     const toTime = event => {
       const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * kFrame.width;

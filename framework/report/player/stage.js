@@ -1,6 +1,6 @@
 // One run in three dimensions, with the camera, light and colours of the program's pictures.
 
-const kChosen = 0xffd24a;
+const kChosen = 0xffb000, kGhostColor = 0x2a4a6a, kGhost = 0.38;
 let kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd;   // a page that follows the dark scheme has others
 
 class Stage {
@@ -23,7 +23,7 @@ class Stage {
     this.marks = new Marks(this.scene, run, about, this.sight);
     this.addLinks();
     this.addSheets();
-    this.addHalo();
+    this.addOutline();
   }
 
   // The first horizontal plane is the ground; it is drawn without an edge.
@@ -226,16 +226,35 @@ class Stage {
     return point.applyQuaternion(this.turn).add(this.place);
   }
 
-  addHalo() {
-    this.halo = new THREE.Mesh(new THREE.SphereBufferGeometry(1, 24, 16), new THREE.MeshBasicMaterial({ color: new THREE.Color(kChosen).convertGammaToLinear(2.2), transparent: true, opacity: 0.3, depthWrite: false }));
-    this.halo.visible = false;
-    this.halo.renderOrder = 2;
-    this.scene.add(this.halo);
+  // The outline of the chosen body: its own shape, a little larger, of which only the far side is
+  // drawn.
+  addOutline() {
+    this.outline = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: new THREE.Color(kChosen).convertGammaToLinear(2.2), side: THREE.BackSide }));
+    this.outline.visible = false;
+    this.outline.frustumCulled = false;
+    this.scene.add(this.outline);
   }
 
   choose(body) {
     this.chosen = body;
     this.marks.tracePath(body);
+    const group = this.groups.find(g => g.members.includes(body));
+    if (group) this.outline.geometry = group.geometry(24);
+  }
+
+  // As a ghost behind another run: bodies that one sees through, without ground and marks.
+  haunt(isGhost) {
+    if (this.isGhost === isGhost) return;
+    this.isGhost = isGhost;
+    this.scene.background = isGhost ? null : new THREE.Color(kSky);
+    for (const group of this.groups) {
+      const material = group.mesh.material;
+      Object.assign(material, { transparent: isGhost || group.glass > 0, opacity: isGhost ? kGhost * (group.glass || 1) : group.glass || 1, depthWrite: !isGhost && !group.glass,
+        polygonOffset: isGhost, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });   // where both are at one place the first run hides the ghost
+      material.color.setRGB(...group.color);
+      if (isGhost) material.color.lerp(new THREE.Color(kGhostColor), 0.6);
+      material.needsUpdate = true;
+    }
   }
 
   // Levels of detail of balls, by their size in the picture. @param pixels  per metre at the
@@ -263,13 +282,10 @@ class Stage {
     for (const pool of this.pools) pool.end();
     this.marks.show(t, at, speed, shown, (body, place, turn) => this.run.pose(body, at, place, turn));
     this.marks.path.visible = shown.path && this.chosen !== undefined && this.run.moving.has(this.chosen);
-    if (this.ground) this.ground.visible = shown.ground;
+    if (this.ground) this.ground.visible = shown.ground && !this.isGhost;
     const chosen = this.about.bodies[this.chosen];
-    this.halo.visible = Boolean(chosen && chosen.radius > 0 && shown.halo);
-    if (this.halo.visible) {
-      this.halo.position.copy(this.lastPlaces[this.chosen]);
-      this.halo.scale.setScalar(1.12 * chosen.radius);
-    }
+    this.outline.visible = Boolean(chosen && chosen.radius > 0 && shown.halo && !this.isGhost) && this.run.pose(this.chosen, at, this.outline.position, this.outline.quaternion);
+    if (this.outline.visible) this.outline.scale.copy(this.scales[this.chosen]).multiplyScalar(1 + Math.min(0.3, Math.max(0.03, 0.006 * this.sight / chosen.radius)));
   }
 
   placeOf(body, t) {
@@ -277,15 +293,15 @@ class Stage {
     return this.place.clone();
   }
 
-  // The first body that a ray hits; -1: none.
+  // The first movable body that a ray hits, through walls; where there is none, the first immovable
+  // one; -1: none.
   pick(origin, direction, t) {
-    const at = this.run.frameAt(t);
-    let best = Infinity, found = -1;
+    const at = this.run.frameAt(t), best = [Infinity, Infinity], found = [-1, -1];
     this.about.bodies.forEach((body, i) => {
       if (!this.run.pose(i, at, this.place, this.turn)) return;
-      const distance = hitBody(body, this.about.meshes, this.place, this.turn, origin, direction);
-      if (distance < best && !(body.immovable && found >= 0)) [best, found] = [distance, i];
+      const distance = hitBody(body, this.about.meshes, this.place, this.turn, origin, direction), kind = body.immovable ? 1 : 0;
+      if (distance < best[kind]) [best[kind], found[kind]] = [distance, i];
     });
-    return found;
+    return found[0] >= 0 ? found[0] : found[1];
   }
 }

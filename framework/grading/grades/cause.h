@@ -1,0 +1,21 @@
+/// What to mend in a submission: a group of failing tests with one likely reason.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tumble::grading {
+
+/// What to mend, and what it costs.
+struct Cause {
+  enum class Kind { kSlip, kCrash, kOutOfResources, kNotWritten, kUnknown };
+  Kind kind = Kind::kUnknown;
+  std::string says;                  // what is wrong, in words for the student
+  std::vector<std::string> or_else;  // other known slips that fit as well
+  std::vector<std::string> functions;
+  std::vector<std::string> places;  // by function: "a1_impulse.cpp:97"; empty where not found
+  std::vector<std::string> tests;   // that it explains, in the rubric's order
+  std::size_t same_numbers = 0;     // of these
+};
+
+}  // namespace tumble::grading

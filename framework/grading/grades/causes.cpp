@@ -1,0 +1,153 @@
+#include "framework/grading/grades/causes.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/grading/course/code_text.h"
+
+namespace tumble::grading {
+namespace {
+
+bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+// The place behind the bracket that closes the one at `open`; npos where none does.
+std::size_t behind_bracket(const std::string& text, std::size_t open) {
+  int depth = 0;
+  for (std::size_t i = open; i < text.size(); ++i) {
+    if (text[i] == '(') ++depth;
+    if (text[i] == ')' && --depth == 0) return i + 1;
+  }
+  return std::string::npos;
+}
+
+bool is_failure(Verdict verdict) {
+  return verdict == Verdict::kWrong || verdict == Verdict::kCrashed ||
+         verdict == Verdict::kOutOfResources;
+}
+
+const ScoredTest* test_called(const std::vector<ScoredTest>& tests, const std::string& name) {
+  const auto it = std::find_if(tests.begin(), tests.end(),
+                               [&](const ScoredTest& test) { return test.item.test == name; });
+  return it == tests.end() ? nullptr : &*it;
+}
+
+const AuditedSlip* slip_called(const std::vector<AuditedSlip>& known, const std::string& name) {
+  const auto it = std::find_if(known.begin(), known.end(),
+                               [&](const AuditedSlip& slip) { return slip.name == name; });
+  return it == known.end() ? nullptr : &*it;
+}
+
+Cause cause_of(const LikelySlip& likely, const std::vector<AuditedSlip>& known) {
+  Cause cause;
+  cause.kind = Cause::Kind::kSlip;
+  const AuditedSlip& slip = *slip_called(known, likely.name);
+  cause.says = slip.says;
+  for (const std::string& other : likely.equals) {
+    const AuditedSlip* equal = slip_called(known, other);
+    if (equal->says != slip.says) cause.or_else.push_back(equal->says);
+  }
+  cause.tests = likely.tests;
+  cause.same_numbers = likely.same_numbers;
+  cause.functions = likely.functions;
+  return cause;
+}
+
+// What a function did in all tests of a group, where no slip explains it.
+Cause cause_without_slip(Verdict verdict, const std::string& function) {
+  Cause cause;
+  const std::string name = function.empty() ? "The submission" : function;
+  if (!function.empty()) cause.functions = {function};
+  switch (verdict) {
+    case Verdict::kCrashed:
+      cause.kind = Cause::Kind::kCrash;
+      cause.says = name + " crashes";
+      break;
+    case Verdict::kOutOfResources:
+      cause.kind = Cause::Kind::kOutOfResources;
+      cause.says = name + " takes too much time or memory";
+      break;
+    case Verdict::kNotAttempted:
+      cause.kind = Cause::Kind::kNotWritten;
+      cause.says = name + " is not written yet";
+      break;
+    default:
+      cause.kind = Cause::Kind::kUnknown;
+      cause.says = name + " gives a wrong answer, by a mistake that is not among the known slips";
+  }
+  return cause;
+}
+
+// The rest: one cause a function and verdict, in the order of the tests.
+void add_rest(const std::vector<ScoredTest>& tests, std::vector<Cause>& causes) {
+  std::set<std::string> explained;
+  for (const Cause& cause : causes) explained.insert(cause.tests.begin(), cause.tests.end());
+  std::map<std::pair<Verdict, std::string>, std::size_t> place;
+  for (const ScoredTest& test : tests) {
+    const Verdict verdict = test.result.verdict;
+    if (explained.contains(test.item.test)) continue;
+    if (!is_failure(verdict) && verdict != Verdict::kNotAttempted) continue;
+    const auto [it, is_new] =
+        place.emplace(std::make_pair(verdict, test.result.last_call), causes.size());
+    if (is_new) causes.push_back(cause_without_slip(verdict, test.result.last_call));
+    causes[it->second].tests.push_back(test.item.test);
+  }
+}
+
+}  // namespace
+
+int line_of_definition(const std::string& source, const std::string& function) {
+  const std::string code = code_of(source);
+  for (std::size_t at = code.find(function); at != std::string::npos && !function.empty();
+       at = code.find(function, at + 1)) {
+    std::size_t next = at + function.size();
+    if ((at > 0 && is_name(code[at - 1])) || (next < code.size() && is_name(code[next]))) continue;
+    next = code.find_first_not_of(" \t\n", next);
+    if (next == std::string::npos || code[next] != '(') continue;
+    next = behind_bracket(code, next);
+    if (next == std::string::npos) continue;
+    next = code.find_first_not_of(" \t\n", next);
+    if (next != std::string::npos && code.compare(next, 8, "noexcept") == 0)
+      next = code.find_first_not_of(" \t\n", next + 8);
+    if (next == std::string::npos || code[next] != '{') continue;  // a call or a declaration
+    return 1 +
+           static_cast<int>(std::count(code.begin(), code.begin() + static_cast<long>(at), '\n'));
+  }
+  return 0;
+}
+
+double points_lost(const Cause& cause, const std::vector<ScoredTest>& tests) {
+  double lost = 0.0;
+  for (const std::string& name : cause.tests)
+    if (const ScoredTest* test = test_called(tests, name)) lost += test->item.points - test->score;
+  return lost;
+}
+
+std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
+                             const std::vector<AuditedSlip>& known, const std::string& file,
+                             const std::string& source) {
+  std::vector<Failure> failures;
+  std::map<std::string, std::string> passed;
+  for (const ScoredTest& test : tests) {
+    if (is_failure(test.result.verdict)) failures.push_back(failure_of(test.result));
+    if (test.result.verdict == Verdict::kRight) passed[test.item.test] = test.result.last_call;
+  }
+  std::vector<Cause> causes;
+  for (const LikelySlip& likely : likely_slips(failures, passed, known))
+    causes.push_back(cause_of(likely, known));
+  add_rest(tests, causes);
+  for (Cause& cause : causes)
+    for (const std::string& function : cause.functions) {
+      const int line = line_of_definition(source, function);
+      cause.places.push_back(line > 0 ? fmt::format("{}:{}", file, line) : "");
+    }
+  std::stable_sort(causes.begin(), causes.end(), [&](const Cause& a, const Cause& b) {
+    return points_lost(a, tests) > points_lost(b, tests);
+  });
+  return causes;
+}
+
+}  // namespace tumble::grading

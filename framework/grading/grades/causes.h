@@ -1,0 +1,25 @@
+/// From the tests of a submission to what its author should mend first. Pure functions of data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/grading/grades/cause.h"
+#include "framework/grading/grades/grade.h"
+#include "framework/grading/grades/likely_slips.h"
+
+namespace tumble::grading {
+
+/// Every test without full points belongs to one cause. The one that costs the most points is first.
+/// @param source  text of the submission, to find the functions in; `file` is its name
+std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
+                             const std::vector<AuditedSlip>& known, const std::string& file,
+                             const std::string& source);
+
+/// The points that a cause costs.
+double points_lost(const Cause& cause, const std::vector<ScoredTest>& tests);
+
+/// The line, from 1, where a function is defined; 0 where it is not found.
+int line_of_definition(const std::string& source, const std::string& function);
+
+}  // namespace tumble::grading

@@ -1,0 +1,190 @@
+#include "framework/grading/grades/mend_first.h"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "framework/core/text.h"
+#include "framework/grading/grades/causes.h"
+#include "framework/grading/verdicts/plain_text.h"
+
+namespace tumble::grading {
+namespace {
+
+using report::Look;
+
+// Tests that ended without the right answer: what the causes explain.
+std::size_t failing(const Grade& grade) {
+  return static_cast<std::size_t>(
+      std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& test) {
+        return test.result.verdict == Verdict::kWrong || test.result.verdict == Verdict::kCrashed ||
+               test.result.verdict == Verdict::kOutOfResources;
+      }));
+}
+
+// How sure it is, in a sentence.
+std::string evidence_of(const Cause& cause, std::size_t failing) {
+  const std::size_t n = cause.tests.size();
+  switch (cause.kind) {
+    case Cause::Kind::kSlip:
+      if (cause.same_numbers == 0)
+        return fmt::format(
+            "Perhaps: it would explain {} of the {} that fail, though with other numbers.", n,
+            counted(failing, "test"));
+      return fmt::format(
+          "{}: it explains {} of the {} that {}; in {} of them this slip gives the same answer.",
+          2 * cause.same_numbers >= n ? "Likely" : "Perhaps", n, counted(failing, "test"),
+          failing == 1 ? "fails" : "fail",
+          cause.same_numbers == n ? "all" : std::to_string(cause.same_numbers));
+    case Cause::Kind::kNotWritten:
+      return fmt::format("{} not attempted for it.",
+                         n == 1 ? "One test is" : counted(n, "test") + " are");
+    case Cause::Kind::kUnknown:
+      return fmt::format("{} of the {} that {} called it last.", n, counted(failing, "test"),
+                         failing == 1 ? "fails" : "fail");
+    default:
+      return fmt::format("{} of the {} that {} {} in this way.", n, counted(failing, "test"),
+                         failing == 1 ? "fails" : "fail", n == 1 ? "ends" : "end");
+  }
+}
+
+std::string places_of(const Cause& cause) {
+  std::string text;
+  for (std::size_t i = 0; i < cause.functions.size(); ++i) {
+    const std::string& place = i < cause.places.size() ? cause.places[i] : "";
+    text += (text.empty() ? "" : "; ") + cause.functions[i] + (place.empty() ? "" : ", " + place);
+  }
+  return text;
+}
+
+// The test to look at first: one that its author can run, as basic as there is.
+const ScoredTest* test_to_show(const Cause& cause, const Grade& grade) {
+  const auto rank = [](const ScoredTest& test) {
+    const std::string& level = test.item.level;
+    const int depth = level == "basic"          ? 0
+                      : level == "intermediate" ? 1
+                      : level == "advanced"     ? 2
+                                                : 3;
+    return (test.item.hidden ? 10 : 0) + depth + (test.result.story.empty() ? 100 : 0);
+  };
+  const ScoredTest* best = nullptr;
+  for (const ScoredTest& test : grade.tests)
+    if (std::find(cause.tests.begin(), cause.tests.end(), test.item.test) != cause.tests.end() &&
+        (best == nullptr || rank(test) < rank(*best)))
+      best = &test;
+  return best;
+}
+
+// The scene to look at: the submission's run goes wrong in it, and calls a function of the cause.
+const SceneMedia* scene_to_show(const Cause& cause, const Grade& grade) {
+  const SceneMedia* best = nullptr;
+  bool is_best_wrong = false;
+  for (const SceneMedia& scene : grade.media) {
+    const bool is_its = std::any_of(
+        cause.functions.begin(), cause.functions.end(), [&](const std::string& function) {
+          return std::find(scene.functions.begin(), scene.functions.end(), function) !=
+                 scene.functions.end();
+        });
+    if (!is_its || scene.picture.empty()) continue;
+    const bool is_wrong =
+        !scene.story.empty() ||
+        std::any_of(scene.checks.begin(), scene.checks.end(),
+                    [](const engines::CheckResult& check) { return !check.passed; });
+    if (best != nullptr && (is_best_wrong || !is_wrong)) continue;
+    best = &scene;
+    is_best_wrong = is_wrong;
+  }
+  return best;
+}
+
+void add_cause(report::Page& page, const Cause& cause, std::size_t number, const Grade& grade,
+               const PageView& view) {
+  page.begin(report::Part::kCard, "", fmt::format("cause-{}", number));
+  page.heading(fmt::format("{}. {} ({})", number, plain_name(cause.says),
+                           points_text(points_lost(cause, grade.tests)) + " points"),
+               3);
+  if (const SceneMedia* scene = scene_to_show(cause, grade))
+    page.figures({{std::filesystem::path("media") / scene->picture,
+                   {},
+                   scene->title + ": submission left, reference right",
+                   ""}});
+  page.paragraph(evidence_of(cause, failing(grade)));
+  if (!cause.or_else.empty())
+    page.paragraph(fmt::format("As well possible: {}.", fmt::join(cause.or_else, "; or ")));
+  if (const std::string places = places_of(cause); !places.empty())
+    page.paragraph("Look at " + plain_name(places) + ".");
+  const ScoredTest* shown = test_to_show(cause, grade);
+  if (shown != nullptr && !shown->result.story.empty() && cause.kind != Cause::Kind::kNotWritten) {
+    page.paragraph("For example, " + shown->item.title + ":", Look::kMuted);
+    add_story(page, shown->result.story, view);
+  }
+  std::vector<report::Cell> others;
+  for (const ScoredTest& test : grade.tests)
+    if (std::find(cause.tests.begin(), cause.tests.end(), test.item.test) != cause.tests.end() &&
+        &test != shown)
+      others.push_back({test.item.title, test.result.story.empty()
+                                             ? "#tests"
+                                             : "#" + anchor_of_story(test.item.test)});
+  if (!others.empty()) {
+    page.begin(report::Part::kFold, counted(others.size(), "other test") + " of this cause");
+    page.list(others);
+    page.end();
+  }
+  page.end();
+}
+
+// Stories are indented for a terminal; a page has its own indentation.
+std::string flush_left(const std::string& story) {
+  std::string text;
+  std::istringstream in(story);
+  for (std::string line; std::getline(in, line);)
+    if (!text.empty() || !line.empty())
+      text += (line.starts_with("  ") ? line.substr(2) : line) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string anchor_of_story(const std::string& test) {
+  std::string id = "t-";
+  for (const char c : test) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return id;
+}
+
+void add_story(report::Page& page, const std::string& story, const PageView& view) {
+  const std::string text = plain_text(flush_left(story));
+  std::vector<report::Cell> links;
+  constexpr std::string_view kFolder = "handouts/";
+  for (std::size_t at = text.find(kFolder); at != text.npos && !view.handout.empty();
+       at = text.find(kFolder, at + 1)) {
+    std::size_t end = at;
+    while (end < text.size() &&
+           (std::isalnum(static_cast<unsigned char>(text[end])) != 0 ||
+            std::string_view("/_-.#").find(text[end]) != std::string_view::npos))
+      ++end;
+    const std::string named = text.substr(at, end - at);
+    const std::size_t hash = named.find('#');
+    const std::string stem = std::filesystem::path(named.substr(0, hash)).stem().string();
+    if (stem == view.handout_name)
+      links.push_back({named, view.handout + (hash == named.npos ? "" : named.substr(hash))});
+  }
+  page.preformatted(text, links);
+}
+
+void add_mend_first(report::Page& page, const Grade& grade, const PageView& view) {
+  if (grade.causes.empty()) return;
+  page.begin(report::Part::kBox, "", "mend-first");
+  page.heading("Mend first");
+  page.paragraph(
+      "What costs the most points stands first. A cause that is called likely was found by "
+      "comparing the tests that fail, and the answers that came, with known slips: read it as a "
+      "hint, not as a verdict.",
+      Look::kMuted);
+  for (std::size_t i = 0; i < grade.causes.size(); ++i)
+    add_cause(page, grade.causes[i], i + 1, grade, view);
+  page.end();
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,102 @@
+/// An equation with the numbers of one call in each of its terms, for the story of a wrong answer.
+///
+///   x-ray:    j = -(1 + e) (n . u) / k   (A1.9)
+///             n . u                      -3 m/s
+///             1 + e                      1.5                 <- what was found comes out with: 1
+///             j                          9 N s expected, 6 N s found
+///
+/// An assignment describes its equations where its hidden tests are (solutions_private): the terms
+/// are computed from the call's arguments, and the answer must be that of the terms. Wrong variants
+/// of a term are tried: the one that gives the answer that came marks its term.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "framework/modules/wire.h"
+
+namespace tumble::grading {
+
+struct XrayTerm {
+  std::string name;  // as in the handout: "n . u"
+  VectorXd value;
+  std::string unit = {};
+  // what the submission has here, where the judge sees it (a part of the answer, a stage); empty:
+  // inside the function, where nobody sees it
+  VectorXd found = {};
+};
+
+/// The answer that comes out where one term is written otherwise.
+struct XrayVariant {
+  std::size_t term;  // by its place
+  std::string says;  // what stands there instead
+  VectorXd answer;
+};
+
+struct Xray {
+  std::string equation;  // with its number in the handout
+  std::vector<XrayTerm> terms;
+  std::string answer, unit;  // name and unit of the answer
+  VectorXd expected, found;
+  std::vector<XrayVariant> variants;
+};
+
+/// Whether a call was answered as its equation says, to round-off: then another call is the wrong
+/// one, and there is nothing to show.
+bool is_answered_rightly(const Xray& xray);
+
+/// Lines of a story. Empty where the call was answered rightly.
+/// @param is_answered  false: `found` is of no call
+std::string xray_in_words(const Xray& xray, bool is_answered = true);
+
+/// A number or vector as a vector.
+VectorXd numbers(double x);
+template <class Derived>
+VectorXd numbers(const Eigen::MatrixBase<Derived>& x) {
+  return x;
+}
+template <class A, class B>
+VectorXd numbers(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  VectorXd both(a.size() + b.size());
+  both << a, b;
+  return both;
+}
+
+using XrayOfCall =
+    std::function<std::optional<Xray>(modules::Reader& arguments, modules::Reader& answer)>;
+
+/// Registers the equation of a module's function.
+/// @return true, so that it can initialise a constant
+bool add_xray(const std::string& function, XrayOfCall xray);
+
+/// The same, for a description that takes answer and arguments by their types.
+template <class R, class... A>
+bool add_xray_of(const std::string& function,
+                 std::optional<Xray> (*describe)(const R& found, const A&... arguments)) {
+  return add_xray(function, [describe](modules::Reader& arguments, modules::Reader& answer) {
+    std::tuple<A...> values;
+    std::apply([&](auto&... a) { (arguments.value(a), ...); }, values);
+    R found{};
+    if (!answer.at_end()) answer.value(found);
+    return std::apply([&](const auto&... a) { return describe(found, a...); }, values);
+  });
+}
+
+/// The last call to the worker, as it travelled.
+struct LastCall {
+  std::string function;              // empty: none, or too long to keep
+  modules::Bytes arguments, answer;  // arguments without the function's number; no answer: empty
+  // what it asked its function arguments: their number, then arguments; and what it was answered
+  std::vector<std::pair<modules::Bytes, modules::Bytes>> asked = {};
+};
+LastCall& last_call();
+
+/// The x-ray of the last call; empty where its function has none, or it was answered rightly. A call
+/// without an answer shows what its terms are.
+std::string xray_of_last_call();
+
+}  // namespace tumble::grading

@@ -1,0 +1,94 @@
+// The head of a graded page: causes with what they cost, for a teaching assistant and for a student.
+#include <gtest/gtest.h>
+
+#include "framework/grading/grades/class_facts.h"
+#include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/grades/scoring.h"
+
+namespace tumble::grading::mend_first_test {
+namespace {
+
+ScoredTest scored(const std::string& name, const std::string& title, double points, Verdict verdict,
+                  bool hidden, const std::string& story = "") {
+  ScoredTest test;
+  test.item = {name, points, "basic", title, hidden};
+  test.result.test = name;
+  test.result.verdict = verdict;
+  test.result.story = story;
+  test.score = verdict == Verdict::kRight ? points : 0.0;
+  return test;
+}
+
+class MendFirst : public ::testing::Test {
+ protected:
+  MendFirst() {
+    kind.id = "a9";
+    kind.folder = "a9_things";
+    kind.title = "Things";
+    grade.name = "ada";
+    grade.state = GradeState::kJudged;
+    grade.tests = {
+        scored("Open.Hit", "a central hit", 4, Verdict::kWrong, false,
+               "\n  scene:    a ball\n  found:    6\n  read:     handouts/a9_things.md#eq-2"),
+        scored("Secret.Seam", "the seam", 5, Verdict::kWrong, true, "the seam leaks"),
+        scored("Open.Miss", "a miss", 3, Verdict::kRight, false)};
+    Cause cause;
+    cause.kind = Cause::Kind::kSlip;
+    cause.says = "the factor is missing";
+    cause.functions = {"hit"};
+    cause.places = {"a9_things.cpp:7"};
+    cause.tests = {"Open.Hit", "Secret.Seam"};
+    cause.same_numbers = 2;
+    grade.causes = {cause};
+    add_up(grade);
+  }
+  std::string page(const Grade& shown, const PageView& view = {}) const {
+    return submission_page(kind, shown, "", view).html();
+  }
+
+  modules::ModuleKind kind;
+  Grade grade;
+};
+
+TEST_F(MendFirst, StandsBeforeTheTestsWithPointsEvidenceAndPlace) {
+  const std::string html = page(grade);
+  const auto box = html.find("Mend first</h2>");
+  ASSERT_NE(box, std::string::npos);
+  EXPECT_LT(box, html.find("id=\"tests\""));
+  EXPECT_NE(html.find("1. the factor is missing (9 points)"), std::string::npos);
+  EXPECT_NE(html.find("Likely: it explains 2 of the 2 tests that fail; in all of them this slip "
+                      "gives the same answer."),
+            std::string::npos);
+  EXPECT_NE(html.find("Look at hit, a9_things.cpp:7."), std::string::npos);
+}
+
+TEST_F(MendFirst, ACauseWithoutANumberThatAgreesIsOnlyPossible) {
+  grade.causes[0].same_numbers = 0;
+  const std::string html = page(grade);
+  EXPECT_EQ(html.find("Likely"), std::string::npos);
+  EXPECT_NE(html.find("Perhaps: it would explain"), std::string::npos);
+}
+
+TEST_F(MendFirst, WhatIsRightIsFolded) {
+  const std::string html = page(grade);
+  const auto fold = html.find("1 test right: 3 points</summary>");
+  ASSERT_NE(fold, std::string::npos);
+  EXPECT_GT(html.find("a miss"), fold);
+}
+
+TEST_F(MendFirst, AStudentSeesTheCauseAndNothingOfAHiddenTest) {
+  const std::string html = page(for_student(grade));
+  for (const char* word : {"Secret", "seam"}) EXPECT_EQ(html.find(word), std::string::npos) << word;
+  EXPECT_NE(html.find("1. the factor is missing (9 points)"), std::string::npos);
+  EXPECT_NE(html.find("Hidden test 1"), std::string::npos);
+}
+
+TEST_F(MendFirst, AStoryLeadsToTheHandoutOfTheReport) {
+  EXPECT_EQ(page(grade).find("<a href=\"../handout.html"), std::string::npos);
+  EXPECT_NE(page(grade, {"../handout.html", "a9_things"})
+                .find("<a href=\"../handout.html#eq-2\">handouts/a9_things.md#eq-2</a>"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumble::grading::mend_first_test
