@@ -16,6 +16,7 @@
 #include "framework/grading/attacks/make_attack.h"
 #include "framework/grading/attacks/watchers.h"
 #include "framework/grading/course/run_program.h"
+#include "framework/grading/grades/ledger.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -211,11 +212,9 @@ class Batch {
 
   // The folder of a submission's results; empty where the ledger names none.
   fs::path results_of(const Attack& attack) const {
-    const Json ledger = Json::parse(text_of(path("out") / "ledger.json"), nullptr, false);
-    if (ledger.is_discarded()) return {};
-    for (const Json& entry : ledger.at("submissions"))
-      if (entry.at("name") == plain_name(attack.folder) || entry.at("folder") == attack.folder)
-        return path("out") / entry.at("folder").get<std::string>();
+    for (const auto& [folder, entry] : latest_entries(read_ledger(path("out") / kLedgerFile)))
+      if (entry.name == plain_name(attack.folder) || folder == attack.folder)
+        return path("out") / folder;
     return {};
   }
 
