@@ -18,6 +18,14 @@ podman=(podman --runtime runc --cgroup-manager cgroupfs --storage-driver vfs --r
 trap '"${podman[@]}" rmi --all --force >/dev/null 2>&1 || true; rm -rf --one-file-system "$folder"' EXIT
 fail() { echo "platforms.sh: $*" >&2; exit 1; }
 
+make_submissions "$root" "$folder/submissions"
+hidden_names "$root" >"$folder/hidden"
+export TUMBLE_ROOT=$root
+for platform in gradescope artemis github-classroom autolab; do
+  "$build/bin/tumble" export $platform a1 "$folder/$platform.zip" --packages "$packages" >/dev/null
+  unpacked "$folder/$platform.zip" "$folder/$platform/source"
+done
+
 bare=${2:-$folder/root}
 [ $# -ge 2 ] || bare_root "$bare"
 tar --one-file-system -C "$bare" -cf "$folder/base.tar" .
@@ -32,14 +40,6 @@ mkdir "$folder/empty"
     dpkg-deb -f "$packages"/tumble-course_*.deb Depends | tr ',' '\n' | sed 's/|.*//; s/(.*//; s/ //g' | xargs)"
 } >"$folder/Containerfile"
 image_of ready "$folder/Containerfile" tumble-base
-
-make_submissions "$root" "$folder/submissions"
-hidden_names "$root" >"$folder/hidden"
-export TUMBLE_ROOT=$root
-for platform in gradescope artemis github-classroom autolab; do
-  "$build/bin/tumble" export $platform a1 "$folder/$platform.zip" --packages "$packages" >/dev/null
-  unpacked "$folder/$platform.zip" "$folder/$platform/source"
-done
 
 # The images, as each platform makes them.
 cat >"$folder/Containerfile" <<'END'
