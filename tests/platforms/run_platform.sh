@@ -58,7 +58,7 @@ words_of_rubric() {
   { grep -oh '"test": *"[^"]*"' "$1"; grep -oh '"title": *"[^ "]* [^ "]* [^"]*"' "$1"; } | sed 's/.*: *"\(.*\)"/\1/' | sort -u
 }
 
-unpacked() { unzip -qo "$1" -d "$2"; }   # with the permissions that are in it
+unpacked() { mkdir -p "$2" && unzip -qo "$1" -d "$2"; }   # with the permissions that are in it
 
 # run_platform PLATFORM SOURCE SUBMISSION PLACE: as the platform does it, below PLACE. What a student reads is in PLACE/student.
 run_platform() {
