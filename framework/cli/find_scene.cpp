@@ -10,6 +10,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
+#include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {

@@ -145,6 +145,7 @@ TEST(LinkRefusals, NamesOfLinksAreTheirOwn) {
 TEST(LinkRefusals, FrictionDragAndStabilisationThatWouldDoNothing) {
   expect_words(R"("stabilisation": { "kind": "none" })",
                {"/stabilisation", "neither rods nor joints"});
+  expect_words(R"("coordinates": "reduced")", {"/coordinates", "neither rods nor joints"});
   expect_words(R"("drag": [{ "body": "wall", "linear_n_s_m": 1 }])", {"/drag/0/body", "immovable"});
   expect_words(R"("drag": [{ "body": "ball" }])", {"/drag/0", "would do nothing"});
   expect_words(
