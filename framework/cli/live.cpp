@@ -42,8 +42,8 @@ std::string scene_of_assignment(const Context& context, std::string& word) {
   return "";
 }
 
-/// The words of this command for a process of the same program. @param id  of the assignment that is
-/// judged; empty: none
+/// The words of this command for a process of the same program.
+/// @param id  of the assignment that is judged; empty: none
 std::vector<std::string> words_of_part(const LiveWords& words, const std::string& part,
                                        const std::string& id) {
   std::vector<std::string> all = {fs::read_symlink("/proc/self/exe").string(), "live", words.scene};

@@ -2,7 +2,7 @@
 /// by lot, to no other origin and under no other name.
 ///
 ///   GET  /TOKEN/            the page; /TOKEN/page.js and so on: its parts
-///   GET  /TOKEN/stream      server-sent events: "say" (JSON), "f" (a frame, float32 in base64), "e"
+///   GET  /TOKEN/stream      server-sent events: "say" (JSON), "f" and "e" (float32 in base64)
 ///   POST /TOKEN/do          a JSON object: what the page wants
 ///
 /// Refused with 403: a Host that is not this address, an Origin (or, with POST, none) that is not

@@ -21,12 +21,13 @@ int main(int argc, char** argv) {
                        R"("remedy": "Correct it."})");
     return 2;
   }
-  live::write_record(1, RecordKind::kHead, R"({"from_s": 0, "scene": {"camera": {"eye": [0, -5, 0],)"
-                                           R"( "target": [0, 0, 0]}, "bodies": [{"name": "box",)"
-                                           R"( "immovable": false, "radius": 1}]}})");
+  live::write_record(1, RecordKind::kHead,
+                     R"({"from_s": 0, "scene": {"camera": {"eye": [0, -5, 0],)"
+                     R"( "target": [0, 0, 0]}, "bodies": [{"name": "box",)"
+                     R"( "immovable": false, "radius": 1}]}})");
   Frame frame{};
-  frame.poses.push_back({Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
-                         Vector3d::Zero()});
+  frame.poses.push_back(
+      {Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()});
   for (int k = 0;; ++k) {
     frame.time = k / 60.0;
     frame.poses[0].com_world.x() = (what == "right" ? 1.0 : 2.0) * frame.time;

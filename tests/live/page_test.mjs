@@ -21,8 +21,11 @@ const near = (a, b, share) => Math.abs(a - b) <= share * Math.abs(b);
 
 // The program with a page; ends with stop().
 class Live {
+  static all = [];
+  static killAll() { for (const live of Live.all) if (live.child.exitCode === null) live.child.kill('SIGKILL'); }
   static async start(...words) {
     const live = new Live();
+    Live.all.push(live);
     live.child = spawn(tumble, ['live', ...words, '--saves', join(folder, 'saves')], { cwd: root, env: { ...process.env, TUMBLE_ROOT: root } });
     live.said = '';
     live.child.stderr.on('data', bytes => { live.said += bytes; });
@@ -171,6 +174,7 @@ try {
     const before = failed;
     failed = 0;
     try { await run(); } catch (error) { failed = 1; console.log(`  WRONG: ${error.message}`); }
+    Live.killAll();   // of a test that has ended early
     console.log(`${failed ? 'wrong' : 'right'}: ${name}`);
     failed = failed || before;
   }

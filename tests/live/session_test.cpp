@@ -35,12 +35,14 @@ class LiveSession : public ::testing::Test {
     sitting_.recipe.document = R"({"title": "A box", "duration_s": 1, "bodies": []})";
     sitting_.simulator = {TUMBLE_FAKE_SIMULATOR, file().string()};
     sitting_.judge = [this](const std::string& id) {
-      return std::vector<std::string>{
-          "/bin/sh", "-c", "echo '{\"id\": \"" + id + "\", \"tests\": [], \"said\": \"judged as " +
-                               text_of(file()) + "\"}'"};
+      return std::vector<std::string>{"/bin/sh", "-c",
+                                      "echo '{\"id\": \"" + id +
+                                          "\", \"tests\": [], \"said\": \"judged as " +
+                                          text_of(file()) + "\"}'"};
     };
-    sitting_.locate = {"/bin/sh", "-c", "grep -q '^frame .*a1_student.so 0x1234' && "
-                                        "echo 'a1_impulse.cpp:26: return 1 / n;'"};
+    sitting_.locate = {"/bin/sh", "-c",
+                       "grep -q '^frame .*a1_student.so 0x1234' && "
+                       "echo 'a1_impulse.cpp:26: return 1 / n;'"};
     sitting_.watched = {{file(), "a1"}};
     sitting_.saves = folder_.path() / "saves";
     std::promise<std::string> address;

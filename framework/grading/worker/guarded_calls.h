@@ -15,8 +15,8 @@ namespace tumble::grading {
 /// Right calls take microseconds; the limit is long, so that a loaded machine ends no right call.
 constexpr double kGuardedCallLimit = 10.0;
 
-/// For a process of which another tells the user: another limit for all its guarded calls [s], and a
-/// line "frame OBJECT 0xOFFSET" for each place in the stack, innermost first, before the message.
+/// For a process of which another tells the user: another limit for all its guarded calls [s], and
+/// a line "frame OBJECT 0xOFFSET" for each place in the stack, innermost first, before the message.
 void guard_for_another(double seconds);
 
 /// The same module with guarded calls. On a signal or an endless loop the process prints a message
