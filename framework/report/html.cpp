@@ -19,7 +19,8 @@ constexpr std::size_t kManyColumns = 7;
 // Colours have a contrast of at least 4.5:1 to their background and differ in lightness, not only
 // in hue.
 constexpr const char* kStyle = R"(
-:root { color-scheme: light dark; --paper: #fff; --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b;
+:root { color-scheme: light dark; --paper: #fff; --ink: #1c2733; --soft: #5b6875;
+  --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b;
   --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
 * { box-sizing: border-box; }
 body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var(--ink);
@@ -80,7 +81,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
   .plot-figure svg { min-width: 35rem; } }
-@media print { figure video { display: none; } figure .in-print { display: block; } .wide { overflow: visible; } table { font-size: 9pt; }
+@media print { figure video { display: none; } figure .in-print { display: block; }
+  .wide { overflow: visible; } table { font-size: 9pt; }
   body { padding: 0; max-width: none; font-size: 11pt; }
   a { color: inherit; text-decoration: none; }
   tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; }

@@ -28,8 +28,8 @@ struct PlayerOptions {
   std::filesystem::path root;
   // folder of three.js in Debian's package
   std::filesystem::path three = "/usr/share/javascript/three";
-  // three.js in a file of its own beside the page (write_three), for reports with many pages; empty:
-  // inside the page
+  // three.js in a file of its own beside the page (write_three), for reports with many pages;
+  // empty: inside the page
   std::filesystem::path three_file;
   std::vector<PlayerPanel> panels;
   // limit per run (moving bodies times frames): above it only every second, third, ... frame is

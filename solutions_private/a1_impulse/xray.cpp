@@ -1,5 +1,6 @@
-// The equations of a1, term by term: for the stories of wrong answers (framework/grading/verdicts/xray.h).
-// Each describes one function: its terms from the arguments, and the answers of frequent mistakes.
+// The equations of a1, term by term: for the stories of wrong answers
+// (framework/grading/verdicts/xray.h). Each describes one function: its terms from the arguments,
+// and the answers of frequent mistakes.
 #include "assignments/a1_impulse/a1_impulse.h"
 #include "framework/grading/verdicts/xray.h"
 

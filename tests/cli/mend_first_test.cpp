@@ -1,4 +1,5 @@
-// The head of a graded page: causes with what they cost, for a teaching assistant and for a student.
+// The head of a graded page: causes with what they cost, for a teaching assistant and for a
+// student.
 #include <gtest/gtest.h>
 
 #include "framework/grading/grades/class_facts.h"

@@ -1,6 +1,6 @@
-// The files that audits wrote for likely causes: each slip of the tree stands in one, each test in a
-// rubric, and the slips can be told apart. Where a test here fails, `tumble audit aN` writes the file
-// anew.
+// The files that audits wrote for likely causes: each slip of the tree stands in one, each test in
+// a rubric, and the slips can be told apart. Where a test here fails, `tumble audit aN` writes the
+// file anew.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -24,8 +24,8 @@ bool is_float(const Values& values) {
   return true;
 }
 
-// A tolerance in two digits, with the reason that its size gives it: what is left of 16 digits after
-// the roundings of a formula, or what the test allows a method.
+// A tolerance in two digits, with the reason that its size gives it: what is left of 16 digits
+// after the roundings of a formula, or what the test allows a method.
 std::string allowance(double tolerance, double scale) {
   constexpr double kRoundings = 1e-10;  // of the scale: a thousand times what a long formula loses
   std::ostringstream text;

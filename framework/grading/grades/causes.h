@@ -10,7 +10,8 @@
 
 namespace tumble::grading {
 
-/// Every test without full points belongs to one cause. The one that costs the most points is first.
+/// Every test without full points belongs to one cause. The one that costs the most points is
+/// first.
 /// @param source  text of the submission, to find the functions in; `file` is its name
 std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
                              const std::vector<AuditedSlip>& known, const std::string& file,

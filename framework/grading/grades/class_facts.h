@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/grading/grades/grade_files.h"
+#include "framework/grading/grades/grade_pages.h"
 
 namespace tumble::grading {
 
@@ -62,9 +63,5 @@ std::vector<std::vector<std::string>> equal_submissions(const std::vector<GradeR
 std::vector<GradeRecord> records_of(const std::filesystem::path& out, const std::string& assignment,
                                     const std::string& machine_key,
                                     const std::function<void(const std::string&)>& notice);
-
-/// The grade as its student may see it before grades are published: a hidden test keeps its points,
-/// and neither its name nor its story.
-Grade for_student(Grade grade);
 
 }  // namespace tumble::grading

@@ -12,7 +12,6 @@
 #include "framework/core/files.h"
 #include "framework/core/version.h"
 #include "framework/grading/course/handout_page.h"
-#include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/cost_json.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_pages.h"

@@ -287,6 +287,30 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   return page;
 }
 
+Grade for_student(Grade grade) {
+  std::map<std::string, std::string> hidden;  // name -> the name that the student sees
+  std::size_t number = 0;
+  for (ScoredTest& test : grade.tests) {
+    if (!test.item.hidden) continue;
+    const std::string shown = fmt::format("Hidden.Test{}", ++number);
+    hidden[test.item.test] = shown;
+    test.item.title = fmt::format("Hidden test {}", number);
+    test.item.test = shown;
+    const Verdict verdict = test.result.verdict;
+    test.result = {};
+    test.result.test = test.item.test;
+    test.result.verdict = verdict;
+  }
+  std::erase_if(grade.changes,
+                [&](const TestChange& change) { return hidden.contains(change.test); });
+  // a cause keeps its words, which say nothing of a test
+  for (Cause& cause : grade.causes)
+    for (std::string& test : cause.tests)
+      if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
+  grade.remarks.clear();
+  return grade;
+}
+
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades) {
   report::Page page(
       kind.title + ": all submissions",

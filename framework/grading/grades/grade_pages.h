@@ -14,6 +14,10 @@ namespace tumble::grading {
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
                              const std::string& record, const PageView& view = {});
 
+/// The grade as its student may see it before grades are published: a hidden test keeps its points,
+/// and neither its name nor its story.
+Grade for_student(Grade grade);
+
 /// The page over all submissions, for OUT/index.html.
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);
 

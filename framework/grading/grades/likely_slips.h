@@ -1,5 +1,5 @@
-/// Failing tests matched to slips that an audit has judged: those which fail the same tests with the
-/// same numbers. Pure functions of data.
+/// Failing tests matched to slips that an audit has judged: those which fail the same tests with
+/// the same numbers. Pure functions of data.
 ///
 /// A slip is evidence, not proof: another mistake may fail the same tests. So a match says which of
 /// the failures it explains, and in how many of them the numbers agree.

@@ -16,8 +16,8 @@ struct PageView {
   bool is_alone = false;  // there is no page of all submissions to go to
 };
 
-/// Adds the box of causes, each with its points, its place, one story and one picture. Nothing where
-/// all is right.
+/// Adds the box of causes, each with its points, its place, one story and one picture. Nothing
+/// where all is right.
 void add_mend_first(report::Page& page, const Grade& grade, const PageView& view);
 
 /// The anchor of a test's story in the page, without the #.

@@ -8,7 +8,8 @@
 namespace tumble::grading {
 namespace {
 
-// Relative: what a few dozen roundings leave, far below what a story calls wrong for another reason.
+// Relative: what a few dozen roundings leave, far below what a story calls wrong for another
+// reason.
 constexpr double kRoundOff = 1e-9;
 constexpr std::size_t kNameWidth = 24;
 

@@ -95,8 +95,8 @@ struct LastCall {
 };
 LastCall& last_call();
 
-/// The x-ray of the last call; empty where its function has none, or it was answered rightly. A call
-/// without an answer shows what its terms are.
+/// The x-ray of the last call; empty where its function has none, or it was answered rightly. A
+/// call without an answer shows what its terms are.
 std::string xray_of_last_call();
 
 }  // namespace tumble::grading

@@ -189,7 +189,8 @@ void WorkerConnection::end_call() {
   --log.calls;
 }
 
-// For the story of a wrong answer, or of none. Long ones are not kept: nobody reads a thousand terms.
+// For the story of a wrong answer, or of none. Long ones are not kept: nobody reads a thousand
+// terms.
 // Of calls within calls the outer one is kept.
 void WorkerConnection::note_call(const char* function, const modules::Bytes& call) {
   constexpr std::size_t kLongest = 1u << 14, kNumber = sizeof(std::uint32_t);
