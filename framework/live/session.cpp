@@ -47,7 +47,8 @@ std::string for_people(const std::string& talk) {
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("tumble: ")) line.erase(0, 8);
-    if (!line.starts_with("frame ") && !(text.empty() && line.empty())) text += line + "\n";
+    const bool is_ours = line.starts_with("frame ") || line.starts_with("compiling ");
+    if (!is_ours && !(text.empty() && line.empty())) text += line + "\n";
   }
   return text;
 }
