@@ -1,5 +1,6 @@
 // Joint coordinates and the articulated-body algorithm, against a second implementation: the same
-// bodies in six coordinates each, their links as equations with Lagrange multipliers, solved densely.
+// bodies in six coordinates each, their links as equations with Lagrange multipliers, solved
+// densely.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -71,7 +71,8 @@ double distance(const Trajectory& a, const Trajectory& b) {
 std::uint64_t solves(const Trajectory& run) { return run.counters.counts.at("constraint_solves"); }
 
 TEST(JointCoordinates, MoveScenesOfTheCourseAsSixCoordinatesABodyDo) {
-  // Both are of order 4 with errors of their own: half the step brings them 16 times nearer. Half of
+  // Both are of order 4 with errors of their own: half the step brings them 16 times nearer. Half
+  // of
   // that is asked for, and to be near enough that another motion shows: a wrong bias term or torque
   // is off by centimetres in a second.
   for (const auto& [name, step] : {std::pair{"double_pendulum", 1.0 / 120},
@@ -119,7 +120,8 @@ TEST(JointCoordinates, AreTheSameInProcesses) {
 }
 
 TEST(JointCoordinates, GiveWayToSixCoordinatesInContact) {
-  // A ball drops on a block that hangs on rods, bounces and stays: the block leaves joint coordinates
+  // A ball drops on a block that hangs on rods, bounces and stays: the block leaves joint
+  // coordinates
   // and goes on from the same state. Both are at their step's truncation, which is the same where
   // nothing turns; rounding, through some fifteen impacts, is 1e-12.
   const scene::Scene scene = of_course("dropped_on_a_block_on_rods", 0.8);

@@ -78,7 +78,8 @@ class LinkedBodies final : effects::GroupPlaces {
   /// In words: numbers of joint coordinates and of rows that close loops. @pre kept_maximal_by() is
   /// empty, and the world asks for joint coordinates
   std::string reduced_in_words() const;
-  /// From here on bodies of the group are in persistent contact, or are not: contacts push bodies of
+  /// From here on bodies of the group are in persistent contact, or are not: contacts push bodies
+  /// of
   /// six coordinates, so the group goes on in these from the same state, and back.
   void set_touched(bool touched) { touched_ = touched; }
 
