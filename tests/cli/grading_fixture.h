@@ -98,6 +98,9 @@ class OtherRubric : public Grading {
     fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "assignments", course / "assignments",
              fs::copy_options::recursive);
     fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "framework", course / "framework");
+    fs::create_directories(course / "tests");
+    fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "tests/truths",
+                                 course / "tests/truths");
     const fs::path hidden = "solutions_private/a1_impulse/rubric_hidden.json";
     fs::create_directories((course / hidden).parent_path());
     fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / hidden, course / hidden);

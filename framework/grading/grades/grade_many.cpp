@@ -426,7 +426,7 @@ class Batch {
                       left_out));
     const fs::path& out = output_->path();
     write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
-    index_page(kind_, grades).write(out / "index.html");
+    index_page(kind_, grades, static_cast<bool>(options_.overview)).write(out / "index.html");
     write_handout(course_, id_, out / kHandoutPage);
     write_whole(out / "times.json",
                 times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');

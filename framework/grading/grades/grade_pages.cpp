@@ -311,15 +311,18 @@ Grade for_student(Grade grade) {
   return grade;
 }
 
-report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades) {
+report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades,
+                        bool has_class_pages) {
   report::Page page(
       kind.title + ": all submissions",
       fmt::format("{}, {} submission{}", kind.id, grades.size(), grades.size() == 1 ? "" : "s"));
-  page.links({{"The class", "class.html"},
-              {"Pictures", "pictures.html"},
-              {"Similar submissions", "similar.html"},
-              {"gradebook.csv", "gradebook.csv"},
-              {"ledger.jsonl", "ledger.jsonl"}});
+  std::vector<Cell> links;
+  if (has_class_pages)
+    links = {{"The class", "class.html"},
+             {"Pictures", "pictures.html"},
+             {"Similar submissions", "similar.html"}};
+  links.insert(links.end(), {{"gradebook.csv", "gradebook.csv"}, {"ledger.jsonl", "ledger.jsonl"}});
+  page.links(links);
   std::vector<double> scores;
   std::size_t faults = 0, not_found = 0;
   for (const Grade& grade : grades) {

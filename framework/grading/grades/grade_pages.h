@@ -19,7 +19,9 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
 Grade for_student(Grade grade);
 
 /// The page over all submissions, for OUT/index.html.
-report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);
+/// @param has_class_pages  class_files.h writes its pages beside it
+report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades,
+                        bool has_class_pages = true);
 
 /// Parts of a page, for other reports.
 void add_stories(report::Page& page, const Grade& grade, const PageView& view = {});
