@@ -10,6 +10,7 @@ import { Browser } from './browser.mjs';
 
 const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
 function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
+if (!process.env.TUMBLE_TEST_BROWSER) skip('takes minutes in a browser: TUMBLE_TEST_BROWSER=1 ctest -R live_page');
 try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
 if (!existsSync(tumble)) skip(`${tumble} is not built`);
 const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
