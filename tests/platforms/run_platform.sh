@@ -110,6 +110,13 @@ expect_result() {
     wrong) awk -v s="$score" -v f="$full" 'BEGIN { exit !(s > 0 && s < f) }' ;;
     *) [ "$score" = 0 ] ;;
   esac || { echo "$platform, $kind: $score of $full points" >&2; return 1; }
+  local told
+  case $kind in
+    wrong) told='scene:' ;;   # in the story of a test
+    broken) told='error:' ;;  # the compiler's
+    *) told='' ;;
+  esac
+  grep -rqF "$told" "$place/student" || { echo "$platform, $kind: a student does not read why" >&2; return 1; }
   if grep -rqFf "$hidden" "$place/student"; then
     echo "$platform, $kind: a student reads of a hidden test: $(grep -rhoFf "$hidden" "$place/student" | head -n 1)" >&2
     return 1
