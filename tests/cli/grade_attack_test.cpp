@@ -164,6 +164,21 @@ TEST_F(OtherRubric, AnEntryWithoutATestAndATestWithoutAnEntryAreNamedBeforeAnyth
   EXPECT_FALSE(fs::exists(root / "out"));
 }
 
+TEST_F(OtherRubric, AJudgeThatCannotReadItsTruthsCostsNobodyPoints) {
+  put("alice/a1_impulse.cpp", text_of(kReference));
+  fs::remove(course / "tests/truths");
+  const ProgramOutcome outcome = grade("out");
+  EXPECT_EQ(outcome.code, 3) << outcome.printed;
+  const auto alices = results("alice");
+  EXPECT_FALSE(alices.contains("score"));
+  std::map<std::string, int> verdicts;
+  for (const auto& test : alices.at("tests"))
+    ++verdicts[test["extra_data"]["verdict"].get<std::string>()];
+  EXPECT_GT(verdicts["fault of the grader"], 0);
+  EXPECT_EQ(verdicts["wrong"], 0);
+  EXPECT_GT(verdicts["right"], 10) << "tests that read no file are judged";
+}
+
 TEST_F(OtherRubric, PointsAloneAreAddedUpAgainAndEveryChangedTestIsNamed) {
   // A stub except for one test: a test between which points can be moved.
   put("alice/a1_impulse.cpp", text_of(kReference));

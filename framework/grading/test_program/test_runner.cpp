@@ -358,6 +358,11 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
       result.verdict = Verdict::kGraderFault;
       result.story = "the judge's own test process ended without a verdict: " + result.story;
     }
+    // The judge cannot read its reference values, say.
+    if (owner == Process::kGraders && result.verdict == Verdict::kWrong && log.calls == 0) {
+      result.verdict = Verdict::kGraderFault;
+      result.story = "the judge's test failed before it called the submission: " + result.story;
+    }
     if (owner == Process::kStudents) result.printed = read_printed(printed);
   }
   result.last_call = log.last_call;
