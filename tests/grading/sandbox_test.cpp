@@ -1,6 +1,8 @@
 // The sandbox itself: limits, endings, and clean-up.
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -169,6 +171,27 @@ TEST_F(SandboxEnds, UsersAreNeitherTheGradersNorSharedByRuns) {
   Sandbox first = Sandbox::start(shell("id -u; sleep 1")),
           second = Sandbox::start(shell("id -u; sleep 1"));
   EXPECT_NE(first.wait().printed, second.wait().printed);
+}
+
+TEST_F(SandboxEnds, AUserWithAProcessIsNotLeased) {
+  // as of a grader in a container with its own /run, whose locks are not seen here
+  if (!can_change_user()) GTEST_SKIP() << "this user cannot take another";
+  const uid_t free = *SandboxUser::lease().uid();
+  const pid_t other = ::fork();
+  if (other == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::_exit(::setresuid(free, free, free) == 0 ? (::pause(), 0) : 1);
+  }
+  struct stat about {};
+  const std::string place = "/proc/" + std::to_string(other);
+  for (int i = 0; i < 1000 && about.st_uid != free; ++i) {
+    ::usleep(1000);
+    ASSERT_EQ(::stat(place.c_str(), &about), 0);
+  }
+  EXPECT_NE(*SandboxUser::lease().uid(), free);
+  ::kill(other, SIGKILL);
+  ::waitpid(other, nullptr, 0);
+  EXPECT_EQ(*SandboxUser::lease().uid(), free);
 }
 
 TEST_F(SandboxEnds, NewNamespacesCannotBeCreated) { EXPECT_NE(run("unshare -U true").code, 0); }
