@@ -66,12 +66,6 @@ std::string surprise(int which, const Grade& grade) {
                              : "expected some of the points";
 }
 
-std::size_t count_of(const Grade& grade, grading::Verdict verdict) {
-  return static_cast<std::size_t>(
-      std::count_if(grade.tests.begin(), grade.tests.end(),
-                    [&](const auto& test) { return test.result.verdict == verdict; }));
-}
-
 void add_scores(report::Page& page, const std::vector<Graded>& all) {
   report::Table table;
   table.columns = {{"Assignment"},
@@ -90,11 +84,11 @@ void add_scores(report::Page& page, const std::vector<Graded>& all) {
            {grade.name, report::link_to(fs::path(graded.kind->id) / grade.folder / "index.html")},
            {fmt::format("{:g}", grade.score)},
            {fmt::format("{:g}", grade.possible)},
-           {std::to_string(count_of(grade, grading::Verdict::kRight))},
-           {std::to_string(count_of(grade, grading::Verdict::kWrong))},
-           {std::to_string(count_of(grade, grading::Verdict::kNotAttempted))},
-           {std::to_string(count_of(grade, grading::Verdict::kCrashed))},
-           {std::to_string(count_of(grade, grading::Verdict::kOutOfResources))}});
+           {std::to_string(grade.count(grading::Verdict::kRight))},
+           {std::to_string(grade.count(grading::Verdict::kWrong))},
+           {std::to_string(grade.count(grading::Verdict::kNotAttempted))},
+           {std::to_string(grade.count(grading::Verdict::kCrashed))},
+           {std::to_string(grade.count(grading::Verdict::kOutOfResources))}});
   page.table(table);
 }
 
@@ -158,9 +152,9 @@ int print_table(const std::vector<Graded>& all) {
       surprises += wrong.empty() ? 0 : 1;
       fmt::print("{:<22} {:<12} {:>6g} {:>5g} {:>7} {:>7} {:>15} {:>7}{}\n",
                  graded.kind->id + " " + graded.kind->title, grade.name, grade.score,
-                 grade.possible, count_of(grade, grading::Verdict::kRight),
-                 count_of(grade, grading::Verdict::kWrong),
-                 count_of(grade, grading::Verdict::kNotAttempted), grade.media.size(),
+                 grade.possible, grade.count(grading::Verdict::kRight),
+                 grade.count(grading::Verdict::kWrong),
+                 grade.count(grading::Verdict::kNotAttempted), grade.media.size(),
                  wrong.empty() ? "" : "   <- " + wrong);
     }
   }

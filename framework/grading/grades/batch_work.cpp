@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -30,18 +31,29 @@ std::vector<std::string> folders_for(const std::vector<Submission>& submissions)
   return folders;
 }
 
-void let_go_of_details(GradeRecord& record) {
-  const auto empty = [](std::string& text) { std::string().swap(text); };
-  record.files.clear();
-  record.grade.cost = CostSection();
-  for (SceneMedia& media : record.grade.media) {
-    for (std::string* text : {&media.about, &media.story}) empty(*text);
-    std::vector<engines::CheckResult>().swap(media.checks);
+void MarksOfClass::let_go_of_details(GradeRecord& record) {
+  const auto empty = [](auto& field) { std::remove_reference_t<decltype(field)>().swap(field); };
+  empty(record.files);
+  Grade& grade = record.grade;
+  grade.cost = CostSection();
+  empty(grade.causes);
+  if (grade.state == GradeState::kDoesNotCompile) empty(grade.story);
+  for (SceneMedia& media : grade.media) {
+    empty(media.about);
+    empty(media.story);
+    empty(media.checks);
+    empty(media.functions);
   }
-  for (ScoredTest& test : record.grade.tests)
-    for (std::string* text :
-         {&test.result.test, &test.result.story, &test.result.last_call, &test.result.printed})
-      empty(*text);
+  if (grade.tests.empty()) return;
+  std::vector<RubricItem> items;
+  for (const ScoredTest& test : grade.tests) {
+    items.push_back(test.item);
+    grade.marks.verdicts.push_back(test.result.verdict);
+  }
+  if (!items_ || *items_ != items)
+    items_ = std::make_shared<const std::vector<RubricItem>>(std::move(items));
+  grade.marks.items = items_;
+  empty(grade.tests);
 }
 
 GradeRecord fault_record(const GradedWork& work, const std::string& id, const Rubric& rubric,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,17 @@ struct GradedWork {
   double seconds = 0.0;  // that it took, now
 };
 
-/// Lets go of what only the page of a submission shows: stories, plots, checks of scenes, digests.
-/// Its memory is given back.
-void let_go_of_details(GradeRecord& record);
+/// What stays in memory of the submissions of a class: some hundred bytes each, and one list of
+/// tests for all that have the same.
+class MarksOfClass {
+ public:
+  /// Lets go of what only the page of a submission shows: stories, plots, causes, checks of scenes,
+  /// digests. Of its tests the marks stay. The memory is given back.
+  void let_go_of_details(GradeRecord& record);
+
+ private:
+  std::shared_ptr<const std::vector<RubricItem>> items_;
+};
 
 /// The record of a submission whose grading failed: no score, and `why` as the story of every test.
 GradeRecord fault_record(const GradedWork& work, const std::string& id, const Rubric& rubric,

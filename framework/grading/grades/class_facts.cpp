@@ -105,12 +105,12 @@ std::vector<TestCount> test_counts(const std::vector<Grade>& grades) {
   std::map<std::string, std::size_t> place;
   for (const Grade& grade : grades) {
     if (!grade.has_score()) continue;
-    for (const ScoredTest& test : grade.tests) {
-      const auto [it, is_new] = place.emplace(test.item.test, counts.size());
-      if (is_new) counts.push_back({test.item});
+    grade.each_verdict([&](const RubricItem& item, Verdict verdict) {
+      const auto [it, is_new] = place.emplace(item.test, counts.size());
+      if (is_new) counts.push_back({item});
       ++counts[it->second].judged;
-      counts[it->second].right += test.result.verdict == Verdict::kRight;
-    }
+      counts[it->second].right += verdict == Verdict::kRight;
+    });
   }
   return counts;
 }

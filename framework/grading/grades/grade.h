@@ -46,6 +46,13 @@ struct ScoredTest {
   double score = 0.0;
 };
 
+/// What a page of a class shows of the tests of one submission. Submissions of one rubric share its
+/// items.
+struct TestMarks {
+  std::shared_ptr<const std::vector<RubricItem>> items;
+  std::vector<Verdict> verdicts;  // by item
+};
+
 enum class GradeState {
   kJudged,
   kNothingToCompile,  // Submission::problem
@@ -77,6 +84,7 @@ struct Grade {
   std::string story;
   std::vector<std::string> notes;
   std::vector<ScoredTest> tests;  // in the rubric's order
+  TestMarks marks;                // in place of `tests` where their details were let go of
   std::vector<Cause> causes;      // of what is not right, the costliest first
   std::vector<SceneMedia> media;
   CostSection cost;  // only on the page, not in the record
@@ -92,6 +100,9 @@ struct Grade {
   bool is_official = true;           // the policy accepts that protection
   bool has_handout = false;          // OUT/handout.html, which stories link to
 
+  /// Calls `see` with every test, also where only marks are left.
+  void each_verdict(const std::function<void(const RubricItem&, Verdict)>& see) const;
+  std::size_t count(Verdict verdict) const;
   /// Whether no test ended in a fault of the grader or because the machine was too busy.
   bool is_final() const;
   /// Whether a gradebook may have the score: it is final, and a file was found.

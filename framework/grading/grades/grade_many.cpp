@@ -155,9 +155,9 @@ class Batch {
     work.earlier = read_earlier_run(of_class, id_, key_.bytes);
   }
 
-  void take_over_or_open(Work& work) const {
+  void take_over_or_open(Work& work) {
     if (is_asked_for(work) && (options_.again || !is_current(work))) {
-      if (work.earlier.record) let_go_of_details(*work.earlier.record);
+      if (work.earlier.record) marks_.let_go_of_details(*work.earlier.record);
     } else if (work.earlier.record) {
       take_over(work, std::move(*work.earlier.record));
     } else {
@@ -198,18 +198,18 @@ class Batch {
     return only.empty() || std::find(only.begin(), only.end(), work.submission->name) != only.end();
   }
 
-  void take_over(Work& work, GradeRecord whole) const {
+  void take_over(Work& work, GradeRecord whole) {
     whole.grade.taken_over = true;
     settle_with(work, std::move(whole));
   }
 
   // `whole` is final and lies in place. A class has a thousand of them: what only its own page
   // shows is let go of.
-  void settle_with(Work& work, GradeRecord whole) const {
+  void settle_with(Work& work, GradeRecord whole) {
     work.entry = ledger_entry_of(whole, compiler_);
     whole.grade.name = work.submission->name;  // a record replaces bytes that are no UTF-8
     if (options_.each && !options_.shard) options_.each(whole.grade);
-    let_go_of_details(whole);
+    marks_.let_go_of_details(whole);
     work.record = std::move(whole);
     work.earlier.record.reset();
     work.is_settled = true;
@@ -324,7 +324,7 @@ class Batch {
                             earlier->key.submission == work.key.submission &&
                             !record->grade.is_final();
     if (!options_.shard && !old_stands && would_lower(work, *record)) {
-      let_go_of_details(*record);
+      marks_.let_go_of_details(*record);
       work.record = std::move(*record);  // until decide_lowerings
       held_.push_back(&work);
       return;
@@ -449,6 +449,7 @@ class Batch {
   std::optional<Ledger> ledger_;  // of the class
   const std::string compiler_ = compiler_in_words();
   MachineKey key_;
+  MarksOfClass marks_;
   std::vector<Work> work_;
   std::vector<Work*> open_, held_;
   std::size_t logged_ = 0;  // of work_

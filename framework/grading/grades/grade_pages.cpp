@@ -31,12 +31,6 @@ Look look_of(Verdict verdict) {
   }
 }
 
-std::size_t count(const Grade& grade, Verdict verdict) {
-  return static_cast<std::size_t>(
-      std::count_if(grade.tests.begin(), grade.tests.end(),
-                    [&](const ScoredTest& t) { return t.result.verdict == verdict; }));
-}
-
 bool has_story(const ScoredTest& test) {
   return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted;
 }
@@ -53,7 +47,7 @@ void add_tiles(report::Page& page, const Grade& grade) {
       Verdict::kRight,          Verdict::kWrong,       Verdict::kNotAttempted, Verdict::kCrashed,
       Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
   for (const Verdict verdict : kShown)
-    if (const std::size_t n = count(grade, verdict); n > 0)
+    if (const std::size_t n = grade.count(verdict); n > 0)
       tiles.push_back({words(verdict), {std::to_string(n), "", look_of(verdict)}});
   page.tiles(tiles);
 }
@@ -104,7 +98,7 @@ void add_level(report::Page& page, const Grade& grade, const std::string& level)
 
 // The verdict that keeps a grade from being final.
 Verdict unfinished_verdict(const Grade& grade) {
-  return count(grade, Verdict::kGraderFault) > 0 ? Verdict::kGraderFault : Verdict::kMachineBusy;
+  return grade.count(Verdict::kGraderFault) > 0 ? Verdict::kGraderFault : Verdict::kMachineBusy;
 }
 
 void add_changes(report::Page& page, const Grade& grade) {
@@ -269,7 +263,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   if (const auto stories = std::count_if(
           grade.tests.begin(), grade.tests.end(),
           [](const ScoredTest& test) { return !test.result.story.empty() && has_story(test); });
-      grade.state == GradeState::kJudged && count(grade, Verdict::kRight) < grade.tests.size()) {
+      grade.state == GradeState::kJudged && grade.count(Verdict::kRight) < grade.tests.size()) {
     page.begin(report::Part::kFold,
                fmt::format("Of all tests that are not right: {} to read", stories));
     add_stories(page, grade, view);
@@ -277,7 +271,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   }
   if (grade.state != GradeState::kJudged)
     page.paragraph("No test ran.", Look::kMuted);
-  else if (count(grade, Verdict::kRight) == grade.tests.size())
+  else if (grade.count(Verdict::kRight) == grade.tests.size())
     page.paragraph("Every test is right.", Look::kGood);
   add_cost(page, grade.cost);
   page.heading("Scenes", 2, "scenes");
@@ -372,7 +366,7 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
       remarks += (remarks.empty() ? "" : "; ") + remark;
     if (!grade.change.empty()) remarks += (remarks.empty() ? "" : "; ") + grade.change;
     const auto number = [&](Verdict v) {
-      const auto n = grade.state == GradeState::kJudged ? count(grade, v) : 0;
+      const auto n = grade.state == GradeState::kJudged ? grade.count(v) : 0;
       return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)};
     };
     table.rows.push_back({{plain_name(grade.name),

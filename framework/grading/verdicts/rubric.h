@@ -18,6 +18,8 @@ struct RubricItem {
   std::string level;  // basic, intermediate, advanced
   std::string title;  // shown to the user
   bool hidden = false;
+
+  bool operator==(const RubricItem&) const = default;
 };
 
 struct Rubric {
