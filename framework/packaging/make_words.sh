@@ -74,11 +74,70 @@ complete -o default -F _tumble tumble
 END
 }
 
+# One word in single quotes, for zsh and fish.
+quoted() { sed "s/'/'\\\\''/g; s/^/'/; s/\$/'/" <<<"$1"; }
+
+zsh_words() {
+  printf '#compdef tumble\n# Completion of tumble in zsh, made from the words of the verbs.\n'
+  cat <<'END'
+local root=${TUMBLE_COMPLETION_ROOT:-/usr/share/tumble} first=''
+local -a verbs options names folders
+END
+  echo 'verbs=('
+  local verb
+  for verb in $verbs; do printf '  %s\n' "$(quoted "$verb:$(title "$verb" | sed 's/:/\\:/g')")"; done
+  printf ')\ncase $words[2] in\n'
+  for verb in $verbs; do
+    printf "  %s) options=(%s) first='%s' ;;\n" "$verb" "$(options "$verb" | xargs)" "$(first_word "$verb")"
+  done
+  cat <<'END'
+esac
+case $first in
+  assignment) folders=($root/assignments/a[0-9]*_*(N/:t)) names=(${folders%%_*}) ;;
+  scene) names=($root/assignments/*/scenes/*.json(N:t:r)) ;;
+esac
+if (( CURRENT == 2 )); then
+  _describe verb verbs
+elif [[ $PREFIX == -* ]]; then
+  compadd -- $options
+elif (( CURRENT == 3 && $#names > 0 )); then
+  compadd -- $names
+  _files
+else
+  _files
+fi
+END
+}
+
 fish_words() {
-  echo '# Completion of tumble in fish, made from the words of the verbs.'
-  local verb option
+  cat <<'END'
+# Completion of tumble in fish, made from the words of the verbs.
+function __tumble_names   # KIND: the names of assignments or scenes
+    set -l root /usr/share/tumble
+    set -q TUMBLE_COMPLETION_ROOT; and set root $TUMBLE_COMPLETION_ROOT
+    switch $argv[1]
+        case assignment
+            for folder in $root/assignments/a*_*/
+                string replace -r '_.*' '' (basename $folder)
+            end
+        case scene
+            for file in $root/assignments/*/scenes/*.json
+                basename $file .json
+            end
+    end
+end
+function __tumble_first_word_of   # VERB: whether the word that comes is the first one after it
+    set -l words (commandline -opc)
+    test (count $words) = 2; and test $words[2] = $argv[1]
+end
+END
+  local verb option first
   for verb in $verbs; do
     printf "complete -c tumble -n __fish_use_subcommand -a %s -d '%s'\n" "$verb" "$(title "$verb" | sed "s/'/\\\\'/g")"
+    first=$(first_word "$verb")
+    case $first in
+      assignment | scene) printf "complete -c tumble -n '__tumble_first_word_of %s' -a '(__tumble_names %s)'\n" "$verb" "$first" ;;
+    esac
     for option in $(options "$verb"); do
       printf "complete -c tumble -n '__fish_seen_subcommand_from %s' -l %s\n" "$verb" "${option#--}"
     done
@@ -88,5 +147,5 @@ fish_words() {
 man_page >"$out/tumble.1"
 gzip -9nc "$out/tumble.1" >"$out/tumble.1.gz"
 bash_words >"$out/tumble.bash"
+zsh_words >"$out/_tumble"
 fish_words >"$out/tumble.fish"
-{ echo '#compdef tumble'; echo 'autoload -U +X bashcompinit && bashcompinit'; cat "$out/tumble.bash"; } >"$out/_tumble"

@@ -1,12 +1,14 @@
 // The house rules of the design, read off the sources: knowledge runs one way and never in a
 // circle, third parties stay in their rooms, and the framework names no assignment and no solution.
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -326,6 +328,25 @@ TEST(House, RootHoldsOnlyTheRoomsOfTheDesign) {
     EXPECT_TRUE(rooms.contains(name))
         << "a folder at the root that the design does not have: " << name;
   }
+}
+
+// Files that git does not know are nobody's business: notes, and what an editor leaves.
+TEST(House, NoStrayFileIsCommittedAtTheRoot) {
+  const std::set<std::string> known = {"CMakeLists.txt", "CMakePresets.json", "LICENSE",
+                                       "README.md",      "packages.txt",      "tumble"};
+  if (!fs::exists(kRoot / ".git")) GTEST_SKIP() << "this tree is no checkout";
+  const std::string command =
+      "git -c safe.directory='*' -C '" + kRoot.string() + "' ls-files ':(glob)*'";
+  FILE* const said = ::popen(command.c_str(), "r");
+  ASSERT_NE(said, nullptr);
+  std::string files;
+  for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said)) files += static_cast<char>(c);
+  ASSERT_EQ(::pclose(said), 0) << command;
+  std::istringstream names(files);
+  for (std::string name; std::getline(names, name);)
+    EXPECT_TRUE(name.starts_with('.') || known.contains(name))
+        << "a file at the root that belongs into a room: " << name;
+  EXPECT_NE(files.find("packages.txt"), std::string::npos) << "git names no file";
 }
 
 }  // namespace

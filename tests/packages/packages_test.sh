@@ -53,11 +53,9 @@ cd .. && code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
 # The words of the verbs, in the manual and in the shell.
 zcat "$folder/root/usr/share/man/man1/tumble.1.gz" >"$folder/tumble.1"
 for verb in start check run grade; do grep -q "^.SS tumble $verb" "$folder/tumble.1" || fail "the manual has no $verb"; done
-TUMBLE_COMPLETION_ROOT=$folder/root/usr/share/tumble bash -euc '
-  source "$1"
-  complete_words() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tumble; echo "${COMPREPLY[*]}"; }
-  [ "$(complete_words tumble sta)" = start ]
-  [[ "$(complete_words tumble check a)" == a1\ a2\ a3\ a4* ]]
-  [[ "$(complete_words tumble run x --vi)" == "--video --virtual-times" || "$(complete_words tumble run x --vi)" == *--video* ]]
-' completion "$folder/root/usr/share/bash-completion/completions/tumble" || fail "the completion of bash does not complete"
+share=$folder/root/usr/share
+mkdir "$folder/words"
+cp "$share/bash-completion/completions/tumble" "$folder/words/tumble.bash"
+cp "$share/zsh/vendor-completions/_tumble" "$share/fish/vendor_completions.d/tumble.fish" "$folder/words/"
+"$(dirname "$0")/completions_test.sh" "$folder/words" "$share/tumble" || fail "the shells do not complete"
 echo "packages are whole, private parts are private, start and check work from them"

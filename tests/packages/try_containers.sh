@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds both containers from framework/packaging/Containerfile.* on a Debian 12 made by debootstrap, so that no registry is needed, and runs in
+# Builds the containers of framework/packaging/Containerfile.* and .devcontainer/ on a Debian 12 made by debootstrap, so that no registry is needed, and runs in
 # them what a student and a teaching assistant do. Needs root, the network, podman, runc, debootstrap and 6 GB; takes some minutes, so
 # it is not part of `./tumble test`. Make the packages first: ./tumble package
 #   tests/packages/try_containers.sh [PACKAGES [ROOT]]     as try_packages.sh
@@ -20,7 +20,15 @@ for which in course grader; do
   "${podman[@]}" build --quiet --isolation chroot --network host --build-arg BASE=localhost/tumble-base -t "tumble-$which" -f "$tree/framework/packaging/Containerfile.$which" "$packages" >/dev/null
   echo "built the container of the $which"
 done
+# What an editor opens the source tree in.
+"${podman[@]}" build --quiet --isolation chroot --network host --build-arg BASE=localhost/tumble-base -t tumble-dev -f "$tree/.devcontainer/Containerfile" "$tree" >/dev/null
+echo "built the dev container"
 inside() { "${podman[@]}" run --rm --network=none --ulimit nofile=1024:1024 --ulimit nproc=2000:2000 "tumble-$1" bash -euc "$2"; }
 inside course 'tumble start a1 a1; cd a1; code=0; tumble check a1 >said || code=$?; tail -n 3 said; test $code = 4; test ! -e /opt/tumble-grader'
 inside grader 'tumble doctor || true; mkdir -p s/right; cp /opt/tumble-grader/solutions_private/a1_impulse/a1_impulse.cpp s/right; tumble grade a1 s --no-media --out out; grep -q 100 out/gradebook.csv'
-echo "both containers work"
+# As an editor does it: the tree is mounted, and its first command is run in it. A copy, because it builds.
+mkdir "$work/tree"
+git -C "$tree" archive HEAD | tar -C "$work/tree" -xf -
+after=$(sed -n 's/.*"postCreateCommand": "\(.*\)",/\1/p' "$tree/.devcontainer/devcontainer.json")
+"${podman[@]}" run --rm --network=none -v "$work/tree:/workspaces/tumble" -w /workspaces/tumble tumble-dev bash -euc "$after; code=0; ./tumble check a1 > said || code=\$?; test \$code = 4; clangd --version"
+echo "the three containers work"
