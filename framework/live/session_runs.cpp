@@ -1,0 +1,211 @@
+// The processes that simulate: begun, listened to, replaced, lost.
+#include "framework/live/session_parts.h"
+
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace tumble::live {
+namespace {
+
+constexpr std::size_t kTalkKept = 1u << 14;  // bytes of what a process said
+
+// Without the lines for the locator, and without the program's name.
+std::string for_people(const std::string& talk) {
+  std::istringstream lines(talk);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("tumble: ")) line.erase(0, 8);
+    const bool is_ours = line.starts_with("frame ") || line.starts_with("compiling ");
+    if (!is_ours && !(text.empty() && line.empty())) text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+void Session::begin(const std::string& reason, double from_s) {
+  starting_ = std::make_unique<Simulator>(sitting_.simulator, from_s, reason);
+  starting_->child.say(dumped(
+      {{"recipe", as_text(recipe_)}, {"from_s", from_s}, {"speed", speed_}, {"paused", true}}));
+  tell({{"kind", "starting"}, {"reason", reason}});
+}
+
+// Nobody looks: nothing moves.
+void Session::set_pace() {
+  const bool is_watched = std::any_of(pages_.begin(), pages_.end(),
+                                      [](const auto& page) { return !page->is_closed(); });
+  forward(dumped({{"do", "pace"}, {"speed", speed_}, {"paused", is_paused_ || !is_watched}}));
+}
+
+// The run that has started takes the place of the one before.
+void Session::adopt(const std::string& head) {
+  running_ = std::move(starting_);
+  reason_ = running_->reason;
+  if (running_->from_s > 0) {
+    current_.cut(running_->from_s);
+  } else {
+    if (current_.frames().size() > 1) former_ = std::move(current_);
+    current_ = History(head);
+    compared_until_ = 0.0;
+  }
+  compared_until_ = std::min(compared_until_, current_.end_s());
+  has_difference_ = false;
+  difference_.clear();
+  times_.clear();
+  end_.clear();
+  trouble_.clear();
+  Json words = run_words();
+  words["head"] = Json::parse(head);
+  tell(words);
+  set_pace();
+  if (!to_judge_.empty()) judge(std::exchange(to_judge_, ""));
+}
+
+void Session::listen_to(std::unique_ptr<Simulator>& simulator) {
+  std::string bytes;
+  const bool is_open = Child::read_some(simulator->child.output(), bytes);
+  Child::read_some(simulator->child.talk(), simulator->talk);
+  if (simulator->talk.size() > kTalkKept)
+    simulator->talk.erase(0, simulator->talk.size() - kTalkKept);
+  simulator->records.feed(bytes);
+  try {
+    // What a record leads to may put another process in this one's place.
+    const Simulator* const before = simulator.get();
+    while (simulator && simulator.get() == before) {
+      auto record = simulator->records.next();
+      if (!record) break;
+      if (&simulator == &starting_)
+        hear_starting(std::move(*record));
+      else
+        hear(*simulator, std::move(*record));
+    }
+    if (!is_open && simulator && simulator.get() == before) {
+      lost(*simulator);
+      simulator.reset();
+    }
+  } catch (const std::exception& error) {
+    trouble({{"title", "The process with your code is out of step"}, {"text", error.what()}});
+    simulator.reset();
+  }
+}
+
+void Session::hear_starting(Record record) {
+  if (record.kind == RecordKind::kHead) {
+    adopt(record.bytes);
+    // what has come behind the head
+    if (running_) listen_to(running_);
+    return;
+  }
+  if (record.kind != RecordKind::kRefused) return;
+  Json refused = Json::parse(record.bytes);
+  const std::string problem = refused.at("problem");
+  refused["title"] = problem.starts_with("does not compile") ? "Does not compile"
+                     : refused.value("not_attempted", false) ? "Not attempted"
+                                                             : "The scene cannot begin";
+  refused["text"] = problem;
+  starting_->has_ended = true;
+  trouble(refused);
+}
+
+void Session::hear(Simulator& from, Record record) {
+  switch (record.kind) {
+    case RecordKind::kHead: break;
+    case RecordKind::kFrame:
+      send(event_of("f", numbers_for_page(record.bytes, current_.frames().empty()
+                                                            ? record.bytes
+                                                            : current_.frames().front())));
+      current_.add_frame(std::move(record.bytes));
+      break;
+    case RecordKind::kEvent:
+      send(event_of("e", numbers_for_page(record.bytes, "")));
+      current_.add_event(std::move(record.bytes));
+      break;
+    case RecordKind::kAimed: {
+      Json aimed = Json::parse(record.bytes);
+      aimed["kind"] = "aimed";
+      tell(aimed);
+      break;
+    }
+    case RecordKind::kHand: hand_acted(record.bytes); break;
+    case RecordKind::kTimes: {
+      Json times = Json::parse(record.bytes);
+      times["kind"] = "times";
+      times_.push_back(dumped(times));
+      send(event_of("say", times_.back()));
+      break;
+    }
+    case RecordKind::kEnd: {
+      Json end = Json::parse(record.bytes);
+      end["kind"] = "end";
+      end_ = dumped(end);
+      from.has_ended = true;
+      send(event_of("say", end_));
+      if (const std::string why = end.value("stopped_by", ""); !why.empty()) {
+        trouble({{"title", "The run stopped"}, {"text", why}});
+        locate(why);
+      }
+      break;
+    }
+    case RecordKind::kRefused: {
+      Json refused = Json::parse(record.bytes);
+      refused["title"] = refused.value("not_attempted", false) ? "Not attempted" : "Stopped";
+      refused["text"] = refused.at("problem");
+      from.has_ended = true;
+      trouble(refused);
+      break;
+    }
+  }
+}
+
+// Its pipe has closed: it has said why, or something ended it.
+void Session::lost(Simulator& simulator) {
+  const int code = simulator.child.wait();
+  Child::read_some(simulator.child.talk(), simulator.talk);
+  if (simulator.has_ended) return;
+  std::string said = for_people(simulator.talk);
+  if (said.empty())
+    said = code > 128 ? fmt::format("ended by signal {} ({})", code - 128, ::strsignal(code - 128))
+                      : fmt::format("ended with code {}", code);
+  trouble({{"title", said.find("out of time") != std::string::npos ? "Out of time" : "Crashed"},
+           {"text", said}});
+  locate(simulator.talk);
+}
+
+// In which line it was: comes when it has been found.
+void Session::locate(const std::string& said) {
+  if (sitting_.locate.empty()) return;
+  locator_ = std::make_unique<Child>(sitting_.locate);
+  locator_->say(said);
+  locator_->close_input();
+  place_.clear();
+}
+
+void Session::listen_to_locator() {
+  if (Child::read_some(locator_->output(), place_)) return;
+  locator_->wait();
+  locator_.reset();
+  while (place_.ends_with('\n')) place_.pop_back();
+  if (place_.empty() || trouble_.empty()) return;
+  Json what = Json::parse(trouble_);
+  what["where"] = place_.substr(0, place_.find(": "));
+  what["text"] = place_ + "\n" + what.value("text", "");
+  trouble(what);
+}
+
+void Session::hand_acted(const std::string& text) {
+  Json push = Json::parse(text);
+  const bool runs_again = push.value("runs_again", false);
+  push.erase("runs_again");
+  recipe_.pushes.push_back(dumped(push));
+  tell({{"kind", "push"}, {"push", push}});
+  if (runs_again) begin("push", push.at("start_s"));
+}
+
+void Session::trouble(Json what) {
+  what["kind"] = "trouble";
+  trouble_ = dumped(what);
+  send(event_of("say", trouble_));
+}
+
+}  // namespace tumble::live

@@ -1,0 +1,137 @@
+// What is said of a run: verdicts, differences from the run before, and whether a saved scene runs
+// again byte for byte.
+#include "framework/live/session_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+
+namespace tumble::live {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kComparesEvery = 0.4;  // s
+
+}  // namespace
+
+void Session::judge(const std::string& id) {
+  if (!sitting_.judge || id.empty()) return;
+  judge_ = std::make_unique<Child>(sitting_.judge(id));
+  judge_->close_input();
+  judging_ = id;
+  judge_text_.clear();
+  judge_talk_.clear();
+  tell({{"kind", "judging"}, {"id", id}});
+}
+
+void Session::listen_to_judge() {
+  const bool is_open = Child::read_some(judge_->output(), judge_text_);
+  Child::read_some(judge_->talk(), judge_talk_);
+  if (is_open) return;
+  judge_->wait();
+  judge_.reset();
+  Json verdicts = Json::parse(judge_text_, nullptr, false);
+  if (verdicts.is_discarded())
+    verdicts = {{"id", judging_}, {"said", judge_talk_}, {"tests", Json::array()}};
+  verdicts["kind"] = "verdicts";
+  verdicts_ = dumped(verdicts);
+  send(event_of("say", verdicts_));
+}
+
+// The run against the one before it, as far as both have come since the last look.
+void Session::compare() {
+  const auto now = Clock::now();
+  if (has_difference_ || former_.frames().empty() ||
+      now - compared_at_ < std::chrono::duration<double>(kComparesEvery))
+    return;
+  compared_at_ = now;
+  const double until = std::min(former_.end_s(), current_.end_s());
+  if (!(until > compared_until_) || former_.radii_m().size() != current_.radii_m().size()) return;
+  const Trajectory a = former_.part(compared_until_, until),
+                   b = current_.part(compared_until_, until);
+  if (a.frames.empty() || b.frames.empty()) return;
+  const auto found =
+      report::compare(current_.outline(), current_.radii_m(), a, "the run before", b, "this run");
+  compared_until_ = until;
+  Json words{{"kind", "difference"}, {"same_until_s", until}};
+  if (found.first) {
+    has_difference_ = true;
+    words["time_s"] = found.first->time_s;
+    words["what"] = found.first->what;
+    words["body"] = found.first->body;
+  }
+  difference_ = dumped(words);
+  send(event_of("say", difference_));
+}
+
+void Session::save() {
+  if (sitting_.recipe.document.empty())
+    throw UserError(sitting_.name, "is made by code and has no scene file to add pushes to",
+                    "Begin with a scene file.");
+  if (current_.frames().empty()) throw UserError(sitting_.name, "has not moved yet", "");
+  fs::path file;
+  for (int number = 1; file.empty() || fs::exists(file); ++number)
+    file = sitting_.saves / fmt::format("{}_{}.json", sitting_.name, number);
+  const Json head = Json::parse(current_.head());
+  const std::string again =
+      sitting_.again ? sitting_.again(file, recipe_.changes, head.value("modules", "")) : "";
+  write_whole(file, saved_document(recipe_, current_.end_s(), again));
+  // The same code runs what stands in the file.
+  Recipe written;
+  written.document = tumble::text_of(file);
+  written.file = sitting_.recipe.file;
+  written.changes.method = recipe_.changes.method;
+  checking_ = std::make_unique<Simulator>(sitting_.simulator, 0.0, "check");
+  checking_->child.say(
+      dumped({{"recipe", as_text(written)}, {"from_s", 0.0}, {"speed", 1e30}, {"paused", false}}));
+  frames_checked_ = 0;
+  frames_to_check_ = current_.frames().size();
+  first_wrong_.clear();
+  checked_file_ = file.string();
+  saved_ = dumped({{"kind", "saved"}, {"file", checked_file_}, {"again", again}});
+  send(event_of("say", saved_));
+}
+
+void Session::check_saved() {
+  std::string bytes;
+  const bool is_open = Child::read_some(checking_->child.output(), bytes);
+  Child::read_some(checking_->child.talk(), checking_->talk);
+  checking_->records.feed(bytes);
+  while (auto record = checking_->records.next()) {
+    if (record->kind == RecordKind::kRefused && first_wrong_.empty())
+      first_wrong_ = Json::parse(record->bytes).value("problem", "refused");
+    if (record->kind != RecordKind::kFrame || frames_checked_ == frames_to_check_) continue;
+    const bool is_there = frames_checked_ < current_.frames().size();  // else it was begun anew
+    if (first_wrong_.empty() && !(is_there && record->bytes == current_.frames()[frames_checked_]))
+      first_wrong_ = fmt::format("the frame at {:.6g} s differs", History::time_of(record->bytes));
+    ++frames_checked_;
+  }
+  if (is_open) return;
+  if (frames_checked_ < frames_to_check_ && first_wrong_.empty())
+    first_wrong_ = "it ended before its last frame";
+  Json words = Json::parse(saved_);
+  words["checked"] = true;
+  words["frames"] = frames_checked_;
+  words["wrong"] = first_wrong_;
+  saved_ = dumped(words);
+  send(event_of("say", saved_));
+  checking_.reset();
+}
+
+void Session::code_saved(const std::set<fs::path>& files) {
+  for (const Watched& one : sitting_.watched)
+    if (files.contains(fs::absolute(one.file).lexically_normal())) {
+      judge_.reset();  // of the code before; and two builds at once would be in each other's way
+      to_judge_ = one.id;
+      tell({{"kind", "code_saved"}, {"file", one.file.filename().string()}});
+      return begin("code", 0.0);
+    }
+}
+
+}  // namespace tumble::live
