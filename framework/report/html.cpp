@@ -89,7 +89,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
 @media screen and (prefers-color-scheme: dark) { :root { --paper: #161d24; --ink: #e4eaf0;
   --soft: #a3b0bd; --line: #3a4652; --wash: #1f2831; --good: #5ecfae; --warn: #f0bd5a;
   --bad: #ff8a5c; --link: #7cc0f0; }
-  .plot-figure svg { background: #fff; border-radius: 4px; } }
+  /* lightness turned over, hues kept */
+  .plot-figure svg { filter: invert(1) hue-rotate(180deg); } }
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
