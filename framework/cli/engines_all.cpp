@@ -131,7 +131,7 @@ void write_players(const Context& context, const scene::Scene& scene,
   // one for all scenes, in the report's folder
   options.three_file = "../three.js";
   const fs::path three = file.parent_path() / options.three_file;
-  if (!fs::exists(three)) report::write_three(three, options);
+  report::write_three(three, options);
   report::write_player(file, scene, played, options);
 }
 

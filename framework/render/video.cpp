@@ -48,7 +48,7 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
   const int count = static_cast<int>(runs.size());
   Image whole(count * options.width + (count - 1) * kViewSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {
-    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz,
+    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz, options.video_crf,
                       record_of(runs.front().trajectory.info));
     std::vector<std::optional<std::size_t>> shown(painters.size());  // frame
     // writes the text of the previous picture and encodes it while this one is rendered

@@ -31,28 +31,29 @@ class WithoutPipeSignal {
 };
 
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int width, int height,
-                                      double rate_hz, const std::string& record) {
+                                      double rate_hz, int crf, const std::string& record) {
   return {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo",
           "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
           fmt::format("{:g}", rate_hz), "-i", "pipe:0", "-an", "-vf",
           "crop=trunc(iw/2)*2:trunc(ih/2)*2",
           // Plays in every browser while it loads; without date and encoder's name, so that the
           // same pictures give the same file.
-          "-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-pix_fmt", "yuv420p", "-threads",
-          "2", "-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v", "+bitexact",
-          "-map_metadata", "-1", "-metadata", "comment=" + record, "-f", "mp4", mp4.string()};
+          "-c:v", "libx264", "-preset", "veryfast", "-crf", std::to_string(crf), "-pix_fmt",
+          "yuv420p", "-threads", "2", "-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v",
+          "+bitexact", "-map_metadata", "-1", "-metadata", "comment=" + record, "-f", "mp4",
+          mp4.string()};
 }
 
 }  // namespace
 
 VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz,
-                         const std::string& record)
+                         int crf, const std::string& record)
     : mp4_(mp4), width_(width), height_(height) {
   int pipe_ends[2];
   complaints_ = memfd_create("ffmpeg", MFD_CLOEXEC);
   if (complaints_ < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0)
     throw UserError(mp4.string(), "no pipe can be created", "Close some programs and try again.");
-  const std::vector<std::string> words = ffmpeg_words(mp4, width, height, rate_hz, record);
+  const std::vector<std::string> words = ffmpeg_words(mp4, width, height, rate_hz, crf, record);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);

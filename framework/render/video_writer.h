@@ -14,9 +14,10 @@ class VideoWriter {
  public:
   /// @param mp4  written as pictures arrive: give a draft's name (core/files.h)
   /// @param width, height  of every picture; odd sizes lose the last column or row
+  /// @param crf     x264's constant rate factor
   /// @param record  provenance, stored as the file's comment
   /// @throws UserError when ffmpeg is missing
-  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz,
+  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz, int crf,
               const std::string& record);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;

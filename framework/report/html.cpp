@@ -1,5 +1,7 @@
 #include "framework/report/html.h"
 
+#include <algorithm>
+
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 
@@ -59,9 +61,19 @@ details { margin: .5rem 0; } summary { cursor: pointer; font-weight: 600; }
 figure { margin: 0; flex: 1 1 20rem; max-width: 100%; }
 figure img, figure video { max-width: 100%; height: auto; display: block;
   border: 1px solid var(--line); } figure .in-print { display: none; }
-.wide:focus-visible, summary:focus-visible, a:focus-visible { outline: 2px solid var(--link);
-  outline-offset: 2px; } ul { margin: .4rem 0; padding-left: 1.4rem; }
-.thumbs { gap: .7rem; } .thumbs figure { flex: 0 0 12.5rem; } .thumbs figure video { width: 100%; }
+.wide:focus-visible, .plot-figure:focus-visible, summary:focus-visible, a:focus-visible {
+  outline: 2px solid var(--link); outline-offset: 2px; }
+ul { margin: .4rem 0; padding-left: 1.4rem; }
+.thumbs { display: grid; gap: .7rem; grid-template-columns: repeat(auto-fill, minmax(9rem, 1fr)); }
+.thumbs figcaption { font-size: .8rem; line-height: 1.3; }
+.story { background: var(--wash); border-left: 4px solid var(--line); padding: .6rem 1rem;
+  margin: .6rem 0; display: flow-root; } .story pre { border: 0; padding: 0; margin: 0 0 .4rem; }
+.fields { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: .15rem .9rem;
+  margin: 0; } .fields dt { color: var(--soft); }
+.fields dd { margin: 0; white-space: pre-wrap; overflow-wrap: anywhere; }
+.story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
+.story th, .story td { padding: .18rem .6rem .18rem 0; }
+.story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tiles { display: flex; flex-wrap: wrap; gap: 1rem; }
@@ -70,17 +82,22 @@ figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tile b { display: block; font-size: 1.5rem; font-variant-numeric: tabular-nums; }
 .tile span { color: var(--soft); font-size: .86rem; }
 .plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; }
+.plot-figure.small { max-width: 30rem; }
 svg.plot { width: 100%; height: auto; display: block; }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft);
   font-size: .8rem; overflow-wrap: anywhere; }
 @media screen and (prefers-color-scheme: dark) { :root { --paper: #161d24; --ink: #e4eaf0;
   --soft: #a3b0bd; --line: #3a4652; --wash: #1f2831; --good: #5ecfae; --warn: #f0bd5a;
   --bad: #ff8a5c; --link: #7cc0f0; }
-  .plot-figure svg { background: #fff; border-radius: 4px; } }
+  /* lightness turned over, hues kept */
+  .plot-figure svg { filter: invert(1) hue-rotate(180deg); } }
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
-  .plot-figure svg { min-width: 35rem; } }
+  .plot-figure svg { min-width: 35rem; } .plot-figure.small svg { min-width: 0; }
+  .story { padding: .5rem .6rem; } .fields { gap: .15rem .6rem; font-size: .93rem; }
+  .story .plot-figure { float: none; margin: .4rem auto; }
+  .thumbs { grid-template-columns: repeat(auto-fill, minmax(7rem, 1fr)); } }
 @media print { figure video { display: none; } figure .in-print { display: block; }
   .wide { overflow: visible; } table { font-size: 9pt; }
   body { padding: 0; max-width: none; font-size: 11pt; }
@@ -108,6 +125,23 @@ std::string linked(const Cell& cell) {
   return "<a href=\"" + html_escape(cell.link) + "\">" + html_escape(cell.text) + "</a>";
 }
 
+// Where the text holds a link's text, it leads where the link does.
+std::string linked_within(std::string_view text, const std::vector<Cell>& links) {
+  std::string html;
+  while (!text.empty()) {
+    // the next place that leads somewhere
+    std::size_t at = text.size();
+    const Cell* next = nullptr;
+    for (const Cell& link : links)
+      if (const auto found = text.find(link.text); !link.text.empty() && found < at)
+        at = found, next = &link;
+    html += html_escape(text.substr(0, at));
+    if (next != nullptr) html += linked(*next);
+    text.remove_prefix(next == nullptr ? at : at + next->text.size());
+  }
+  return html;
+}
+
 std::string class_attribute(Look look, bool is_number = false) {
   std::string classes = class_of(look);
   if (is_number) classes += classes.empty() ? "number" : " number";
@@ -132,6 +166,16 @@ std::string figure_html(const Figure& figure) {
   if (!figure.caption.empty())
     html += "<figcaption>" + linked({figure.caption, figure.link}) + "</figcaption>";
   return html + "</figure>\n";
+}
+
+// A picture that leads to a page.
+std::string thumbnail_html(const Figure& figure) {
+  std::string picture = "<img loading=\"lazy\" src=\"" + link_to(figure.picture) + "\" alt=\"\">";
+  if (!figure.link.empty())
+    picture = "<a tabindex=\"-1\" aria-hidden=\"true\" href=\"" + html_escape(figure.link) + "\">" +
+              picture + "</a>";
+  return "<figure>" + picture + "<figcaption>" + linked({figure.caption, figure.link}) +
+         "</figcaption></figure>\n";
 }
 
 }  // namespace
@@ -167,19 +211,15 @@ void Page::preformatted(std::string_view text) {
 }
 
 void Page::preformatted(std::string_view text, const std::vector<Cell>& links) {
-  std::string html;
-  while (!text.empty()) {
-    // the next place that leads somewhere
-    std::size_t at = text.size();
-    const Cell* next = nullptr;
-    for (const Cell& link : links)
-      if (const auto found = text.find(link.text); !link.text.empty() && found < at)
-        at = found, next = &link;
-    html += html_escape(text.substr(0, at));
-    if (next != nullptr) html += linked(*next);
-    text.remove_prefix(next == nullptr ? at : at + next->text.size());
-  }
-  body_ += "<pre>" + html + "</pre>\n";
+  body_ += "<pre>" + linked_within(text, links) + "</pre>\n";
+}
+
+void Page::fields(const std::vector<Field>& fields) {
+  body_ += "<dl class=\"fields\">";
+  for (const Field& field : fields)
+    body_ += "<dt>" + html_escape(field.name) + "</dt><dd>" +
+             linked_within(field.text, field.links) + "</dd>\n";
+  body_ += "</dl>\n";
 }
 
 void Page::begin(Part part, std::string_view summary, std::string_view id) {
@@ -187,10 +227,14 @@ void Page::begin(Part part, std::string_view summary, std::string_view id) {
   switch (part) {
     case Part::kBox: body_ += "<section class=\"box\"" + name + ">\n"; break;
     case Part::kCard: body_ += "<article class=\"card\"" + name + ">\n"; break;
+    case Part::kStory: body_ += "<div class=\"story\"" + name + ">\n"; break;
     case Part::kFold:
       body_ += "<details" + name + "><summary>" + html_escape(summary) + "</summary>\n";
   }
-  open_.push_back(part == Part::kBox ? "section" : part == Part::kCard ? "article" : "details");
+  open_.push_back(part == Part::kBox     ? "section"
+                  : part == Part::kCard  ? "article"
+                  : part == Part::kStory ? "div"
+                                         : "details");
 }
 
 void Page::end() {
@@ -209,11 +253,13 @@ void Page::table(const Table& table) {
                ? "<div class=\"wide\" tabindex=\"0\"><table class=\"many\">"
                : "<div class=\"wide\" tabindex=\"0\"><table>";
   if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
-  body_ += "<thead><tr>";
-  for (const Column& column : table.columns)
-    body_ += "<th scope=\"col\"" + class_attribute(Look::kPlain, column.is_number) + '>' +
-             html_escape(column.name) + "</th>";
-  body_ += "</tr></thead>\n<tbody>\n";
+  const bool has_head = std::any_of(table.columns.begin(), table.columns.end(),
+                                    [](const Column& column) { return !column.name.empty(); });
+  if (has_head) body_ += "<thead><tr>";
+  for (std::size_t i = 0; has_head && i < table.columns.size(); ++i)
+    body_ += "<th scope=\"col\"" + class_attribute(Look::kPlain, table.columns[i].is_number) + '>' +
+             html_escape(table.columns[i].name) + "</th>";
+  body_ += has_head ? "</tr></thead>\n<tbody>\n" : "<tbody>\n";
   for (const auto& row : table.rows) {
     require(row.size() == table.columns.size(),
             "report: a table's row must have one cell for each column");
@@ -234,18 +280,21 @@ void Page::figures(const std::vector<Figure>& figures) {
 
 void Page::thumbnails(const std::vector<Figure>& figures) {
   body_ += "<div class=\"figures thumbs\">\n";
-  for (const Figure& figure : figures) body_ += figure_html(figure);
+  for (const Figure& figure : figures) body_ += thumbnail_html(figure);
   body_ += "</div>\n";
 }
 
-void Page::figure(const std::string& svg, const std::string& caption) {
-  body_ += "<figure class=\"plot-figure\">" + svg;
+// It may be wider than a phone: then it scrolls, also by the keyboard.
+void Page::figure(const std::string& svg, const std::string& caption, bool is_small) {
+  body_ += is_small ? "<figure class=\"plot-figure small\">" + svg
+                    : "<figure class=\"plot-figure\" tabindex=\"0\">" + svg;
   if (!caption.empty()) body_ += "<figcaption>" + html_escape(caption) + "</figcaption>";
   body_ += "</figure>\n";
 }
 
-void Page::plot(const Plot& plot) { figure(svg_of(plot), plot.caption); }
-void Page::plot(const StackedBars& bars) { figure(svg_of(bars), bars.caption); }
+void Page::plot(const Plot& plot) { figure(svg_of(plot), plot.caption, false); }
+void Page::plot(const StackedBars& bars) { figure(svg_of(bars), bars.caption, bars.is_small); }
+void Page::plot(const Arms& arms) { figure(svg_of(arms), arms.caption, true); }
 
 void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
   body_ += "<div class=\"tiles\">";

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/report/arms.h"
 #include "framework/report/html_text.h"
 #include "framework/report/plot.h"
 #include "framework/report/stacked_bars.h"
@@ -53,11 +54,18 @@ struct Figure {
   std::string link = {};  // of the caption: result of link_to; empty: none
 };
 
+/// A named value, such as "found: 6 N s".
+struct Field {
+  std::string name, text;
+  std::vector<Cell> links = {};  // where the text holds a cell's text, it leads where the cell does
+};
+
 /// A part of a page that holds other parts.
 enum class Part {
-  kBox,   // with a border: what to read first
-  kCard,  // one of several in a box
-  kFold,  // opens on a click, and is open in print
+  kBox,    // with a border: what to read first
+  kCard,   // one of several in a box
+  kFold,   // opens on a click, and is open in print
+  kStory,  // what happened in one test: fields, terms of an equation, a drawing
 };
 
 /// One page, written top to bottom. Every `text` is escaped.
@@ -78,20 +86,25 @@ class Page {
   void preformatted(std::string_view text);
   /// The same, with links: where the text holds a cell's text, it leads where the cell does.
   void preformatted(std::string_view text, const std::vector<Cell>& links);
+  /// Named values, one below the other: the names at the left.
+  void fields(const std::vector<Field>& fields);
   /// Begins a part, which holds what follows until its end.
   /// @param summary  the line of a fold; empty for others
   void begin(Part part, std::string_view summary = "", std::string_view id = "");
   void end();
   /// A section that opens on a click and is open in print: one line, then preformatted text.
   void fold(std::string_view summary, std::string_view text, bool open = false);
+  /// Without a head where no column has a name.
   void table(const Table& table);
   /// Side by side while the page is wide enough.
   void figures(const std::vector<Figure>& figures);
-  /// Small, as many in a row as fit: a table of contents in pictures.
+  /// Small, as many in a row as fit: a table of contents in pictures. A click on a picture leads
+  /// where its caption does; videos are not shown.
   void thumbnails(const std::vector<Figure>& figures);
   /// Draws it in the page, with its caption.
   void plot(const Plot& plot);
   void plot(const StackedBars& bars);
+  void plot(const Arms& arms);
   /// Large numbers with names: scores at the head of a page.
   void tiles(const std::vector<std::pair<std::string, Cell>>& tiles);
   /// Last line of the page: command, version, hash.
@@ -105,7 +118,7 @@ class Page {
   void write(const std::filesystem::path& file) const;
 
  private:
-  void figure(const std::string& svg, const std::string& caption);
+  void figure(const std::string& svg, const std::string& caption, bool is_small);
 
   std::string title_, subtitle_, body_, record_;
   std::vector<const char*> open_;  // tags of parts without their end

@@ -28,7 +28,7 @@ struct PlayerOptions {
   std::filesystem::path root;
   // folder of three.js in Debian's package
   std::filesystem::path three = "/usr/share/javascript/three";
-  // three.js in a file of its own beside the page (write_three), for reports with many pages;
+  // three.js and scripts in a file beside the page (write_three), for reports with many pages;
   // empty: inside the page
   std::filesystem::path three_file;
   std::vector<PlayerPanel> panels;

@@ -57,12 +57,8 @@ std::string script_text() {
   return text + "})();\n";
 }
 
-// "</" would end a script element; JSON allows an escape for the less-than sign.
 std::string json_text(const Json& json) {
-  std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
-    c == '<' ? text += "\\u003c" : text += c;
-  return text;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string data_element(const std::string& id, const std::string& deflated_bytes) {
@@ -118,6 +114,17 @@ void check(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
   }
 }
 
+// Whether the second run's channels would be those of the first, byte for byte: as of a right
+// submission beside the reference.
+bool is_same_motion(const scene::Scene& scene, const std::vector<PlayedRun>& runs,
+                    const Comparison& comparison, double sight_m, const PlayerOptions& options) {
+  if (comparison.first || comparison.early_end) return false;
+  const auto channels = [&](const PlayedRun& played) {
+    return pack_run(scene, played, comparison.apart_m, sight_m, options).channels;
+  };
+  return channels(runs[0]) == channels(runs[1]);
+}
+
 }  // namespace
 
 std::string three_js(const fs::path& folder) {
@@ -154,26 +161,32 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
   const double sight_m = (scene.camera.eye_m - scene.camera.target_m).norm();
   std::vector<PackedRun> packed;
   const bool is_alone = options.three_file.empty();
-  std::string data = is_alone ? data_element("three", packed_three(options))
-                              : "<script src=\"" + link_to(options.three_file) + "\"></script>\n";
+  std::string data = is_alone ? data_element("three", packed_three(options)) : "";
   head["runs"] = Json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     packed.push_back(pack_run(scene, runs[r], r == 0 ? comparison.apart_m : std::vector<double>{},
                               sight_m, options));
     head["runs"].push_back(packed.back().head);
+    if (r == 1 && is_same_motion(scene, runs, comparison, sight_m, options)) {
+      // the channels of the first, which begin with the distance between the two
+      head["runs"].back()["series"] = packed[0].head["series"];
+      head["runs"].back()["channelsOf"] = 0;
+      continue;
+    }
     data += data_element("run" + std::to_string(r), packed.back().channels);
   }
   head["panels"] = panels_json(options.panels);
-  return filled(player_file("page.html"),
-                {{"beside", is_alone ? "" : " 'self' file:"},
-                 {"title", html_escape(scene.title.empty() ? scene.name : scene.title)},
-                 {"about", html_escape(scene.about)},
-                 {"style", std::string(player_file("player.css"))},
-                 {"script", script_text()},
-                 {"head", json_text(head)},
-                 {"data", data},
-                 {"still", player_still(runs, packed)},
-                 {"record", record_and_notices(runs)}});
+  return filled(
+      player_file("page.html"),
+      {{"beside", is_alone ? "" : " 'self' file:"},
+       {"title", html_escape(scene.title.empty() ? scene.name : scene.title)},
+       {"about", html_escape(scene.about)},
+       {"style", std::string(player_file("player.css"))},
+       {"script", is_alone ? "<script>\n" + script_text() + "</script>"
+                           : "<script src=\"" + link_to(options.three_file) + "\"></script>"},
+       {"data", data_element("about-run", deflated(json_text(head))) + data},
+       {"still", player_still(runs, packed)},
+       {"record", record_and_notices(runs)}});
 }
 
 std::size_t write_player(const fs::path& file, const scene::Scene& scene,
@@ -184,7 +197,8 @@ std::size_t write_player(const fs::path& file, const scene::Scene& scene,
 }
 
 void write_three(const fs::path& file, const PlayerOptions& options) {
-  write_whole(file, "window.tumbleThree = '" + base64(packed_three(options)) + "';\n");
+  write_whole(file,
+              "window.tumbleThree = '" + base64(packed_three(options)) + "';\n" + script_text());
 }
 
 }  // namespace tumble::report

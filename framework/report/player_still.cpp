@@ -12,7 +12,7 @@
 namespace tumble::report {
 namespace {
 
-constexpr std::size_t kMostStillPoints = 240;  // per curve: a static plot is 500 pixels wide
+constexpr std::size_t kMostStillPoints = 120;  // per curve: a static plot is 500 pixels wide
 constexpr std::size_t kMostEvents = 40;
 
 struct Wanted {

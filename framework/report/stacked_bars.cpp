@@ -13,8 +13,11 @@ namespace tumble::report {
 namespace {
 
 // Units of the drawing, with the width of plot.cpp; names are at the left.
-constexpr double kWidth = 640, kLeft = 214, kRight = 622, kTop = 34, kRow = 24, kBar = 17,
-                 kTextHeight = 17;
+constexpr double kTop = 34, kRow = 24, kBar = 17, kTextHeight = 17, kMargin = 18;
+struct Sides {
+  double left, right;  // of the bars
+};
+Sides sides_of(const StackedBars& bars) { return bars.is_small ? Sides{96, 342} : Sides{214, 622}; }
 constexpr double kLetter = 6.2;  // mean width of a letter
 constexpr double kLegendLetter = 6.6;
 constexpr double kRoomForNumber = 30;  // a narrower part shows no number
@@ -60,19 +63,20 @@ std::string text(double x, double y, const std::string& words, const char* ancho
 }
 
 /// In a font small enough to fit at the left of its bar.
-std::string name_of(const StackedBars::Row& row, double y) {
+std::string name_of(const StackedBars::Row& row, double y, double left) {
   const double size =
-      std::min(11.5, 11.5 * (kLeft - 12) /
+      std::min(11.5, 11.5 * (left - 12) /
                          (kLetter * std::max<double>(1.0, static_cast<double>(row.name.size()))));
-  return text(kLeft - 7, y + 0.5 * kBar + 4, row.name, "end",
+  return text(left - 7, y + 0.5 * kBar + 4, row.name, "end",
               fmt::format(" font-size=\"{:.3g}\"", size));
 }
 
-std::string bar(const StackedBars::Row& row, double y, double longest) {
-  std::string svg = name_of(row, y);
-  double x = kLeft;
+std::string bar(const StackedBars::Row& row, double y, double longest, const Sides& sides) {
+  std::string svg = name_of(row, y, sides.left);
+  double x = sides.left;
   for (std::size_t part = 0; part < row.values.size(); ++part) {
-    const double wide = longest > 0.0 ? row.values[part] / longest * (kRight - kLeft) : 0.0;
+    const double wide =
+        longest > 0.0 ? row.values[part] / longest * (sides.right - sides.left) : 0.0;
     if (wide <= 0.0) continue;
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" {} stroke=\"#fff\" "
@@ -93,11 +97,11 @@ std::string bar(const StackedBars::Row& row, double y, double longest) {
 
 std::string legend(const StackedBars& bars, double& y) {
   std::string svg;
-  double x = 18;
+  double x = kMargin;
   for (std::size_t part = 0; part < bars.parts.size(); ++part) {
     const double wide = 32 + kLegendLetter * static_cast<double>(bars.parts[part].size());
-    if (x > 18 && x + wide > kRight) {
-      x = 18;
+    if (x > kMargin && x + wide > sides_of(bars).right) {
+      x = kMargin;
       y += kTextHeight;
     }
     svg += fmt::format(
@@ -113,6 +117,7 @@ std::string legend(const StackedBars& bars, double& y) {
 }  // namespace
 
 std::string svg_of(const StackedBars& bars) {
+  const Sides sides = sides_of(bars);
   double longest = 0.0;
   for (const StackedBars::Row& row : bars.rows) {
     require(row.values.size() == bars.parts.size(),
@@ -123,11 +128,11 @@ std::string svg_of(const StackedBars& bars) {
     longest = std::max(longest, std::accumulate(row.values.begin(), row.values.end(), 0.0));
   }
   const double bottom = kTop + kRow * static_cast<double>(bars.rows.size());
-  std::string body = hatches(bars.parts.size()) +
-                     text(18, 20, bars.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+  std::string body = hatches(bars.parts.size()) + text(kMargin, 20, bars.title, "start",
+                                                       " font-weight=\"bold\" font-size=\"13.5\"");
   if (longest > 0.0)
     for (const double tick : ticks_of(0.0, longest, Scale::kLinear)) {
-      const double x = kLeft + tick / longest * (kRight - kLeft);
+      const double x = sides.left + tick / longest * (sides.right - sides.left);
       // the first may be -0
       body +=
           fmt::format(
@@ -136,16 +141,17 @@ std::string svg_of(const StackedBars& bars) {
           text(x, bottom + 15, fmt::format("{:.6g}", std::abs(tick)), "middle");
     }
   for (std::size_t i = 0; i < bars.rows.size(); ++i)
-    body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest);
+    body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest,
+                sides);
   body +=
-      text(0.5 * (kLeft + kRight), bottom + 34,
+      text(0.5 * (sides.left + sides.right), bottom + 34,
            fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit),
            "middle");
   double y = bottom + 58;
   body += legend(bars, y);
   return fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
-      kWidth, y + 10, html_escape(bars.title), body);
+      sides.right + kMargin, y + 10, html_escape(bars.title), body);
 }
 
 }  // namespace tumble::report

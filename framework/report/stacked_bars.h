@@ -24,9 +24,10 @@ struct StackedBars {
   std::vector<std::string> parts;  // distinguishable up to 8
   std::vector<Row> rows;           // from the top
   std::string caption = {};        // what the bars show
+  bool is_small = false;           // short names and few numbers: narrow enough for a phone
 };
 
-/// An <svg> element, 640 units wide.
+/// An <svg> element, 640 units wide, 360 where small.
 /// @pre every row has one finite value >= 0 for each part
 std::string svg_of(const StackedBars& bars);
 

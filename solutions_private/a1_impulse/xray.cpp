@@ -169,6 +169,7 @@ Shown impulse_of_bodies(const double& found, const Contact& contact, const Body&
   x.terms.push_back({"k_a", numbers(k_a), "1/kg"});
   x.terms.push_back({"r_b", numbers(r_b), "m"});
   x.terms.push_back({"k_b", numbers(k_b), "1/kg"});
+  x.terms.push_back({"n", numbers(n), ""});
   if (!(u < 0.0) || m <= 0.0) return x;
   const auto with = [&](double k) { return numbers(-(1.0 + e) * u / k); };
   const double body_a = yielding(a.inertia.inverse_inertia_body, r_a, n),
@@ -201,6 +202,8 @@ Shown applied(const Velocity& found, const Body& body, const Vector3d& impulse,
          {},
          {}};
   x.terms = {
+      {"J", numbers(impulse), "N s"},
+      {"r = p - x", numbers(r), "m"},
       {"v", numbers(v), "m/s"},
       {"J/m", numbers(Vector3d(impulse * body.inertia.inverse_mass)), "m/s"},
       {"omega", numbers(w), "rad/s"},
@@ -212,13 +215,13 @@ Shown applied(const Velocity& found, const Body& body, const Vector3d& impulse,
   x.found = numbers(found.linear_world, found.angular_world);
   const Vector3d body_spin = body.inertia.inverse_inertia_body * spin;
   x.variants = {
-      {0, "nothing: the impulse replaces v",
+      {2, "nothing: the impulse replaces v",
        numbers(Vector3d(impulse * body.inertia.inverse_mass), Vector3d(w + inverse * spin))},
-      {3, "J x r", numbers(linear, Vector3d(w - inverse * spin))},
-      {3, "r = p, the arm from the world's origin",
+      {5, "J x r", numbers(linear, Vector3d(w - inverse * spin))},
+      {1, "r = p, the arm from the world's origin",
        numbers(linear, Vector3d(w + inverse * point.cross(impulse)))},
-      {4, "I^-1 of the body frame with a world vector", numbers(linear, Vector3d(w + body_spin))},
-      {4, "nothing: omega stays", numbers(linear, w)}};
+      {6, "I^-1 of the body frame with a world vector", numbers(linear, Vector3d(w + body_spin))},
+      {6, "nothing: omega stays", numbers(linear, w)}};
   return x;
 }
 

@@ -2,7 +2,11 @@
 // story.
 #include <unistd.h>
 
+#include <algorithm>
+
+#include "framework/core/files.h"
 #include "framework/grading/sandbox/protection.h"
+#include "framework/grading/worker/crash_place.h"
 #include "tests/grading/attack_fixture.h"
 
 namespace tumble::grading {
@@ -69,6 +73,35 @@ TEST_F(RunAttack, SignalsAreNamed) {
   expect_end("stack", Verdict::kCrashed, "SIGSEGV");
   expect_end("abort", Verdict::kCrashed, "SIGABRT");
   expect_end("terminate", Verdict::kCrashed, "SIGABRT");
+}
+
+// The attacks are compiled below "#line 1", as a file called waist.cpp.
+TEST_F(RunAttack, ACrashHasItsLine) {
+  if (traits_of(chosen_sandbox()).links_worker)
+    GTEST_SKIP() << "a worker and its submission are one program here: frames are not told apart";
+  const std::string source =
+      text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/attacks/calls/in_call.cpp");
+  const auto line_of = [&](const char* words) {
+    return "waist.cpp:" +
+           std::to_string(1 + std::count(source.begin(),
+                                         source.begin() + static_cast<long>(source.find(words)),
+                                         '\n'));
+  };
+  expect_end("segmentation fault", Verdict::kCrashed, line_of("volatile int*>(8)").c_str());
+  expect_end("abort", Verdict::kCrashed, line_of("std::abort();").c_str());
+}
+
+// What a worker printed is a submission's, and so is the debug information of its object.
+TEST(CrashPlace, TakesOffsetsAndPlainNamesAlone) {
+  EXPECT_EQ(frames_in("frame 00000000000012ab\nframe 12\nframe ; rm -rf / ; 12ab\nhello\n"),
+            std::vector<std::string>{"0x00000000000012ab"});
+  EXPECT_EQ(own_line("/usr/include/a.h:3\n??:0\n/submission/a1_impulse.cpp:26 (discriminator 2)\n"),
+            "a1_impulse.cpp:26");
+  EXPECT_EQ(own_line("/submission/./a1.cpp:7"), "a1.cpp:7");
+  for (const char* forged :
+       {"/submission/<b>.cpp:26", "/submission/../key:1", "/submission/a.cpp:x",
+        "/submission/a.cpp:?", "/submission/:3", "a.cpp:3"})
+    EXPECT_EQ(own_line(forged), "") << forged;
 }
 
 TEST_F(RunAttack, ExceptionsAreQuoted) {

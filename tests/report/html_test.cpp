@@ -81,5 +81,40 @@ TEST(Page, PreformattedTextLeadsWhereItsLinksDo) {
             std::string::npos);
 }
 
+TEST(Page, FieldsAreTextUnderTheirNames) {
+  Page page("T");
+  page.fields({{"found", "<6>"}, {"read", "see a.md#x", {{"a.md#x", "a.html#x"}}}});
+  EXPECT_NE(page.html().find("<dt>found</dt><dd>&lt;6&gt;</dd>"), std::string::npos);
+  EXPECT_NE(page.html().find("<dd>see <a href=\"a.html#x\">a.md#x</a></dd>"), std::string::npos);
+}
+
+TEST(Page, ATableWithoutNamesHasNoHead) {
+  Page page("T");
+  page.table({"", {{""}, {""}}, {{{"u"}, {"-3 m/s"}}}});
+  EXPECT_EQ(page.html().find("<thead>"), std::string::npos);
+}
+
+// Controls of a video would cover a small picture.
+TEST(Page, AThumbnailIsAPictureThatLeads) {
+  Page page("T");
+  page.thumbnails({{"a.png", "a.mp4", "A fall", "", "a.html"}});
+  const std::string html = page.html();
+  EXPECT_NE(html.find("href=\"a.html\"><img loading=\"lazy\" src=\"a.png\""), std::string::npos);
+  EXPECT_EQ(html.find("<video"), std::string::npos);
+}
+
+// A plot is wider than a phone, and scrolls there: by the keyboard, too.
+TEST(Page, AWidePlotTakesTheKeyboardAndASmallOneFits) {
+  Page page("T");
+  page.plot(Plot{.title = "wide"});
+  StackedBars bars{.title = "small", .axis = {"n"}, .parts = {"one"}, .rows = {{"a", {1.0}}}};
+  bars.is_small = true;
+  page.plot(bars);
+  const std::string html = page.html();
+  EXPECT_NE(html.find("<figure class=\"plot-figure\" tabindex=\"0\">"), std::string::npos);
+  EXPECT_NE(html.find("<figure class=\"plot-figure small\"><svg class=\"plot\" viewBox=\"0 0 360 "),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace tumble::report

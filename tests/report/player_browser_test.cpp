@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "framework/render/camera.h"
@@ -107,6 +108,25 @@ TEST_F(PlayerInBrowser, DataAreRestored) {
   expect(1, 0, "an unknown velocity stays unknown");
   expect(run.frames[30].kinetic_energy + run.frames[30].potential_energy, 1.3e-5, "energy");
   expect(kGravity, 1e-2, "contact force");
+}
+
+// Their channels are kept once, and hold the distance between the two, which is a curve of one.
+TEST_F(PlayerInBrowser, TheSameMotionIsReadForBothRuns) {
+  const std::string script = R"(
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const [a, b] = tumble.player.runs, place = new THREE.Vector3(), turn = new THREE.Quaternion();
+      b.pose(0, b.frameAt(0.5), place, turn);
+      document.body.dataset.found = [b.label, a.series.filter(s => s.plot === 'apart').length,
+        b.series.filter(s => s.plot === 'apart').length, a.series.length - b.series.length,
+        place.x.toFixed(3), b.events.impulse[0]].join(' '); };
+    wait();)";
+  const std::string elements = browser.elements(browser.serve(
+      player_page(thrown_ball(), {{thrown_run(), "submission"}, {thrown_run(), "reference"}}),
+      script));
+  EXPECT_EQ(body_data(elements, "error"), "");
+  EXPECT_EQ(
+      body_data(elements, "found"),
+      fmt::format("reference 1 0 1 {:.3f} 6", thrown_run().frames[30].poses[0].com_world.x()));
 }
 
 TEST_F(PlayerInBrowser, BodyIsAtTheWallWhenItHitsIt) {

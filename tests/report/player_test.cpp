@@ -175,6 +175,26 @@ TEST(PlayerPage, IsSelfContained) {
   EXPECT_LT(page.size(), 600'000u);
 }
 
+// A report of a hundred pages has the scripts once, and the same motion once a page.
+TEST(PlayerPage, BesideAnotherFileHoldsNoScriptsAndTheSameMotionOnce) {
+  PlayerOptions beside;
+  beside.three_file = "three.js";
+  const std::string alone = player_page(thrown_ball(), {{thrown_run(), ""}}),
+                    small = player_page(thrown_ball(), {{thrown_run(), ""}}, beside);
+  EXPECT_NE(small.find("<script src=\"three.js\"></script>"), std::string::npos);
+  EXPECT_EQ(small.find("class Run"), std::string::npos);
+  EXPECT_NE(alone.find("class Run"), std::string::npos);
+  const std::string same =
+      player_page(thrown_ball(), {{thrown_run(), "a"}, {thrown_run(), "b"}}, beside);
+  EXPECT_NE(same.find("id=\"run0\""), std::string::npos);
+  EXPECT_EQ(same.find("id=\"run1\""), std::string::npos);
+  Trajectory other = thrown_run();
+  other.frames.back().poses.back().com_world.x() += 0.1;
+  EXPECT_NE(
+      player_page(thrown_ball(), {{thrown_run(), "a"}, {other, "b"}}, beside).find("id=\"run1\""),
+      std::string::npos);
+}
+
 TEST(PlayerPage, ShowsNamesAsText) {
   const std::string page = player_page(thrown_ball(), {{thrown_run(), "<b>label</b>"}});
   EXPECT_EQ(page.find("ball <1>"), std::string::npos);

@@ -38,8 +38,8 @@ constexpr const char* kWorkerInside = "/worker.o";
 #define TUMBLE_COMPILE                                                                        \
   "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS                                        \
   " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" " \
-  "-ffile-prefix-map=\"$2\"=/headers -isystem " TUMBLE_EIGEN_INCLUDE                          \
-  " -include \"$2/precompiled.h\" -x c++ \"$1\" -x none "
+  "-ffile-prefix-map=\"$2\"=/headers -ffile-prefix-map=\"$3\"=/submission "                   \
+  "-isystem " TUMBLE_EIGEN_INCLUDE " -include \"$2/precompiled.h\" -x c++ \"$1\" -x none "
 constexpr const char* kToSharedObject =
     TUMBLE_COMPILE "-shared -Wl,-z,defs -o \"$4/module\" && exec cat \"$4/module\" >&3";
 // Only the module's table stays visible to the worker: a main() or an operator new of the

@@ -97,6 +97,22 @@ void add_rest(const std::vector<ScoredTest>& tests, std::vector<Cause>& causes) 
   }
 }
 
+// "a1_impulse.cpp:26" of a crash in the function, as its story says; empty: none does.
+std::string place_of_crash(const Cause& cause, const std::string& function,
+                           const std::vector<ScoredTest>& tests) {
+  if (cause.kind != Cause::Kind::kCrash) return "";
+  const std::string words = ", in " + function + ", ";
+  for (const std::string& name : cause.tests) {
+    const ScoredTest* test = test_called(tests, name);
+    const std::string story = test == nullptr ? "" : test->result.story;
+    if (const std::size_t at = story.find(words); at != story.npos) {
+      const std::size_t begin = at + words.size();
+      return story.substr(begin, story.find_first_of(" \n", begin) - begin);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 int line_of_definition(const std::string& source, const std::string& function) {
@@ -142,7 +158,10 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
   for (Cause& cause : causes)
     for (const std::string& function : cause.functions) {
       const int line = line_of_definition(source, function);
-      cause.places.push_back(line > 0 ? fmt::format("{}:{}", file, line) : "");
+      const std::string crash = place_of_crash(cause, function, tests);
+      cause.places.push_back(!crash.empty() ? crash
+                             : line > 0     ? fmt::format("{}:{}", file, line)
+                                            : "");
     }
   std::stable_sort(causes.begin(), causes.end(), [&](const Cause& a, const Cause& b) {
     return points_lost(a, tests) > points_lost(b, tests);

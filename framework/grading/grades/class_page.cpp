@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/core/version.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/verdicts/plain_text.h"
@@ -47,7 +48,8 @@ void add_histogram(report::Page& page, const std::vector<Grade>& grades) {
                            {"submissions"},
                            {"submissions"},
                            {},
-                           "Full points count to the last bar."};
+                           "Full points count to the last bar.",
+                           true};
   for (std::size_t i = 0; i < kBins; ++i)
     bars.rows.push_back({fmt::format("{} to {} %", 10 * i, 10 * (i + 1)), {bins[i]}});
   page.heading("Points", 2, "points");
@@ -237,7 +239,7 @@ void add_pair(report::Page& page, const NamedSource& a, const NamedSource& b,
 
 report::Page class_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades,
                         const SlipTally& slips, const std::vector<Standing>& standings) {
-  report::Page page(title_of(kind, "the class"), fmt::format("{} submissions", grades.size()));
+  report::Page page(title_of(kind, "the class"), counted(grades.size(), "submission"));
   add_links(page);
   page.links({{"Points", "#points"},
               {"Slips", "#slips"},
@@ -321,7 +323,12 @@ report::Page similar_page(const modules::ModuleKind& kind, const std::vector<Nam
          {plain_name(sources[pair.b].name)},
          {fmt::format("{} %", pair.percent), pair.runs.empty() ? "" : "#" + pair_id(pair)}});
   }
-  page.heading(fmt::format("{} pairs", pairs.size()));
+  if (pairs.empty()) {
+    if (problem.empty()) page.paragraph("No two of them are alike.", Look::kMuted);
+    page.record(version_in_words(kProgramVersion));
+    return page;
+  }
+  page.heading(counted(pairs.size(), "pair"));
   if (pairs.size() > kMost)
     page.paragraph(fmt::format("The first {} are listed.", kMost), Look::kMuted);
   page.table(table);

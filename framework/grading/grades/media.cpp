@@ -19,6 +19,10 @@ using modules::AnyModule;
 using modules::ModuleKind;
 
 constexpr const char* kThree = "three.js";
+// A page of a few hundred bodies keeps every third frame or so: a fifth of its size.
+constexpr std::size_t kMostPoses = 120'000, kMostContacts = 120'000;
+// x264's constant quality: half the size of the 21 that a single run has, for many small videos.
+constexpr int kVideoQuality = 26;
 
 struct Run {
   Trajectory trajectory;
@@ -90,6 +94,7 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
   picture.height = options.height;
   picture.samples = options.samples;
   picture.video_rate_hz = options.rate_hz;
+  picture.video_crf = kVideoQuality;
   picture.root = course.root;
   media.picture = scene.name + ".png";
   render::write_side_by_side_picture(folder / media.picture, scene, runs,
@@ -104,12 +109,15 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
                 const fs::path& folder, const Course& course, SceneMedia& media) {
   report::PlayerOptions player;
   player.root = course.root;
-  player.three_file = kThree;  // written once for all scenes
+  player.three_file = kThree;  // one for all scenes
+  player.most_poses = kMostPoses;
+  player.most_contacts = kMostContacts;
   std::vector<report::PlayedRun> played;
   if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty())
     player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
-  if (!fs::exists(folder / kThree)) report::write_three(folder / kThree, player);
+  // also where an earlier program wrote one: it holds the scripts of these pages
+  report::write_three(folder / kThree, player);
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);
 }

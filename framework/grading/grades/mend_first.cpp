@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -135,42 +134,12 @@ void add_cause(report::Page& page, const Cause& cause, std::size_t number, const
   page.end();
 }
 
-// Stories are indented for a terminal; a page has its own indentation.
-std::string flush_left(const std::string& story) {
-  std::string text;
-  std::istringstream in(story);
-  for (std::string line; std::getline(in, line);)
-    if (!text.empty() || !line.empty())
-      text += (line.starts_with("  ") ? line.substr(2) : line) + "\n";
-  return text;
-}
-
 }  // namespace
 
 std::string anchor_of_story(const std::string& test) {
   std::string id = "t-";
   for (const char c : test) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
   return id;
-}
-
-void add_story(report::Page& page, const std::string& story, const PageView& view) {
-  const std::string text = plain_text(flush_left(story));
-  std::vector<report::Cell> links;
-  constexpr std::string_view kFolder = "handouts/";
-  for (std::size_t at = text.find(kFolder); at != text.npos && !view.handout.empty();
-       at = text.find(kFolder, at + 1)) {
-    std::size_t end = at;
-    while (end < text.size() &&
-           (std::isalnum(static_cast<unsigned char>(text[end])) != 0 ||
-            std::string_view("/_-.#").find(text[end]) != std::string_view::npos))
-      ++end;
-    const std::string named = text.substr(at, end - at);
-    const std::size_t hash = named.find('#');
-    const std::string stem = std::filesystem::path(named.substr(0, hash)).stem().string();
-    if (stem == view.handout_name)
-      links.push_back({named, view.handout + (hash == named.npos ? "" : named.substr(hash))});
-  }
-  page.preformatted(text, links);
 }
 
 void add_mend_first(report::Page& page, const Grade& grade, const PageView& view) {

@@ -18,6 +18,7 @@
 #include "framework/grading/verdicts/xray.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_wire.h"
+#include "framework/grading/worker/crash_place.h"
 
 namespace tumble::grading {
 namespace {
@@ -310,6 +311,13 @@ void WorkerConnection::end(Verdict verdict, const std::string& story) {
   throw CallEnded(story);
 }
 
+// Where a worker is one program with its submission, no frames are told apart.
+std::string WorkerConnection::place_words(const std::string& printed) const {
+  if (!options_.sandboxed || traits_of(job_.kind).links_worker) return "";
+  const std::string place = crash_place(job_, kModuleInside, printed);
+  return place.empty() ? "" : ", " + place;
+}
+
 void WorkerConnection::explain_death(const char* function) {
   // s: after the channel has closed, for a dying process to be reaped, also on a loaded machine
   constexpr double kGrace = 2.0;
@@ -322,7 +330,8 @@ void WorkerConnection::explain_death(const char* function) {
       if (outcome.code == SIGXCPU ||
           (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
         end_at_limit(function, options_.session_own_s);
-      end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(arguments_) +
+      end(Verdict::kCrashed, signal_story(outcome.code, function, true) +
+                                 place_words(outcome.printed) + asked_words(arguments_) +
                                  xray_of_last_call());
     case Ending::kExited: {
       const std::string said =

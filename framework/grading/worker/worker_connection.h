@@ -102,6 +102,7 @@ class WorkerConnection : public modules::Connection {
   void start();
   SandboxOutcome stop(double grace_s);
   void charge_wait(double wait_s);
+  std::string place_words(const std::string& printed) const;
   [[noreturn]] void explain_death(const char* function);
   [[noreturn]] void end(Verdict verdict, const std::string& story);
   [[noreturn]] void end_out_of_time(const char* function);

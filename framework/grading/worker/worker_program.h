@@ -8,6 +8,7 @@
 
 #include "framework/core/keep_memory.h"
 #include "framework/grading/sandbox/sandbox_wire.h"
+#include "framework/grading/worker/dying_words.h"
 #include "framework/modules/load.h"
 #include "framework/modules/serve.h"
 
@@ -18,6 +19,7 @@ template <class Module>
 int run_worker(int argc, char** argv) {
   keep_freed_memory();
   if (argc != 2) return 2;
+  say_frames_when_dying(argv[1]);
   try {
     const modules::AnyModule module = modules::load_module({Module::kId, Module::kId, ""}, argv[1]);
     modules::Channel channel(modules::Channel::End::kAnswers, kChannelFd, kChannelFd);

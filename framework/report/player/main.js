@@ -272,8 +272,8 @@ function runLoop(player, picture) {
 }
 
 async function main() {
-  const about = JSON.parse(byId('about-run').textContent);
-  const runs = await Promise.all(about.runs.map(async (head, r) => new Run(head, await openedBytes(`run${r}`))));
+  const about = JSON.parse(new TextDecoder().decode(await openedBytes('about-run')));
+  const runs = await Promise.all(about.runs.map(async (head, r) => new Run(head, await openedBytes(`run${head.channelsOf ?? r}`))));
   const player = new Player(about, runs);
   byId('player').hidden = byId('side').hidden = false;
   let picture = null;

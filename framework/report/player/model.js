@@ -21,6 +21,7 @@ class Run {
     }
     this.resting = new Map(head.resting.map(entry => [entry.body, entry.pose]));
     this.series = head.series.map(entry => ({ ...entry, values: reader.channel(n, Float64Array) }));
+    if (head.channelsOf !== undefined) this.series = this.series.filter(entry => entry.plot !== 'apart');   // the other run's
     this.readContacts(reader);
     this.readEvents(reader, head.events);
     this.findImpacts();
