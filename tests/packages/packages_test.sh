@@ -57,7 +57,8 @@ TUMBLE_COMPLETION_ROOT=$folder/root/usr/share/tumble bash -euc '
   source "$1"
   complete_words() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tumble; echo "${COMPREPLY[*]}"; }
   [ "$(complete_words tumble sta)" = start ]
-  [[ "$(complete_words tumble check a)" == a1\ a2\ a3\ a4* ]]
+  ids=$(ls -d "$TUMBLE_COMPLETION_ROOT"/assignments/a[0-9]*_*/ | sed "s|.*/\(a[0-9]*\)_[^/]*/|\1|" | sort -V | xargs)
+  [[ "$(complete_words tumble check a)" == "$ids"* ]]
   [[ "$(complete_words tumble run x --vi)" == "--video --virtual-times" || "$(complete_words tumble run x --vi)" == *--video* ]]
 ' completion "$folder/root/usr/share/bash-completion/completions/tumble" || fail "the completion of bash does not complete"
 echo "packages are whole, private parts are private, start and check work from them"
