@@ -148,6 +148,7 @@ void print_functions(const std::vector<AuditResult>& results,
 void print_unwritten(const std::vector<extend::Unwritten>& places) {
   for (const extend::Unwritten& one : places) fmt::print("{}: {}\n", one.place, one.what);
   fmt::print("{} to be written\n\n", counted(places.size(), "place"));
+  std::fflush(stdout);  // before what is told on stderr
 }
 
 // What graded pages take their likely causes from.
@@ -181,8 +182,14 @@ void audit(Context& context, const AuditWords& words) {
       fmt::print(stderr, "{} of {} judged\n", done, total);
   };
   const auto results = grading::audit(course, words.id, candidates, words.jobs, told);
-  std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0;
+  std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0, uncompiled = 0;
   for (const AuditResult& r : results) {
+    // of collected or proposed ones: nobody can hand it in
+    if (!words.mutants.empty() && !r.candidate.is_right &&
+        r.fault.starts_with("does not compile")) {
+      ++uncompiled;
+      continue;
+    }
     (r.candidate.is_right ? right : wrong) += 1;
     if (r.is_as_it_should()) (r.candidate.is_right ? whole : caught) += 1;
     if (r.is_named) ++named;
@@ -198,6 +205,7 @@ void audit(Context& context, const AuditWords& words) {
         "\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of "
         "{} right solutions have every point\n",
         caught, wrong, named, whole, right);
+    if (uncompiled > 0) fmt::print("{} more do not compile and do not count\n", uncompiled);
     if (words.only.empty())
       fmt::print("{}; --lines lists the others\n",
                  share_touched(grading::touched_lines_of_reference(course, words.id, all)));

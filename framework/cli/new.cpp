@@ -6,8 +6,10 @@
 
 #include "framework/cli/command.h"
 #include "framework/cli/words.h"
+#include "framework/core/files.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/text.h"
+#include "framework/extend/check_points.h"
 #include "framework/extend/mutations.h"
 #include "framework/extend/new_assignment.h"
 #include "framework/extend/new_parts.h"
@@ -89,6 +91,14 @@ const std::vector<Kind>& kinds() {
              "given some. ./tumble check {}\n",
              words.first);
        }},
+      {"points", "points a5", 1,
+       [](const Command& command, const NewWords& words) {
+         const std::string folder = extend::folder_of_assignment(command.root, words.first);
+         const auto handout = std::filesystem::path("handouts") / (folder + ".md");
+         write_whole(command.root / handout, extend::with_points_of_rubrics(command.root, folder));
+         return std::vector<NewFile>{{handout, ""}};
+       },
+       [](const Command&, const NewWords&) { return "its table has the points of the rubrics\n"; }},
       {"mutations", "mutations a5 FOLDER", 2,
        [](const Command& command, const NewWords& words) {
          return extend::new_mutations(command.root, words.first, words.second);
@@ -131,7 +141,7 @@ void make_new(const Command& command, const NewWords& words) {
 void add_new(CLI::App& app, Command& command) {
   auto words = std::make_shared<NewWords>();
   Verb verb(app, "new", "Write the files of a new assignment, effect, scene, slip or test");
-  verb.option("what", words->what, "assignment, effect, scene, slip, test, mutations")
+  verb.option("what", words->what, "assignment, effect, scene, slip, test, mutations, points")
       .required()
       .type_name("WORD");
   verb.option("first", words->first, "The assignment, e.g. a5; of an effect its name")
@@ -145,7 +155,8 @@ void add_new(CLI::App& app, Command& command) {
       .type_name("NAME");
   verb.flag("--hidden", words->hidden, "Of a test: students do not see it");
   verb.footer(
-      "No file is ever replaced, and nothing is left behind where a name is taken or wrong. What "
+      "No file is replaced (points writes the numbers of a handout's table after the rubrics), and "
+      "nothing is left behind where a name is taken or wrong. What "
       "only its author can write is marked \"(to be written: ...)\"; tumble audit aN lists these "
       "places. framework/EXTEND.md follows one afternoon.\n"
       "Example: tumble new assignment a5 plausible --functions plausible.h\n"

@@ -63,6 +63,43 @@ double points_of(const Rubric& rubric, const std::string& level) {
   return sum;
 }
 
+std::string id_of(const std::string& folder) { return folder.substr(0, folder.find('_')); }
+std::string head_of_table(const std::string& folder) {
+  return "<!-- points: " + id_of(folder) + " -->";
+}
+
+// A row of the handout's table: "| basic | what | 30 | 10 | 40 |".
+struct Row {
+  std::string level;  // empty: there is no table
+  std::size_t at;     // of its last three columns in the text; npos: there is no such row
+  std::string found, right;
+};
+
+std::vector<Row> rows_of_handout(const fs::path& file, const std::string& folder,
+                                 const Rubric& open, const Rubric& hidden) {
+  const std::string text = text_of(file);
+  const std::size_t table = text.find(head_of_table(folder));
+  if (table == std::string::npos) return {{"", std::string::npos, "", ""}};
+  static const std::regex numbers(R"(\| ?[^|]* \| ?[^|]* \| ?[^|]* \|$)");
+  std::vector<Row> rows;
+  for (const char* level : {"basic", "intermediate", "advanced"}) {
+    const double shown = points_of(open, level), kept = points_of(hidden, level);
+    Row row{level, std::string::npos, "",
+            "| " + number(shown) + " | " + number(kept) + " | " + number(shown + kept) + " |"};
+    const std::size_t begin = text.find(std::string("\n| ") + level + " |", table);
+    if (begin != std::string::npos) {
+      const std::size_t end = std::min(text.find('\n', begin + 1), text.size());
+      const std::string line = text.substr(begin + 1, end - begin - 1);
+      if (std::smatch match; std::regex_search(line, match, numbers)) {
+        row.at = begin + 1 + static_cast<std::size_t>(match.position());
+        row.found = match.str();
+      }
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 class Check {
  public:
   Check(const fs::path& root, const std::string& folder) : root_(root), folder_(folder) {
@@ -131,37 +168,23 @@ class Check {
     const fs::path header = fs::path("assignments") / folder_ / (folder_ + ".h");
     for (const std::string& function : functions_of_header(root_, folder_))
       if (!std::regex_search(tests, std::regex("(\\.|::|->)" + function + "\\b")))
-        say(place_of(root_, header, " " + function + "("),
-            "no test calls " + function + ". Write one: ./tumble new test " +
-                folder_.substr(0, folder_.find('_')) + " Suite.Name");
+        say(place_of(root_, header, " " + function + "("), "no test calls " + function +
+                                                               ". Write one: ./tumble new test " +
+                                                               id_of(folder_) + " Suite.Name");
   }
 
   void check_handout() {
     const fs::path file = fs::path("handouts") / (folder_ + ".md");
-    const std::string text = text_of(root_ / file),
-                      head = "<!-- points: " + folder_.substr(0, folder_.find('_')) + " -->";
-    const std::size_t table = text.find(head);
-    if (table == std::string::npos) {
-      say(place_of(file, 1), "has no table of points. It begins with a line  " + head);
-      return;
-    }
-    for (const char* level : {"basic", "intermediate", "advanced"}) {
-      const std::string right = number(points_of(open_, level)) + " | " +
-                                number(points_of(hidden_, level)) + " | " +
-                                number(points_of(open_, level) + points_of(hidden_, level)) + " |";
-      const std::size_t row = text.find(std::string("\n| ") + level + " |", table);
-      if (row == std::string::npos) {
-        say(place_of(file, line_at(text, table)),
-            std::string("the table has no row of level ") + level + ". It ends with  " + right);
-        continue;
-      }
-      const std::size_t end = std::min(text.find('\n', row + 1), text.size());
-      const std::string line = text.substr(row + 1, end - row - 1);
-      if (!line.ends_with("| " + right))
-        say(place_of(file, line_at(text, row + 1)), std::string("the row of level ") + level +
-                                                        " is not the rubrics'. It ends with  " +
-                                                        right);
-    }
+    for (const Row& row : rows_of_handout(root_ / file, folder_, open_, hidden_))
+      if (row.at == std::string::npos)
+        say(place_of(file, 1),
+            row.level.empty()
+                ? "has no table of points. It begins with a line  " + head_of_table(folder_)
+                : "the table has no row of level " + row.level + ". It ends with  " + row.right);
+      else if (row.found != row.right)
+        say(place_of(file, line_at(text_of(root_ / file), row.at)),
+            "the row of level " + row.level + " is not the rubrics'. It ends with  " + row.right +
+                "  (./tumble new points " + id_of(folder_) + " writes it)");
   }
 
   const fs::path& root_;
@@ -215,6 +238,25 @@ std::vector<std::string> check_points(const fs::path& root, const std::string& f
     if (where.starts_with(root.string() + "/")) where.erase(0, root.string().size() + 1);
     return {where + ": " + error.problem() + " " + error.remedy()};
   }
+}
+
+std::string with_points_of_rubrics(const fs::path& root, const std::string& folder) {
+  const fs::path file = root / "handouts" / (folder + ".md");
+  std::string text = text_of(file);
+  std::vector<Row> rows = rows_of_handout(
+      file, folder, grading::read_rubric(root / "assignments" / folder / "rubric.json"),
+      grading::read_rubric(root / "solutions_private" / folder / "rubric_hidden.json", true));
+  // from the end, so that places before stay
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.at > b.at; });
+  for (const Row& row : rows) {
+    if (row.at == std::string::npos)
+      throw UserError(
+          file.string(),
+          row.level.empty() ? "has no table of points" : "has no row of level " + row.level,
+          "It is written as in handouts/a1_impulse.md, below a line " + head_of_table(folder));
+    text.replace(row.at, row.found.size(), row.right);
+  }
+  return text;
 }
 
 }  // namespace tumble::extend

@@ -28,4 +28,9 @@ std::vector<std::string> functions_of_header(const std::filesystem::path& root,
 /// no test calls, a row of the handout's table that is not the rubrics'. Empty: all fits.
 std::vector<std::string> check_points(const std::filesystem::path& root, const std::string& folder);
 
+/// The handout with the numbers of its table as the rubrics have them; else as it is.
+/// @return its text
+/// @throws UserError where the table or a row of it is missing, and as read_rubric
+std::string with_points_of_rubrics(const std::filesystem::path& root, const std::string& folder);
+
 }  // namespace tumble::extend

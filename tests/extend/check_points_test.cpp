@@ -30,7 +30,7 @@ TEST(CheckPoints, ASumOtherThan100) {
       << said;
   // the handout still has the old sum: said, with the row that is right
   EXPECT_NE(said.find("handouts/a5_trial.md:48: the row of level basic is not the rubrics'. It "
-                      "ends with  59 | 0 | 59 |"),
+                      "ends with  | 59 | 0 | 59 |"),
             std::string::npos)
       << said;
 }
@@ -40,6 +40,18 @@ TEST(CheckPoints, PointsMovedWithinALevelNeedNoOtherChange) {
   tree.make_a5();
   tree.replace(kRubric, "\"points\": 30", "\"points\": 29");
   tree.replace(kRubric, "\"points\": 30", "\"points\": 31");
+  EXPECT_EQ(extend::check_points(tree.root(), "a5_trial"), std::vector<std::string>{});
+}
+
+// Points are changed in one place: the handout follows.
+TEST(CheckPoints, TheHandoutIsWrittenAfterTheRubrics) {
+  const NewTree tree;
+  tree.make_a5();
+  tree.replace(kRubric, "\"points\": 30, \"level\": \"basic\"",
+               "\"points\": 30, \"level\": \"advanced\"");
+  EXPECT_EQ(extend::check_points(tree.root(), "a5_trial").size(), 2u);
+  write_whole(tree.root() / "handouts/a5_trial.md",
+              extend::with_points_of_rubrics(tree.root(), "a5_trial"));
   EXPECT_EQ(extend::check_points(tree.root(), "a5_trial"), std::vector<std::string>{});
 }
 
