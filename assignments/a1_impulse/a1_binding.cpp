@@ -1,5 +1,9 @@
 #include "assignments/a1_impulse/a1_binding.h"
 
+#include "assignments/a1_impulse/a1_truths.h"
+#include "framework/engines/cost/showcase.h"
+#include "framework/live/showcase.h"
+
 namespace tumble::a1 {
 
 void bind(const Module& module, Laws& laws) {
@@ -8,6 +12,13 @@ void bind(const Module& module, Laws& laws) {
   laws.apply_impulse = module.apply_impulse;
   laws.wrench_of_point_force = module.wrench_of_point_force;
   laws.intersect_ray_triangle = module.intersect_ray_triangle;
+}
+
+void register_module(modules::Registry& registry) {
+  registry.add<Module>(bind);
+  registry.set_note(Module::kId, engines::CostShowcase{"collide_off_centre_e05", 2.0, true});
+  registry.set_note(Module::kId, live::Showcase{"poked_box"});
+  register_truths(registry);
 }
 
 }  // namespace tumble::a1

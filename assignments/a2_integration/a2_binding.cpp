@@ -1,5 +1,9 @@
 #include "assignments/a2_integration/a2_binding.h"
 
+#include "assignments/a2_integration/a2_truths.h"
+#include "framework/engines/cost/showcase.h"
+#include "framework/live/showcase.h"
+
 namespace tumble::a2 {
 
 void bind(const Module& module, Laws& laws) {
@@ -7,6 +11,15 @@ void bind(const Module& module, Laws& laws) {
   laws.state_derivative = module.rigid_body_derivative;
   laws.renormalize = module.renormalize;
   laws.find_impact_time = module.impact_time_newton;
+}
+
+void register_module(modules::Registry& registry) {
+  registry.add<Module>(bind);
+  registry.set_note(Module::kId, engines::CostShowcase{"t_handle", 1.0, true});
+  registry.set_note(Module::kId, live::Showcase{"t_handle"});
+  registry.add_method("euler_step", 1, &Module::euler_step);
+  registry.add_method("rk4_step", 4, &Module::rk4_step);
+  register_truths(registry);
 }
 
 }  // namespace tumble::a2

@@ -1,5 +1,8 @@
 #include "assignments/a3_constraints/a3_binding.h"
 
+#include "framework/engines/cost/showcase.h"
+#include "framework/live/showcase.h"
+
 namespace tumble::a3 {
 
 // anchor_position and anchor_velocity have no law: engines compute anchors themselves.
@@ -11,6 +14,12 @@ void bind(const Module& module, Laws& laws) {
   laws.constraint_correction = module.constraint_correction;
   laws.contact_forces = module.contact_forces;
   laws.ends_in_contact = module.ends_in_contact;
+}
+
+void register_module(modules::Registry& registry) {
+  registry.add<Module>(bind);
+  registry.set_note(Module::kId, engines::CostShowcase{"double_pendulum", 1.0, true});
+  registry.set_note(Module::kId, live::Showcase{"drop_a_box"});
 }
 
 }  // namespace tumble::a3

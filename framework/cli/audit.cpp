@@ -2,6 +2,7 @@
 // accept every right one?
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include <fmt/format.h>
@@ -10,6 +11,8 @@
 
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
+#include "framework/core/text.h"
+#include "framework/extend/unwritten.h"
 #include "framework/grading/grades/touched_lines.h"
 #include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/causes_file.h"
@@ -118,6 +121,36 @@ void print_lines(const grading::TouchedLines& lines, bool json) {
                range.code_lines, range.text.substr(0, kWidth));
 }
 
+// How well each function is guarded: its slips, the tests that catch one of them, and the test
+// without which the others would catch none.
+void print_functions(const std::vector<AuditResult>& results,
+                     const std::vector<std::string>& functions) {
+  std::size_t widest = 0;
+  for (const std::string& function : functions) widest = std::max(widest, function.size());
+  fmt::print("\n{:<{}}  slips  caught by\n", "function", widest);
+  const auto slips = grading::audited_slips(results, functions);
+  for (const std::string& function : functions) {
+    std::set<std::string> tests;
+    std::size_t count = 0;
+    for (const grading::AuditedSlip& slip : slips) {
+      if (slip.function != function) continue;
+      ++count;
+      for (const grading::Failure& failure : slip.fails) tests.insert(failure.test);
+    }
+    fmt::print("{:<{}}  {:>5}  {}\n", function, widest, count,
+               count == 0          ? "NO SLIP is in it alone"
+               : tests.size() == 1 ? "ONE TEST alone: " + *tests.begin()
+                                   : counted(tests.size(), "test"));
+  }
+}
+
+// What of a new assignment its author has not written yet.
+void print_unwritten(const std::vector<extend::Unwritten>& places) {
+  for (const extend::Unwritten& one : places) fmt::print("{}: {}\n", one.place, one.what);
+  fmt::print("{} to be written\n\n", counted(places.size(), "place"));
+  std::fflush(stdout);  // before what is told on stderr
+}
+
 // What graded pages take their likely causes from.
 void write_causes(const grading::Course& course, const std::string& id,
                   const std::vector<AuditResult>& results) {
@@ -136,6 +169,10 @@ void audit(Context& context, const AuditWords& words) {
   if (words.lines)
     return print_lines(grading::touched_lines_of_reference(course, words.id, all), words.json);
   const auto candidates = grading::only(all, words.only);
+  std::vector<extend::Unwritten> unwritten;
+  if (words.only.empty() && words.mutants.empty())
+    unwritten = extend::unwritten_of(context.root, context.registry.find(words.id).folder);
+  if (!words.json && !unwritten.empty()) print_unwritten(unwritten);
   grading::judge_of(course, words.id);
   const bool line = ::isatty(STDERR_FILENO) == 1;
   const auto told = [&](std::size_t done, std::size_t total) {
@@ -145,8 +182,14 @@ void audit(Context& context, const AuditWords& words) {
       fmt::print(stderr, "{} of {} judged\n", done, total);
   };
   const auto results = grading::audit(course, words.id, candidates, words.jobs, told);
-  std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0;
+  std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0, uncompiled = 0;
   for (const AuditResult& r : results) {
+    // of collected or proposed ones: nobody can hand it in
+    if (!words.mutants.empty() && !r.candidate.is_right &&
+        r.fault.starts_with("does not compile")) {
+      ++uncompiled;
+      continue;
+    }
     (r.candidate.is_right ? right : wrong) += 1;
     if (r.is_as_it_should()) (r.candidate.is_right ? whole : caught) += 1;
     if (r.is_named) ++named;
@@ -156,17 +199,21 @@ void audit(Context& context, const AuditWords& words) {
   } else {
     print_mutants(results);
     print_tests(grading::rubric_of(course, words.id), results);
+    if (words.only.empty() && words.mutants.empty())
+      print_functions(results, context.registry.find(words.id).functions);
     fmt::print(
         "\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of "
         "{} right solutions have every point\n",
         caught, wrong, named, whole, right);
+    if (uncompiled > 0) fmt::print("{} more do not compile and do not count\n", uncompiled);
     if (words.only.empty())
       fmt::print("{}; --lines lists the others\n",
                  share_touched(grading::touched_lines_of_reference(course, words.id, all)));
   }
-  if (words.only.empty() && words.mutants.empty() && caught == wrong && whole == right)
+  const bool is_whole = caught == wrong && whole == right && unwritten.empty();
+  if (words.only.empty() && words.mutants.empty() && is_whole)
     write_causes(course, words.id, results);
-  context.exit = caught == wrong && whole == right ? ExitCode::kFine : ExitCode::kCheckFailed;
+  context.exit = is_whole ? ExitCode::kFine : ExitCode::kCheckFailed;
 }
 
 }  // namespace
@@ -197,7 +244,10 @@ void add_audit(CLI::App& app, Context& context) {
       "alone do not count.\n"
       "A whole audit in which all is as it should be writes solutions_private/aN_name/causes.json, "
       "from which graded pages take their likely causes.\n"
-      "Exit: 0 all caught and no right solution accused, 1 otherwise.");
+      "Places of a new assignment that are still \"(to be written: ...)\" come first, with file "
+      "and "
+      "line.\n"
+      "Exit: 0 all caught, no right solution accused and nothing left to be written, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });
 }
 

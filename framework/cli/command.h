@@ -40,6 +40,7 @@ int run_verbs(int argc, char** argv, Command& command,
 void add_check(CLI::App& app, Command& command);
 void add_handouts(CLI::App& app, Command& command);
 void add_inspect(CLI::App& app, Command& command);
+void add_new(CLI::App& app, Command& command);
 void add_plots(CLI::App& app, Command& command);
 void add_start(CLI::App& app, Command& command);
 void add_watch(CLI::App& app, Command& command);

@@ -98,6 +98,15 @@ void check_links(const std::vector<Handout>& handouts, const fs::path& figures) 
                     "Correct them, then run the command again.");
 }
 
+// What of a new handout its author has not written yet: the page shows it, too.
+void say_unwritten(const std::vector<Handout>& handouts) {
+  for (const Handout& handout : handouts)
+    for (std::size_t i = 0; i < handout.lines.size(); ++i)
+      if (handout.lines[i].find("(to be written") != std::string::npos)
+        fmt::print(stderr, "handouts/{}:{}: {}\n", handout.file.filename().string(), i + 1,
+                   handout.lines[i]);
+}
+
 // Draws the figures where the reference solutions are; a tree without them contains the pictures.
 void make_figures(const Command& command, const fs::path& figures) {
   fs::remove_all(figures);  // an old picture would hide that it is not drawn any more
@@ -165,6 +174,7 @@ void build_handouts(Command& command, const HandoutsOptions& options) {
     throw UserError("--out " + options.out, "is where the handouts themselves stand",
                     "Name another folder, for example out/handouts.");
   const std::vector<Handout> handouts = read_handouts(folder);
+  say_unwritten(handouts);
   make_figures(command, figures);
   check_links(handouts, figures);
   // no date in a PDF: the same handout gives the same bytes

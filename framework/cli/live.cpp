@@ -11,8 +11,10 @@
 #include "framework/cli/module_choice.h"
 #include "framework/cli/planned_run.h"
 #include "framework/core/files.h"
+#include "framework/grading/course/course.h"
 #include "framework/grading/course/run_program.h"
 #include "framework/live/session.h"
+#include "framework/live/showcase.h"
 
 namespace tumble::cli {
 namespace {
@@ -25,18 +27,20 @@ struct LiveWords : RunWords {
   std::string part, id;  // of the other processes (live_parts.h)
 };
 
-/// The scene that shows best what an assignment is about.
-const std::map<std::string, std::string> kScenesOf = {
-    {"a1", "poked_box"}, {"a2", "t_handle"}, {"a3", "drop_a_box"}, {"a4", "billiards"}};
-
 /// "a3" becomes a scene of it. @return the assignment's id; empty for a scene
 std::string scene_of_assignment(const Context& context, std::string& word) {
   for (const modules::ModuleKind* kind : context.registry.all())
     if (kind->id == word) {
-      const auto scene = kScenesOf.find(word);
-      if (scene == kScenesOf.end())
-        throw UserError(word, "has no scene that stands for it", "Name one of its scenes.");
-      word = scene->second;
+      word = kind->note<live::Showcase>().scene;
+      if (!word.empty()) return kind->id;
+      const auto scenes =
+          grading::scenes_of({context.root, context.build, &context.registry}, kind->id);
+      if (scenes.empty())
+        throw UserError(kind->id, "has no scene",
+                        "Name a scene of another assignment, or write one: tumble new scene NAME "
+                        "--of " +
+                            kind->id);
+      word = scenes.front().stem().string();
       return kind->id;
     }
   return "";

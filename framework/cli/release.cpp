@@ -6,12 +6,14 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <regex>
 #include <vector>
 
 #include "framework/cli/private_files.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/core/version.h"
+#include "framework/extend/unwritten.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/course/release_checks.h"
 #include "framework/grading/course/run_program.h"
@@ -111,6 +113,28 @@ void refuse_odd_rubrics(const Context& context) {
       grading::rubric_of(course, kind->id);
 }
 
+// Files that no list names because the build finds them: left out, they would be missed by nothing.
+void refuse_untracked_parts(const std::vector<fs::path>& untracked) {
+  static const std::regex found_by_build(
+      R"((assignments/a[0-9]+_\w+|framework/effects/\w+)/CMakeLists\.txt)"
+      R"(|tests/(a[0-9]+_\w+|effects)/\w+_(test|fixtures)\.cpp)"
+      R"(|handouts/drawings/draw_a[0-9]+\.cpp)");
+  std::vector<grading::Finding> findings;
+  for (const fs::path& file : untracked)
+    if (std::regex_match(file.string(), found_by_build))
+      findings.push_back({file.string(), "is part of this build and not tracked by git"});
+  refuse(findings, "git add it, or move it away.");
+}
+
+// A new assignment is no student's before its author has written it.
+void refuse_unwritten(const Context& context) {
+  std::vector<grading::Finding> findings;
+  for (const modules::ModuleKind* kind : context.registry.all())
+    for (const extend::Unwritten& one : extend::unwritten_of(context.root, kind->folder))
+      findings.push_back({one.place, one.what});
+  refuse(findings, "Write it, or take the assignment's folders out of the tree for now.");
+}
+
 void refuse_what_is_no_stub(const Context& context, const fs::path& release,
                             const std::vector<std::string>& published) {
   for (const modules::ModuleKind* kind : context.registry.all()) {
@@ -158,9 +182,13 @@ void release(Context& context, const ReleaseOptions& options) {
   for (const std::string& id : options.publish) context.registry.find(id);
   const std::vector<fs::path> files = project_files(context.root);
   refuse_odd_rubrics(context);
-  if (fs::exists(context.root / ".git"))
-    refuse(grading::missing_files(context.root, files, listed_by_git(context.root, "--others")),
+  refuse_unwritten(context);
+  if (fs::exists(context.root / ".git")) {
+    const std::vector<fs::path> untracked = listed_by_git(context.root, "--others");
+    refuse_untracked_parts(untracked);
+    refuse(grading::missing_files(context.root, files, untracked),
            "git add it, or take out what needs it.");
+  }
 
   // Built beside the target and renamed last: a release is complete or absent.
   const fs::path partial = target.string() + ".partial";

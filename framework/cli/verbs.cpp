@@ -29,6 +29,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_ledger(app, context);
   add_doctor(app, context);
   begin_group(app, "for instructors");
+  add_new(app, context);
   add_handouts(app, context);
   add_audit(app, context);
   add_attack(app, context);

@@ -22,6 +22,6 @@ const ModuleName& find_name(const std::vector<ModuleName>& names, const std::str
 }  // namespace tumble::modules
 
 namespace tumble {
-/// Every assignment, in their order. Defined once, in assignments/names.cpp.
+/// Every assignment of the tree, in their order: assignments/CMakeLists.txt finds their folders.
 const std::vector<modules::ModuleName>& assignment_names();
 }  // namespace tumble

@@ -110,6 +110,6 @@ class Registry {
 }  // namespace tumble::modules
 
 namespace tumble {
-/// Defined in assignments/register.cpp, with one line per assignment.
+/// Registers each assignment of the tree by its aN_binding.h (assignments/CMakeLists.txt).
 void register_assignments(modules::Registry& registry);
 }  // namespace tumble

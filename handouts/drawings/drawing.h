@@ -99,9 +99,8 @@ struct Figure {
   std::string name;
   std::function<Drawing()> draw;
 };
-std::vector<Figure> figures_of_a1();
-std::vector<Figure> figures_of_a2();
-std::vector<Figure> figures_of_a3();
-std::vector<Figure> figures_of_a4();
+/// Those of each assignment that has drawings: figures_of_aN() of draw_aN.cpp (CMakeLists.txt finds
+/// the files).
+std::vector<std::vector<Figure>> all_figures();
 
 }  // namespace tumble::handouts

@@ -12,7 +12,7 @@ int main(int count, char** words) {
     return 2;
   }
   using namespace tumble::handouts;
-  for (const auto& figures : {figures_of_a1(), figures_of_a2(), figures_of_a3(), figures_of_a4()})
+  for (const std::vector<Figure>& figures : all_figures())
     for (const Figure& figure : figures) {
       const std::string file = std::string(words[1]) + "/" + figure.name + ".svg";
       if (!(std::ofstream(file) << figure.draw().svg())) {

@@ -70,6 +70,15 @@ bool names(const LikelySlip& likely, const std::string& slip) {
          std::find(likely.equals.begin(), likely.equals.end(), slip) != likely.equals.end();
 }
 
+// "a1_impulse", ...: the folders of assignments/ that hold a rubric.
+std::vector<std::string> assignments() {
+  std::vector<std::string> folders;
+  for (const auto& entry : fs::directory_iterator(kRoot / "assignments"))
+    if (fs::exists(entry.path() / "rubric.json")) folders.push_back(entry.path().filename());
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
 // What a submission with one slip fails is what the audit saw, so the slip, or one that cannot be
 // told from it, comes first.
 TEST_P(CausesFile, EachSlipAloneIsNamedFirst) {
@@ -115,9 +124,7 @@ TEST_P(CausesFile, TwoSlipsInOneSubmissionAreBothNamed) {
       << both << " of " << pairs;
 }
 
-INSTANTIATE_TEST_SUITE_P(Assignments, CausesFile,
-                         ::testing::Values("a1_impulse", "a2_integration", "a3_constraints",
-                                           "a4_timewarp"));
+INSTANTIATE_TEST_SUITE_P(Assignments, CausesFile, ::testing::ValuesIn(assignments()));
 
 }  // namespace
 }  // namespace tumble::grading

@@ -102,7 +102,7 @@ TEST(Handouts, HaveTheAnchorsThatSourcesPointTo) {
     // Anchors put together at run time end in a dash here; the equations' test covers them.
     const std::set<std::string> cited =
         all(sources, "handouts/" + a.folder + "\\.md#([a-z0-9-]*[a-z0-9])(?![a-z0-9-])");
-    EXPECT_GE(cited.size(), 8u) << a.folder << ": no citations were found";
+    EXPECT_FALSE(cited.empty()) << a.folder << ": no citations were found";
     for (const std::string& anchor : cited)
       EXPECT_TRUE(anchors.contains(anchor)) << a.handout_file().filename() << " has no #" << anchor;
   }

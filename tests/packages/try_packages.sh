@@ -37,7 +37,7 @@ as_student() { echo "cd /home/student && setpriv --reuid student --regid student
 timed "tumble start a1 a1" "$(as_student 'tumble start a1 a1')"
 timed "first tumble check a1 (a stub)" "$(as_student 'cd a1 && tumble check a1')" 4
 timed "second tumble check a1" "$(as_student 'cd a1 && tumble check a1')" 4
-for id in a2 a3 a4; do timed "start and check $id" "$(as_student "tumble start $id $id >/dev/null; cd $id && tumble check $id")" 4; done
+for id in $(cd "$tree/assignments" && ls -d a[0-9]*_*/ | sed 's/_.*//'); do [ "$id" = a1 ] || timed "start and check $id" "$(as_student "tumble start $id $id >/dev/null; cd $id && tumble check $id")" 4; done
 timed "another file, in the sandbox" "$(as_student 'cp a1/a1_impulse.cpp other.cpp; cd a1; tumble check a1 ../other.cpp')" 4
 timed "tumble inspect t_handle" "$(as_student 'tumble inspect t_handle')"
 timed "tumble grade, which the course has not" "$(as_student 'mkdir -p s/ada; cp a1/a1_impulse.cpp s/ada; tumble grade a1 s')" 2

@@ -10,6 +10,7 @@
 #include "framework/core/files.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/verdicts/verdict.h"
+#include "framework/modules/names.h"
 
 namespace tumble::grading {
 namespace {
@@ -94,7 +95,9 @@ class AttackReader {
          }},
         {"module",
          [&] {
-           attack_.module = one_of({"a1", "a2", "a3", "a4"}, value);
+           std::vector<std::string> ids;
+           for (const modules::ModuleName& name : assignment_names()) ids.push_back(name.id);
+           attack_.module = one_of(ids, value);
          }},
         {"base",
          [&] {

@@ -19,7 +19,7 @@
 ///            that a test cannot tell from a right one is worth as much
 ///   state    judged (default), does not compile, or nothing to compile; several with ", " between
 ///            them, where it depends on the sandbox
-///   module   a1 (default) to a4
+///   module   an assignment; default a1
 ///   base     stub (default) or reference: the text that is changed
 ///   story    words that some story or note must hold; may stand several times
 ///   never    words that no page of it may hold; may stand several times

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# What an instructor does first, in a copy of this tree: a new assignment, an effect, a scene, a slip and a test are made, the copy is
+# configured, and the new check program is built and run. Every stub is "not attempted", and no list of ids had to be changed for that.
+# Usage: new_assignment_test.sh ROOT TUMBLE_NEW CHECK_POINTS
+set -euo pipefail
+root=$1 new=$2 check_points=$3
+fail() { echo "new_assignment_test: $*" >&2; exit 1; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+copy=$folder/tree
+mkdir "$copy"
+tar -C "$root" --exclude=./build --exclude='./build-*' --exclude=./out --exclude=./.git -cf - . | tar -C "$copy" -xf -
+
+cat >"$folder/functions.h" <<'END'
+#include "framework/dynamics/body.h"
+
+// What came of a trial.
+struct Trial {
+  int count;
+  double mean;
+};
+
+// The mean of two numbers.
+// eq: m = (a + b) / 2
+double mean_of(double a, double b);
+
+// Momentum of a body.
+// eq: p = m v
+Vector3d momentum_of(const Body& body);
+
+// Counts trials.
+Trial count_trials(const std::function<double(double)>& f, const std::vector<double>& at);
+END
+export TUMBLE_ROOT=$copy
+"$new" new assignment a99 trial --functions "$folder/functions.h" >"$folder/said" || fail "new assignment: $(cat "$folder/said")"
+"$new" new test a99 MeanOf.IsSymmetric >"$folder/said" || fail "new test: $(cat "$folder/said")"
+"$new" new slip a99 half_forgotten --function momentum_of >"$folder/said" || fail "new slip: $(cat "$folder/said")"
+"$new" new scene a99 trial_at_rest >"$folder/said" || fail "new scene: $(cat "$folder/said")"
+"$new" new effect low_wind >"$folder/said" || fail "new effect: $(cat "$folder/said")"
+"$check_points" "$copy" a99_trial || fail "the points of a new assignment do not fit"
+
+cmake -S "$copy" -B "$folder/build" -G Ninja >"$folder/configure.log" 2>&1 || fail "does not configure: $(tail -n 20 "$folder/configure.log")"
+grep -q '"a99", "a99_trial", "Trial"' "$folder/build/generated/assignment_names.cpp" || fail "the assignment is in no list of names"
+grep -q 'a99::register_module' "$folder/build/generated/register_assignments.cpp" || fail "the assignment is not registered"
+grep -q 'low_wind_effect' "$folder/build/generated/effects/all_effects.cpp" || fail "the effect is in no list of effects"
+for target in check_a99 judge_a99 worker_a99 a99_reference check_a99_reference check_a99_loaded check_a99_sandboxed; do
+  ninja -C "$folder/build" -t query $target >/dev/null || fail "there is no target $target"
+done
+
+ninja -C "$folder/build" -j 2 check_a99 >"$folder/build.log" 2>&1 || fail "does not build: $(tail -n 40 "$folder/build.log")"
+code=0
+"$folder/build/bin/check_a99" >"$folder/said" 2>&1 || code=$?
+[ $code = 4 ] || fail "check_a99 exits with $code, not 4 for \"not attempted\": $(cat "$folder/said")"
+[ "$(grep -c 'not attempted' "$folder/said")" -ge 4 ] || fail "not every stub is \"not attempted\": $(cat "$folder/said")"
+! grep -Eq '^ *(wrong|crashed|right|fault)' "$folder/said" || fail "a stub is more than not attempted: $(cat "$folder/said")"
+echo "a new assignment is found, builds, and every stub of it is \"not attempted\""

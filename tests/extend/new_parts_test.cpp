@@ -1,0 +1,96 @@
+// tumble new effect, scene, slip, test.
+#include <gtest/gtest.h>
+
+#include "framework/extend/check_points.h"
+#include "framework/extend/new_parts.h"
+#include "tests/extend/new_tree.h"
+
+namespace tumble::testing {
+namespace {
+
+TEST(NewTest, HasAnEntryAndChangesNoSum) {
+  const NewTree tree;
+  tree.make_a5();
+  extend::new_test(tree.root(), "a5", "MeanOf.IsHalfTheSum", false);
+  extend::new_test(tree.root(), "a5", "MeanOf.IsSymmetric", true);
+  EXPECT_EQ(extend::check_points(tree.root(), "a5_trial"), std::vector<std::string>{});
+  EXPECT_NE(text_of(tree.root() / "assignments/a5_trial/rubric.json")
+                .find("\"title\": \"Is half the sum\""),
+            std::string::npos);
+  EXPECT_NE(text_of(tree.root() / "tests/a5_trial/mean_of_is_half_the_sum_test.cpp")
+                .find("namespace tumble::a5_testing {"),
+            std::string::npos);
+}
+
+// A stub throws in it: "not attempted", like every test of the assignment.
+TEST(NewTest, CallsTheFunctionOfItsSuite) {
+  const NewTree tree;
+  tree.make_a5();
+  extend::new_test(tree.root(), "a5", "LargerPart.IsALength", false);
+  const std::string test = text_of(tree.root() / "tests/a5_trial/larger_part_is_a_length_test.cpp");
+  EXPECT_NE(test.find("under_test<Module>().larger_part(Vector3d(1, 2, 3))"), std::string::npos)
+      << test;
+}
+
+TEST(NewTest, IsRefusedWhereItsNameIsTakenOrWrong) {
+  const NewTree tree;
+  tree.make_a5();
+  const auto before = tree.files();
+  for (const auto& [test, words] : std::vector<std::pair<std::string, std::string>>{
+           {"MeanOf.IsRightInAPlainCase", "is there already: tests/a5_trial/trial_test.cpp:"},
+           {"MeanOf", "is no name of a test"},
+           {"mean_of.Works", "is no name of a test"}}) {
+    const std::string said =
+        refusal_of([&, &t = test] { extend::new_test(tree.root(), "a5", t, false); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  }
+  EXPECT_NE(
+      refusal_of([&] { extend::new_test(tree.root(), "a7", "A.B", false); }).find("Known: a5."),
+      std::string::npos);
+  EXPECT_EQ(tree.files(), before);
+}
+
+TEST(NewSlip, BeginsWithALineOfTheFunction) {
+  const NewTree tree;
+  tree.make_a5();
+  write_whole(tree.root() / "solutions_private/a5_trial/a5_trial.cpp",
+              "double mean_of(double a, double b) {\n  const double sum = a + b;\n"
+              "  return sum / 2;\n}\n\nVector3d larger_part(const Vector3d& arm_world) {\n"
+              "  return 2 * arm_world;\n}\n");
+  extend::new_slip(tree.root(), "a5", "twice", "larger_part");
+  const std::string slip = text_of(tree.root() / "solutions_private/a5_trial/mutants/twice.slip");
+  EXPECT_NE(slip.find("// mutant: twice - "), std::string::npos) << slip;
+  EXPECT_NE(slip.find("\n-  return 2 * arm_world;\n+  return 2 * arm_world;"), std::string::npos)
+      << slip;
+  const std::string said =
+      refusal_of([&] { extend::new_slip(tree.root(), "a5", "other", "larger_parts"); });
+  EXPECT_NE(said.find("Did you mean 'larger_part'?"), std::string::npos) << said;
+}
+
+TEST(NewScene, IsNamedOnceInAllAssignments) {
+  const NewTree tree;
+  tree.make_a5();
+  extend::new_scene(tree.root(), "a5", "tall_drop");
+  EXPECT_NE(text_of(tree.root() / "assignments/a5_trial/scenes/tall_drop.json")
+                .find("\"needs\": [\"a5\"]"),
+            std::string::npos);
+  const std::string said = refusal_of([&] { extend::new_scene(tree.root(), "a5", "trial"); });
+  EXPECT_NE(said.find("is a scene of a5_trial already"), std::string::npos) << said;
+}
+
+TEST(NewEffect, IsAFolderAndATest) {
+  const NewTree tree;
+  extend::new_effect(tree.root(), "low_wind");
+  const auto files = tree.files();
+  EXPECT_TRUE(files.contains("framework/effects/low_wind/low_wind_effect.cpp"));
+  EXPECT_TRUE(files.contains("framework/effects/low_wind/schema.json"));
+  EXPECT_TRUE(files.contains("tests/effects/low_wind_test.cpp"));
+  EXPECT_NE(files.at("framework/effects/low_wind/low_wind_effect.cpp").find("kLowWindSchema"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal_of([&] { extend::new_effect(tree.root(), "water"); }).find("is an effect already"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumble::testing
