@@ -386,9 +386,17 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
     if (chosen[kind->id].empty()) bind_spare(context, *kind, result);
   }
   modules::set_library_motion(result.laws);
+  result.laws.rows_are_given = true;
   for (const ModuleKind* kind : kinds) {
     const std::string& word = chosen[kind->id];
-    if (!word.empty()) add_module(context, scene, *kind, word, files[kind->id], result);
+    if (word.empty()) continue;
+    const std::string before = result.laws.constraint_source;
+    add_module(context, scene, *kind, word, files[kind->id], result);
+    // Rows of the reference, or of a finished assignment in a scene of another, are not looked at.
+    if (result.laws.constraint_source != before)
+      result.laws.rows_are_given =
+          word == "reference" ||
+          (has_home && !is_own(scene, *kind) && !words.contains(kind->id) && !words.contains(""));
   }
   return result;
 }

@@ -289,6 +289,21 @@ void ArticulatedTree::accelerate(const std::vector<Wrench>& wrenches) {
   solve(wrenches, true);
 }
 
+// Newton's law from the leaves to the roots: m a is what acts on the body, its own joint, and the
+// opposite of what its children are held by.
+std::vector<Vector3d> ArticulatedTree::joint_forces(const std::vector<Wrench>& wrenches) const {
+  std::vector<Vector3d> forces(nodes_.size(), Vector3d::Zero());
+  for (auto at = order_.rbegin(); at != order_.rend(); ++at) {
+    const auto place = static_cast<std::size_t>(*at);
+    const Node& node = nodes_[place];
+    forces[place] += node.mass * solved_[place].a - wrenches[place].force_world;
+    if (node.parent >= 0 && node.parent < movable())
+      forces[static_cast<std::size_t>(node.parent)] += forces[place];
+    if (node.kind == TreeJoint::kFree) forces[place].setZero();
+  }
+  return forces;
+}
+
 VectorXd ArticulatedTree::response(const std::vector<Wrench>& wrenches) {
   if (!is_factored_) factor();
   is_factored_ = true;

@@ -28,9 +28,15 @@ Quaterniond twist_about_z(const Quaterniond& turn) {
   return {turn.w() / length, 0.0, 0.0, turn.z() / length};
 }
 
-Vector3d z_axis(const Quaterniond& q) {
-  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
-          1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
+/// R I R^T, which is symmetric: R I first, then six of its entries.
+Matrix3d turned_inertia(const Matrix3d& R, const Matrix3d& inertia_body) {
+  const Matrix3d half = R * inertia_body;
+  Matrix3d turned;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j)
+      turned(i, j) = turned(j, i) =
+          half(i, 0) * R(j, 0) + half(i, 1) * R(j, 1) + half(i, 2) * R(j, 2);
+  return turned;
 }
 
 Quaterniond turn_of(const Vector3d& rotation) {
@@ -78,7 +84,7 @@ void ArticulatedTree::turn_by_joint(const Node& node, double angle, double rate,
   motion.w = parent.w;
   motion.angle_rate = rate;
   if (node.kind == TreeJoint::kWeld) return;
-  motion.axis = parent.R * z_axis(node.parent_from_joint);
+  motion.axis = parent.R * node.axis_parent;
   motion.w += rate * motion.axis;
 }
 
@@ -91,8 +97,7 @@ void ArticulatedTree::settle_arms(const Node& node, Motion& motion) const {
     return;
   }
   motion.R = motion.q.toRotationMatrix();
-  motion.inertia = node.is_even ? node.inertia_body
-                                : Matrix3d(motion.R * node.inertia_body * motion.R.transpose());
+  motion.inertia = node.is_even ? node.inertia_body : turned_inertia(motion.R, node.inertia_body);
   if (node.at_own_centre) return;
   motion.arm_own = motion.R * node.point_own;
   const Vector3d turning = motion.w.cross(motion.arm_own);
@@ -113,8 +118,7 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
     Motion& motion = motions_[static_cast<std::size_t>(place)];
     const RigidBodyState& state = states[static_cast<std::size_t>(place)];
     motion.q = state.world_from_body.normalized();
-    const Matrix3d inverse_inertia = node.inertia_body.inverse();
-    motion.w = omega_world_of(state, inverse_inertia);
+    motion.w = omega_world_of(state, node.inverse_inertia_body);
     Index at = node.at;
     // How the body stands against its parent, by what its joint leaves free.
     if (node.kind == TreeJoint::kFree) {
@@ -144,7 +148,7 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
                             : node.parent_from_joint;
         double rate = 0.0;
         if (node.kind == TreeJoint::kHinge) {
-          const Vector3d axis = parent.q * (node.parent_from_joint * Vector3d::UnitZ());
+          const Vector3d axis = parent.q * node.axis_parent;
           rate = axis.dot(motion.w - parent.w);
           y[half + at] = rate;
         }
@@ -175,7 +179,7 @@ void ArticulatedTree::measure_misfit(const std::vector<RigidBodyState>& states) 
     parting = std::max(parting, (v - motion.v).norm());
     fastest = std::max({fastest, v.norm(), size_ * motion.w.norm()});
     if (node.kind != TreeJoint::kHinge && node.kind != TreeJoint::kWeld) continue;
-    const Vector3d w = omega_world_of(state, node.inertia_body.inverse());
+    const Vector3d w = omega_world_of(state, node.inverse_inertia_body);
     turned = std::max(turned, (state.world_from_body.conjugate() * motion.q).vec().norm());
     parting = std::max(parting, size_ * (w - motion.w).norm());
   }

@@ -38,6 +38,7 @@ ArticulatedTree::ArticulatedTree(const std::vector<Inertia>& bodies, int fixed_e
     require(bodies[i].inverse_mass > 0.0, "a body of an articulated tree can move");
     nodes_[i].mass = bodies[i].mass;
     nodes_[i].inertia_body = bodies[i].inertia_body;
+    nodes_[i].inverse_inertia_body = bodies[i].inertia_body.inverse();
     const double moment = bodies[i].inertia_body(0, 0);
     nodes_[i].is_even = bodies[i].inertia_body == moment * Matrix3d::Identity();
   }
@@ -101,6 +102,7 @@ void ArticulatedTree::hang(const std::vector<Inertia>& bodies, const std::vector
         node.point_own = a_is_parent ? link.point_b_body : link.point_a_body;
         node.length = link.length;
         node.parent_from_joint = a_is_parent ? link.a_from_joint : link.b_from_joint;
+        node.axis_parent = node.parent_from_joint * Vector3d::UnitZ();
         node.joint_from_own = (a_is_parent ? link.b_from_joint : link.a_from_joint).conjugate();
       }
   }

@@ -86,6 +86,11 @@ class ArticulatedTree {
   VectorXd rate() const;
   /// What the rod on which a body hangs pulls with, by the last accelerate(): > 0 is a pull. [N]
   double tension(int body) const { return -solved_[static_cast<std::size_t>(body)].along_rod; }
+  /// What pushes each body at the joint on which it hangs, by accelerate() under these forces; 0
+  /// for a free body. World frame [N]. Cost: O(bodies)
+  std::vector<Vector3d> joint_forces(const std::vector<Wrench>& wrenches) const;
+  /// The link on which a body hangs: its place in `links`; -1 for a free body.
+  int link_of(int body) const { return nodes_[static_cast<std::size_t>(body)].link; }
 
  private:
   struct Node {
@@ -95,7 +100,8 @@ class ArticulatedTree {
     Quaterniond parent_from_joint, joint_from_own;
     double length = 0.0;
     double mass = 0.0;
-    Matrix3d inertia_body;
+    Matrix3d inertia_body, inverse_inertia_body;
+    Vector3d axis_parent;          // of a hinge
     bool is_even = false;          // its principal moments are the same
     bool at_own_centre = true;     // its joint's point is its centre
     bool at_parent_centre = true;  // and its parent's

@@ -69,6 +69,10 @@ struct Laws {
   std::function<bool(double approach_speed, double restitution, double restitution_threshold)>
       ends_in_contact;
 
+  /// Whether rods and joints are not what a run is to show: where a scene leaves the choice of
+  /// coordinates, it may then go without their rows.
+  bool rows_are_given = false;
+
   // Decisions of a timewarp scheduler (assignment a4). Filled: --engine tw asks them.
   Scheduling scheduling;
 

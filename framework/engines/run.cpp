@@ -18,6 +18,7 @@
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/rd/retroactive.h"
+#include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/local_origin.h"
 #include "framework/engines/stepping/start_overlaps.h"
 #include "framework/engines/stepping/start_watch.h"
@@ -47,8 +48,10 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
        "a2 (or the framework's library laws)");
   need(laws.renormalize, scene, "the renormalisation of quaternions",
        "a2 (or the framework's library laws)");
+  const bool asks_no_rows = scene.coordinates == scene::Coordinates::kReduced && !scene.contact &&
+                            goes_without_rows(build_world(scene));
   for (const effects::Effect* effect : effects::all())
-    if (effect->is_asked(scene))
+    if (effect->is_asked(scene) && !(asks_no_rows && effect->traits().constrains))
       for (const effects::NeededLaw& law : effect->needed_laws(scene, laws))
         need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
   if (scene.contact) {
@@ -63,11 +66,12 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
 }
 
 /// The scene in the coordinates that "auto" stands for: those that rods and joints leave free,
-/// unless a module's laws of rods and joints are what the run shows.
+/// unless a module's rows of these are what the run shows.
 scene::Scene in_chosen_coordinates(const scene::Scene& scene, const Laws& laws) {
   scene::Scene chosen = scene;
-  chosen.coordinates =
-      laws.constraint_multipliers ? scene::Coordinates::kMaximal : scene::Coordinates::kReduced;
+  chosen.coordinates = laws.constraint_multipliers && !laws.rows_are_given
+                           ? scene::Coordinates::kMaximal
+                           : scene::Coordinates::kReduced;
   return chosen;
 }
 

@@ -217,6 +217,75 @@ TEST(ArticulatedTree, AcceleratesAsDenseEquationsDo) {
   }
 }
 
+TEST(ArticulatedTree, JointForcesAreWhatMovesEachBody) {
+  // A uniform rod that is let go horizontally, hinged at its end, falls with 3 g / 2 L, so that its
+  // hinge carries a quarter of its weight. A ball at rest hangs on a rod by its own, m g.
+  constexpr double kLength = 0.8, kMass = 2.0, kGravity = 9.81;
+  const double across = kMass * kLength * kLength / 12;
+  const std::vector<Inertia> bodies = {
+      finite_inertia(kMass, Vector3d(1e-3, across, across).asDiagonal()),
+      finite_inertia(3.0, 0.1 * Matrix3d::Identity())};
+  std::vector<TreeLink> links(2);
+  links[0].kind = TreeJoint::kHinge;
+  links[0].a = 2;
+  links[0].b = 0;
+  links[0].point_b_body = {-0.5 * kLength, 0, 0};
+  links[0].a_from_joint = links[0].b_from_joint =
+      Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitY());
+  links[1].kind = TreeJoint::kRod;
+  links[1].a = 1;
+  links[1].b = 2;
+  links[1].length = 0.5;
+  ArticulatedTree tree(bodies, 1, links);
+  const Vector3d zero = Vector3d::Zero();
+  const std::vector<RigidBodyState> states = {
+      {{0.5 * kLength, 0, 0}, Quaterniond::Identity(), zero, zero},
+      {{0, 0, -0.5}, Quaterniond::Identity(), zero, zero}};
+  std::vector<Wrench> weights;
+  for (const Inertia& body : bodies)
+    weights.push_back({body.mass * kGravity * -Vector3d::UnitZ(), zero});
+  tree.stand_at(tree.begin(states, {FixedEnd{}}, false), {FixedEnd{}});
+  tree.accelerate(weights);
+  const std::vector<Vector3d> forces = tree.joint_forces(weights);
+  constexpr double kTolerance = 100 * kEps * kMass * kGravity;
+  EXPECT_LT((forces[0] - 0.25 * kMass * kGravity * Vector3d::UnitZ()).norm(), kTolerance);
+  EXPECT_LT((forces[1] - 3.0 * kGravity * Vector3d::UnitZ()).norm(), kTolerance);
+  EXPECT_NEAR(tree.tension(1), 3.0 * kGravity, kTolerance) << "a pull is positive";
+}
+
+TEST(ArticulatedTree, JointForcesOfFreeBodiesTogetherAreNone) {
+  // What two bodies of a forest push each other with cancels: all forces at joints of bodies on
+  // fixed ends are what momentum changes by, beyond what acts from outside.
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    Lot lot(3000 + seed);
+    Linkage all = forest_by_lot(lot, 1 + lot.below(9), kAllKinds);
+    ArticulatedTree tree(all.bodies, 2, all.links);
+    settle(tree, all);
+    tree.accelerate(all.wrenches);
+    const std::vector<Vector3d> forces = tree.joint_forces(all.wrenches);
+    const VectorXd expected = dense_accelerations(all);
+    Vector3d from_ends = Vector3d::Zero();
+    double size = 1.0;
+    for (int i = 0; i < static_cast<int>(all.bodies.size()); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      from_ends += all.bodies[at].mass * expected.segment<3>(6 * i) - all.wrenches[at].force_world;
+      size = std::max(size, forces[at].norm());
+    }
+    Vector3d found = Vector3d::Zero();
+    const int n = static_cast<int>(all.bodies.size());
+    for (std::size_t i = 0; i < all.bodies.size(); ++i) {
+      if (tree.link_of(static_cast<int>(i)) < 0) {
+        EXPECT_EQ(forces[i].norm(), 0.0) << "a free body";
+        continue;
+      }
+      const TreeLink& link = all.links[static_cast<std::size_t>(tree.link_of(static_cast<int>(i)))];
+      if (std::max(link.a, link.b) >= n) found += forces[i];
+    }
+    EXPECT_LT((found - from_ends).norm(), kRounding * size * (1.0 + expected.norm()))
+        << "seed " << seed;
+  }
+}
+
 TEST(ArticulatedTree, RespondsToAPushAsItsAccelerationsChange) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     Lot lot(1000 + seed);

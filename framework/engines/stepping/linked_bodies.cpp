@@ -383,6 +383,7 @@ VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) 
 }
 
 void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
+  if (!laws_.constraint_correction && goes_without_rows()) return settle_on_tree(local, t);
   const StageTimer timer(counters_.constraint_seconds);
   const auto correct = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all,
                            bool of_places) {
@@ -443,7 +444,8 @@ void LinkedBodies::project(std::vector<RigidBodyState>& states, double t) {
 }
 
 void LinkedBodies::watch(const std::vector<RigidBodyState>& states, double t, double h) {
-  if (!has_constraints()) return;
+  // a tree's coordinates cannot open its joints
+  if (!has_constraints() || (goes_without_rows() && !touched_)) return;
   const bool is_projected =
       world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kProjection;
   const double allowed = is_projected ? kLinkClosed : kLinkDrifts;
@@ -466,7 +468,13 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t,
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   VectorXd multipliers;
-  if (has_constraints()) {
+  const auto touches = [&](const ContactPoint& contact) {
+    return has(contact.body_a) || has(contact.body_b);
+  };
+  if (has_constraints() && goes_without_rows() &&
+      std::none_of(contacts.begin(), contacts.end(), touches)) {
+    multipliers = multipliers_of_tree(local, t);
+  } else if (has_constraints()) {
     std::vector<Wrench> wrenches = forces(local, bodies);
     if (built::kContact) add_contacts(bodies, contacts, wrenches);
     multipliers = add_constraint_forces(bodies, local, wrenches);

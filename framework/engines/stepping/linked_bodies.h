@@ -75,6 +75,9 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Why the group is not integrated in joint coordinates where the world asks for these; empty: it
   /// is, as long as nothing touches it.
   const std::string& kept_maximal_by() const { return kept_maximal_by_; }
+  /// Whether its rods and joints ask for no law of rows as long as nothing touches it: it has none,
+  /// or goes in the coordinates of a tree.
+  bool goes_without_rows() const { return !has_constraints() || (tree_ && loop_rows_.empty()); }
   /// In words: numbers of joint coordinates and of rows that close loops. @pre kept_maximal_by() is
   /// empty, and the world asks for joint coordinates
   std::string reduced_in_words() const;
@@ -146,6 +149,9 @@ class LinkedBodies final : effects::GroupPlaces {
                                               double h);
   VectorXd begin_reduced(std::vector<RigidBodyState>& local, double t);
   VectorXd reduced_rate(double t, const VectorXd& y);
+  void accelerate_tree(double t, const VectorXd& y);
+  VectorXd multipliers_of_tree(std::vector<RigidBodyState> local, double t);
+  void settle_on_tree(std::vector<RigidBodyState>& local, double t);
   void stand_fixed_ends_at(double t);
   void close_loops();
   Vector3d acceleration_of_fixed(int fixed, const Vector3d& com_world, double t) const;
@@ -193,6 +199,10 @@ class LinkedBodies final : effects::GroupPlaces {
 /// What becomes of each group of a world that asks for joint coordinates, in words: its numbers, or
 /// why it keeps six coordinates a body.
 std::vector<std::string> coordinates_in_words(const World& world);
+
+/// Whether no law of rows will be asked for in a world: its rods and joints hang bodies in trees in
+/// joint coordinates, and none of these bodies collides.
+bool goes_without_rows(const World& world);
 
 /// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
 /// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become

@@ -109,6 +109,19 @@ std::vector<std::string> coordinates_in_words(const World& world) {
   return all;
 }
 
+bool goes_without_rows(const World& world) {
+  const Laws none;
+  RunCounters counters;
+  for (LinkedGroup& group : groups_of_linked_bodies(world)) {
+    const LinkedBodies linked(world, none, counters, {}, std::move(group));
+    const bool collides = std::any_of(
+        linked.bodies().begin(), linked.bodies().end(),
+        [&](int body) { return world.bodies[static_cast<std::size_t>(body)].collides; });
+    if (linked.has_constraints() && (collides || !linked.goes_without_rows())) return false;
+  }
+  return true;
+}
+
 void LinkedBodies::stand_fixed_ends_at(double t) {
   for (std::size_t k = 0; k < fixed_.size(); ++k) {
     Body& seen = seen_[bodies_.size() + k];
@@ -142,7 +155,7 @@ VectorXd LinkedBodies::begin_reduced(std::vector<RigidBodyState>& local, double 
       wrenches_[i] = {seen_[i].inertia.mass * gravity_world, Vector3d::Zero()};
   }
   VectorXd y = tree_->begin(local, ends_, turns_freely);
-  if (tree_->misfit() > kLinksFit) {
+  if (tree_->misfit() > kLinksFit && laws_.constraint_correction) {
     project_local(local, t, true);
     y = tree_->begin(local, ends_, turns_freely);
   }
@@ -209,6 +222,11 @@ void LinkedBodies::close_loops() {
 
 VectorXd LinkedBodies::reduced_rate(double t, const VectorXd& y) {
   ++counters_.derivative_evaluations;
+  accelerate_tree(t, y);
+  return tree_->rate();
+}
+
+void LinkedBodies::accelerate_tree(double t, const VectorXd& y) {
   time_of_stage_ = t;
   if (ends_move_) stand_fixed_ends_at(t);
   tree_->stand_at(y, ends_);
@@ -230,7 +248,32 @@ VectorXd LinkedBodies::reduced_rate(double t, const VectorXd& y) {
   }
   tree_->accelerate(wrenches_);
   if (!loop_rows_.empty()) close_loops();
-  return tree_->rate();
+}
+
+// What rows would push with, had the tree any: a rod along itself, a joint at its point.
+VectorXd LinkedBodies::multipliers_of_tree(std::vector<RigidBodyState> local, double t) {
+  const VectorXd y = begin_reduced(local, t);
+  accelerate_tree(t, y);
+  const std::vector<Vector3d> forces = tree_->joint_forces(wrenches_);
+  VectorXd multipliers = VectorXd::Zero(static_cast<Eigen::Index>(row_count_));
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const int place = static_cast<int>(i);
+    if (tree_->link_of(place) < 0) continue;
+    const TreeLink& link = joints_[static_cast<std::size_t>(tree_->link_of(place))];
+    if (link.kind == TreeJoint::kRod)
+      multipliers[link.row] = -tree_->tension(place);
+    else
+      multipliers.segment<3>(link.row) = link.a == place ? forces[i] : Vector3d(-forces[i]);
+  }
+  return multipliers;
+}
+
+// Without a law that projects: what the tree makes of these states, which is theirs where they fit
+// its links.
+void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) {
+  stand_fixed_ends_at(t);
+  tree_->begin(local, ends_, false);
+  for (std::size_t i = 0; i < local.size(); ++i) local[i] = tree_->state(static_cast<int>(i), 0.0);
 }
 
 std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyState> local,
