@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -318,6 +319,8 @@ report::CostPage page_of(const Context& context, const std::vector<Refinement>& 
   for (const Refinement& refinement : refinements)
     page.curves.push_back(curve_of(refinement, reference, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);
+  if (const std::string compared = coordinates_compared(page); !compared.empty())
+    page.readings.push_back(compared);
   if (reference.by_numbers && !allows_something(subject.scene))
     page.readings.push_back(
         "All tolerances of the scene's numbers are 0, so a run keeps to them or does not: the page "
@@ -391,6 +394,34 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
                                   best->name, report::cheapest(*best, mark)->fineness));
   }
   return words;
+}
+
+std::string coordinates_compared(const report::CostPage& page) {
+  report::CostPage with_rows = page, in_joints = page;
+  const auto is_in_joints = [](const report::CostCurve& curve) {
+    return curve.name.ends_with(kInJointCoordinates);
+  };
+  std::erase_if(with_rows.curves, is_in_joints);
+  std::erase_if(in_joints.curves, std::not_fn(is_in_joints));
+  if (with_rows.curves.empty() || in_joints.curves.empty()) return "";
+  for (auto mark = page.marks.rbegin(); mark != page.marks.rend(); ++mark) {
+    const report::CostCurve *rows = cheapest_curve(with_rows, *mark),
+                            *joints = cheapest_curve(in_joints, *mark);
+    if (joints == nullptr && rows == nullptr) continue;
+    const std::string error = report::mark_in_words(page, *mark);
+    if (joints == nullptr)
+      return fmt::format("{} is reached with six coordinates a body only ({}).", error, rows->name);
+    if (rows == nullptr)
+      return fmt::format("{} is reached in joint coordinates only ({}).", error, joints->name);
+    const double price = report::cheapest(*joints, *mark)->cpu_s,
+                 ratio = report::cheapest(*rows, *mark)->cpu_s / price;
+    return fmt::format(
+        "{} costs {} in joint coordinates, and {:.1f} times {} with six coordinates a body and "
+        "their rows ({}).",
+        error, report::price_of(price), ratio >= 1.0 ? ratio : 1.0 / ratio,
+        ratio >= 1.0 ? "as much" : "less", rows->name);
+  }
+  return "";
 }
 
 void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws,

@@ -31,6 +31,10 @@ void check_with_files(const Context& context, const scene::Scene& scene, const L
 /// The cheapest method for each error, one sentence each.
 std::vector<std::string> verdicts(const report::CostPage& page);
 
+/// What joint coordinates change, in a sentence: the smallest error that is reached both with rows
+/// and without, and what it costs; empty where a page does not have both.
+std::string coordinates_compared(const report::CostPage& page);
+
 /// The curve that reaches an error at the least cost; nullptr where none does.
 const report::CostCurve* cheapest_curve(const report::CostPage& page, double mark);
 

@@ -91,7 +91,7 @@ CostMethod by_stabilisation(const std::string& word, const scene::Scene& scene, 
 
 /// The same method in joint coordinates.
 CostMethod in_joint_coordinates(CostMethod method) {
-  method.name += ", joint coordinates";
+  method.name += kInJointCoordinates;
   method.coordinates = scene::Coordinates::kReduced;
   return method;
 }

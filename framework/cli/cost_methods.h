@@ -11,6 +11,9 @@
 
 namespace tumble::cli {
 
+/// How names of methods in joint coordinates end.
+inline constexpr const char* kInJointCoordinates = ", joint coordinates";
+
 struct CostWords {
   std::string scene;  // or an assignment's id
   std::string modules, on, out = "out/cost";

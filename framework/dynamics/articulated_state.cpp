@@ -9,9 +9,15 @@ namespace {
 
 using Eigen::Index;
 
-Vector3d omega_world_of(const RigidBodyState& state, const Matrix3d& inverse_inertia_body) {
+// Each step writes I w and reads it back. An inverse rounded once for all would multiply w by the
+// same 1 + eps every time, which adds up with the steps; with what it leaves solved for again, w
+// comes back as it went.
+Vector3d omega_body_of(const RigidBodyState& state, const Matrix3d& inertia_body,
+                       const Matrix3d& inverse_inertia_body) {
   const Quaterniond& q = state.world_from_body;
-  return q * (inverse_inertia_body * (q.conjugate() * state.angular_momentum_world));
+  const Vector3d momentum_body = q.conjugate() * state.angular_momentum_world;
+  const Vector3d omega_body = inverse_inertia_body * momentum_body;
+  return omega_body + inverse_inertia_body * (momentum_body - inertia_body * omega_body);
 }
 
 /// q times the turn about z by this angle.
@@ -118,7 +124,8 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
     Motion& motion = motions_[static_cast<std::size_t>(place)];
     const RigidBodyState& state = states[static_cast<std::size_t>(place)];
     motion.q = state.world_from_body.normalized();
-    motion.w = omega_world_of(state, node.inverse_inertia_body);
+    const Vector3d omega_body = omega_body_of(state, node.inertia_body, node.inverse_inertia_body);
+    motion.w = motion.q * omega_body;
     Index at = node.at;
     // How the body stands against its parent, by what its joint leaves free.
     if (node.kind == TreeJoint::kFree) {
@@ -159,7 +166,7 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
       node.at_begin = motion.q;
       if (!node.turns_evenly) {
         y.segment<4>(at) << motion.q.w(), motion.q.x(), motion.q.y(), motion.q.z();
-        y.segment<3>(half + at) = motion.q.conjugate() * motion.w;
+        y.segment<3>(half + at) = omega_body;
       }
     }
     settle_arms(node, motion);
@@ -179,7 +186,8 @@ void ArticulatedTree::measure_misfit(const std::vector<RigidBodyState>& states) 
     parting = std::max(parting, (v - motion.v).norm());
     fastest = std::max({fastest, v.norm(), size_ * motion.w.norm()});
     if (node.kind != TreeJoint::kHinge && node.kind != TreeJoint::kWeld) continue;
-    const Vector3d w = omega_world_of(state, node.inverse_inertia_body);
+    const Vector3d w =
+        state.world_from_body * omega_body_of(state, node.inertia_body, node.inverse_inertia_body);
     turned = std::max(turned, (state.world_from_body.conjugate() * motion.q).vec().norm());
     parting = std::max(parting, size_ * (w - motion.w).norm());
   }

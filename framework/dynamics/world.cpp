@@ -25,6 +25,11 @@ Vector3d omega_of(const RigidBodyState& state, const Inertia& inertia) {
   return R * (inertia.inverse_inertia_body * (R.transpose() * state.angular_momentum_world));
 }
 
+bool is_finite(const RigidBodyState& state) {
+  return state.com_world.allFinite() && state.world_from_body.coeffs().allFinite() &&
+         state.momentum_world.allFinite() && state.angular_momentum_world.allFinite();
+}
+
 Vector3d angular_momentum_of(const Vector3d& omega_world, const Quaterniond& world_from_body,
                              const Inertia& inertia) {
   const Matrix3d R = world_from_body.toRotationMatrix();

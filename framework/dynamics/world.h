@@ -60,6 +60,8 @@ Vector3d prescribed_velocity(const WorldBody& body, double time);
 
 /// Angular velocity that belongs to a state. World frame. [rad/s]
 Vector3d omega_of(const RigidBodyState& state, const Inertia& inertia);
+/// Whether a state is made of numbers.
+bool is_finite(const RigidBodyState& state);
 /// Angular momentum of a body turning at omega_world. [kg m^2/s]
 Vector3d angular_momentum_of(const Vector3d& omega_world, const Quaterniond& world_from_body,
                              const Inertia& inertia);

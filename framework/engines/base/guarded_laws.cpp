@@ -6,6 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
+#include "framework/dynamics/world.h"
 
 namespace tumble::engines {
 namespace {
@@ -42,8 +43,6 @@ struct Guard {
 };
 
 constexpr const char* kNotANumber = "a value that is not a number";
-
-bool is_finite(const RigidBodyState& state) { return pack(state).allFinite(); }
 
 void guard_impulses(const Laws& laws, Laws& safe) {
   const std::string& source = laws.impulse_source;

@@ -114,7 +114,7 @@ WorldStep::Taken WorldStep::give_up() {
 void WorldStep::require_numbers() const {
   for (int body = 0; body < moving_.size(); ++body)
     if (!moving_.world().bodies[static_cast<std::size_t>(body)].immovable() &&
-        !pack(moving_.state(body)).allFinite())
+        !is_finite(moving_.state(body)))
       throw StoppedRun(
           fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})",
                       name(body), laws_.integrator_source, laws_.impulse_source));

@@ -154,10 +154,14 @@ void MovingWorld::watch_links(double h) {
 // times in it, and a search for impacts along such a path would hardly end.
 void MovingWorld::refuse_fast_turning(int body) const {
   constexpr double kMostTurnOnPath = 20 * std::numbers::pi;  // rad in a step: ten turns
+  // Ends that turn less stand for a path of less than kMostTurnOnPath: its middle may turn by three
+  // times the way, which is less than three turns then, and by what the ends add.
+  constexpr double kSlowEnds = 1.0;  // rad in a step
   const Path& path = paths_[body];
+  if (is_finite(path.end) && path.smooth->turning_at_ends() < kSlowEnds) return;
   const double step = target_ - time_, speed = path.smooth->bounds().angular_speed;
   const std::string subject = fmt::format("body '{}'", world_.bodies[body].name);
-  if (!pack(path.end).allFinite() || std::isnan(speed))
+  if (!is_finite(path.end) || std::isnan(speed))
     throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", subject,
                                  laws_.integrator_source));
   // a ball looks the same however it turns

@@ -139,7 +139,10 @@ class MovingWorld {
   const RigidBodyState& path_end(int body);
   /// The path that set_path has given, or that links have; nothing where the laws are asked at
   /// every instant.
-  const std::optional<SmoothPath>& smooth_path(int body) const { return paths_[body].smooth; }
+  const std::optional<SmoothPath>& smooth_path(int body) const {
+    if (paths_[body].smooth) paths_[body].smooth->work_out();
+    return paths_[body].smooth;
+  }
 
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);

@@ -58,10 +58,22 @@ SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end,
     : t0_(t0),
       h_(t1 - t0),
       inertia_(inertia),
+      is_worked_out_(false),
+      from_(start),
+      to_(end),
       start_(start.world_from_body),
       momenta_(momenta),
       momentum_{start.momentum_world, end.momentum_world},
-      angular_momentum_{start.angular_momentum_world, end.angular_momentum_world} {
+      angular_momentum_{start.angular_momentum_world, end.angular_momentum_world} {}
+
+double SmoothPath::turning_at_ends() const {
+  return h_ * std::max(omega_of(from_, inertia_).norm(), omega_of(to_, inertia_).norm());
+}
+
+void SmoothPath::find_polynomials() const {
+  is_worked_out_ = true;
+  const RigidBodyState &start = from_, &end = to_;
+  const Inertia& inertia = inertia_;
   hermite(start.com_world, h_ * inertia.inverse_mass * start.momentum_world, end.com_world,
           h_ * inertia.inverse_mass * end.momentum_world, x_);
 
@@ -90,6 +102,7 @@ SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end,
 }
 
 Vector3d SmoothPath::omega_world(double s, Quaterniond& world_from_body) const {
+  work_out();
   const Vector3d phi = value(phi_, s);
   world_from_body = (start_ * exponential(phi)).normalized();
   return world_from_body * (turning(phi) * slope(phi_, s) / h_);
@@ -97,6 +110,7 @@ Vector3d SmoothPath::omega_world(double s, Quaterniond& world_from_body) const {
 
 RigidBodyState SmoothPath::at(double t) const {
   const double s = (t - t0_) / h_;
+  work_out();
   RigidBodyState state;
   state.com_world = value(x_, s);
   const Vector3d omega = omega_world(s, state.world_from_body);
@@ -112,6 +126,7 @@ RigidBodyState SmoothPath::at(double t) const {
 
 collision::MotionState SmoothPath::motion_at(double t) const {
   const double s = (t - t0_) / h_;
+  work_out();
   collision::MotionState motion;
   motion.pose.com_world = value(x_, s);
   motion.omega_world = omega_world(s, motion.pose.world_from_body);

@@ -5,7 +5,8 @@
 /// The centre goes along the cubic through both ends with their velocities (Hermite). The body
 /// turns as q(t) = q0 exp(phi(t)), phi a cubic rotation vector in the frame of the body at the
 /// start, with the angular velocities of both ends. Between the ends the path is off the solution
-/// by O(h^4); at the ends it is the states themselves.
+/// by O(h^4); at the ends it is the states themselves. The polynomials are worked out when they are
+/// first asked for: where nothing can collide, nothing asks.
 #pragma once
 
 #include "framework/collision/motion.h"
@@ -37,19 +38,33 @@ class SmoothPath {
   RigidBodyState at(double t) const;
   /// Velocities of the path.
   collision::MotionState motion_at(double t) const;
-  const collision::MotionBounds& bounds() const { return bounds_; }
+  const collision::MotionBounds& bounds() const {
+    work_out();
+    return bounds_;
+  }
+  /// How far its ends would turn it through the step by their angular velocities, the farther.
+  /// [rad]
+  double turning_at_ends() const;
+  /// Works out the polynomials. What several threads may ask has been worked out before.
+  void work_out() const {
+    if (!is_worked_out_) find_polynomials();
+  }
 
  private:
   Vector3d omega_world(double s, Quaterniond& world_from_body) const;
 
+  void find_polynomials() const;
+
   double t0_ = 0.0, h_ = 1.0;
   Inertia inertia_;
-  Vector3d x_[4];    // coefficients of s^k, s = (t - t0) / h
-  Vector3d phi_[4];  // likewise; phi_[0] = 0
+  mutable bool is_worked_out_ = true;
+  mutable Vector3d x_[4];    // coefficients of s^k, s = (t - t0) / h
+  mutable Vector3d phi_[4];  // likewise; phi_[0] = 0
+  RigidBodyState from_, to_;
   Quaterniond start_;
   Momenta momenta_ = Momenta::kOfPath;
   Vector3d momentum_[2], angular_momentum_[2];  // at the ends
-  collision::MotionBounds bounds_;
+  mutable collision::MotionBounds bounds_;
 };
 
 }  // namespace tumble::engines
