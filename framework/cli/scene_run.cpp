@@ -16,6 +16,7 @@
 #include "framework/cli/planned_run.h"
 #include "framework/cli/run_page.h"
 #include "framework/cli/scene_pictures.h"
+#include "framework/cli/stop_by_hand.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
 #include "framework/effects/registry.h"
@@ -245,12 +246,21 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const auto start = std::chrono::steady_clock::now();
   const double cpu_before = cpu_seconds();
   std::string ended;  // why a submission gave no answer
+  const double duration_s = plan.options.duration_s.value_or(plan.scene.duration_s);
+  StopByHand stoppable(recorder);
   try {
-    RunProgress progress(recorder, plan.options.duration_s.value_or(plan.scene.duration_s));
+    RunProgress progress(stoppable, duration_s);
     engines::run_scene(plan.scene, plan.laws, plan.options, progress);
   } catch (const grading::CallEnded& error) {
     ended = error.what();
+  } catch (const StoppedByHand&) {
   }
+  // Ctrl-C reaches a submission's process, too, which then gives no answer.
+  if (StopByHand::is_asked())
+    ended = fmt::format(
+        "Ctrl-C at {:.6g} of {:.6g} s: the files hold the run up to there",
+        recorder.trajectory().frames.empty() ? 0.0 : recorder.trajectory().frames.back().time,
+        duration_s);
   const double cpu_s = cpu_seconds() - cpu_before;
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

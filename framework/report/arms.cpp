@@ -149,7 +149,7 @@ std::string svg_of(const Arms& arms) {
   }
   body += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.4\" fill=\"#1c2733\"/>\n",
                       origin.x(), origin.y()) +
-          words_at(origin + Vector2d(-12, -9), "p", "#1c2733");
+          words_at(origin + Vector2d(11, 12), "p", "#1c2733");
   return fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"arms and direction "
       "of the blow\">\n{}</svg>\n",

@@ -45,7 +45,7 @@ Plot drawn(const CostPage& page, Axis across, const std::string& title,
     }
     // keeps its place, so that a method has the same style in all plots
     if (line.x.empty()) line.name.clear();
-    plot.curves.push_back(std::move(line));
+    plot.curves.push_back(sorted_by_x(std::move(line)));
   }
   if (page.error_unit.empty()) plot.limits.push_back({1.0, "right below"});
   if (page.floor > 0) plot.limits.push_back({page.floor, "error of the reference solution"});

@@ -86,6 +86,25 @@ std::string why_slides_differ(const std::vector<std::vector<EngineRow>>& ladder)
          ours + ".";
 }
 
+// What the page shows, in one sentence: the most bodies that both engines finished.
+std::string headline(const std::vector<std::vector<EngineRow>>& ladder) {
+  for (auto rows = ladder.rbegin(); rows != ladder.rend(); ++rows) {
+    const EngineRow *rd = labelled(*rows, "RD-1/30"), *tw = row_of(*rows, "tw");
+    if (rd == nullptr || tw == nullptr || !rd->stopped_by.empty() || !tw->stopped_by.empty() ||
+        count_of(*tw, "integrations") == 0 || !(tw->cpu_s > 0.0) || !(rd->cpu_s > 0.0))
+      continue;
+    const double fewer = static_cast<double>(count_of(*rd, "integrations")) /
+                         static_cast<double>(count_of(*tw, "integrations")),
+                 faster = rd->cpu_s / tw->cpu_s;
+    return fmt::format(
+        "Of {} atoms timewarp does {} of RD's integrations, and {}.", rd->bodies,
+        fewer >= 1.5 ? fmt::format("1/{:.0f}", fewer) : fmt::format("{:.0f} %", 100.0 / fewer),
+        faster >= 1.0 ? fmt::format("is {:.2g} times faster", faster)
+                      : fmt::format("takes {:.2g} times as long", 1.0 / faster));
+  }
+  return "";
+}
+
 std::string agreement_in_short(const EnginesScene& scene) {
   std::string words;
   for (const EngineRow& row : scene.rows)
@@ -159,7 +178,7 @@ void add_pong(Page& page, const EnginesIndex& index) {
   }
   Plot plot;
   plot.title = "Pong: work per ball and simulated second";
-  plot.x = {"balls", "", Scale::kLog};
+  plot.x = {"balls n", "", Scale::kLog};
   plot.y = {"integrations", "1/s", Scale::kLog};
   plot.caption =
       "Flat: the cost of a ball depends on its own collisions only, not on the number of other "
@@ -302,7 +321,7 @@ Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder) {
   table.caption =
       "Average integration step: simulated time per body over integrations. Work: integrations per "
       "body and simulated second. Undone integrations are included.";
-  table.columns = {{"Bodies", true},
+  table.columns = {{"Bodies n", true},
                    {"Engine"},
                    {"w h", true},
                    {"Mean step [ms]", true},
@@ -373,6 +392,8 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
   if (!index.ghosts.empty() || !index.pong.empty()) links.push_back({"Pong", "#pong_ladder"});
   for (const EnginesScene& scene : index.scenes) links.push_back({scene.name, "#" + scene.name});
   page.links(links);
+  if (const std::string sentence = headline(index.ladder); !sentence.empty())
+    page.paragraph(sentence, Look::kGood);
   add_engines(page);
   page.heading("All scenes", 2, "all");
   page.table(table_of_scenes(index.scenes));

@@ -15,7 +15,7 @@ Plot against_n(const std::string& title, const std::string& quantity, const std:
                const std::string& caption) {
   Plot plot;
   plot.title = title;
-  plot.x = {"bodies", "", Scale::kLog};
+  plot.x = {"bodies n", "", Scale::kLog};
   plot.y = {quantity, unit, Scale::kLog};
   plot.caption = caption;
   std::map<std::string, std::size_t> places;

@@ -68,11 +68,11 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
 .thumbs figcaption { font-size: .8rem; line-height: 1.3; }
 .story { background: var(--wash); border-left: 4px solid var(--line); padding: .6rem 1rem;
   margin: .6rem 0; display: flow-root; } .story pre { border: 0; padding: 0; margin: 0 0 .4rem; }
-.fields { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: .15rem .9rem;
-  margin: 0; } .fields dt { color: var(--soft); }
+.fields { display: grid; grid-template-columns: minmax(4.7rem, max-content) minmax(0, 1fr);
+  gap: .15rem .9rem; margin: 0; } .fields dt { color: var(--soft); }
 .fields dd { margin: 0; white-space: pre-wrap; overflow-wrap: anywhere; }
 .story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
-.story th, .story td { padding: .18rem .6rem .18rem 0; }
+.story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
 .story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }

@@ -57,13 +57,24 @@ std::string script_text() {
   return text + "})();\n";
 }
 
+// "</" would end a script element; JSON allows an escape for the less-than sign.
 std::string json_text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
+    c == '<' ? text += "\\u003c" : text += c;
+  return text;
 }
 
 std::string data_element(const std::string& id, const std::string& deflated_bytes) {
   return "<script type=\"application/octet-stream\" id=\"" + id + "\">" + base64(deflated_bytes) +
          "</script>\n";
+}
+
+// What the page is about. A page alone has it as text, for whoever looks into its source; of many
+// pages it is deflated.
+std::string about_element(const std::string& json, bool is_alone) {
+  return is_alone ? "<script type=\"application/json\" id=\"about-run\">" + json + "</script>\n"
+                  : data_element("about-run", deflated(json));
 }
 
 std::string filled(std::string_view page, const std::map<std::string, std::string>& words) {

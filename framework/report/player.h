@@ -29,8 +29,8 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
 std::size_t write_player(const std::filesystem::path& file, const scene::Scene& scene,
                          const std::vector<PlayedRun>& runs, const PlayerOptions& options = {});
 
-/// Writes three.js, deflated, and the player's scripts, for pages with `options.three_file`. The same
-/// bytes for all pages of one program: write it anew with them.
+/// Writes three.js, deflated, and the player's scripts, for pages with `options.three_file`. The
+/// same bytes for all pages of one program: write it anew with them.
 /// @throws UserError when three.js is missing
 void write_three(const std::filesystem::path& file, const PlayerOptions& options = {});
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -225,7 +226,75 @@ std::string legend(const Plot& plot, double& bottom) {
   return svg;
 }
 
+// The frame of the plot's points, as drawn.
+struct PlotFrame {
+  Scaled x, y;
+  bool is_empty;
+};
+
+PlotFrame frame_of(const Plot& plot) {
+  Range xs, ys;
+  for (const Curve& curve : plot.curves) {
+    require(curve.x.size() == curve.y.size(), "report: a curve needs x and y of equal length");
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (!drawable(curve.x[i], plot.x.scale) || !drawable(curve.y[i], plot.y.scale)) continue;
+      xs.hold(curve.x[i]);
+      ys.hold(curve.y[i]);
+    }
+  }
+  const bool is_empty = !(xs.low <= xs.high);
+  for (const Limit& limit : plot.limits)
+    if (drawable(limit.y, plot.y.scale)) ys.hold(limit.y);
+  const Range across = widened(xs, plot.x.scale), up = widened(ys, plot.y.scale);
+  return {{plot.x.scale, across.low, across.high, kLeft, kRight},
+          {plot.y.scale, up.low, up.high, kBottom, kTop},
+          is_empty};
+}
+
+// Whether nobody can see two curves apart.
+bool covers(const Curve& a, const Curve& b, const Plot& plot, const Scaled& y) {
+  constexpr double kWidthOfALine = 1.8;
+  if (a.x != b.x || a.x.empty()) return false;
+  for (std::size_t i = 0; i < a.x.size(); ++i) {
+    const bool is_drawn = drawable(a.y[i], plot.y.scale);
+    if (is_drawn != drawable(b.y[i], plot.y.scale)) return false;
+    if (is_drawn && std::abs(y(a.y[i]) - y(b.y[i])) > kWidthOfALine) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+Curve sorted_by_x(Curve curve) {
+  std::vector<std::size_t> order(curve.x.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return curve.x[i] < curve.x[j]; });
+  Curve sorted = curve;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    sorted.x[k] = curve.x[order[k]];
+    sorted.y[k] = curve.y[order[k]];
+  }
+  return sorted;
+}
+
+std::vector<std::string> coinciding(const Plot& plot) {
+  const Scaled y = frame_of(plot).y;
+  std::vector<std::string> groups;
+  std::vector<bool> is_named(plot.curves.size(), false);
+  for (std::size_t i = 0; i < plot.curves.size(); ++i) {
+    if (is_named[i] || plot.curves[i].name.empty()) continue;
+    std::vector<std::string> names = {plot.curves[i].name};
+    for (std::size_t j = i + 1; j < plot.curves.size(); ++j)
+      if (!is_named[j] && !plot.curves[j].name.empty() &&
+          covers(plot.curves[i], plot.curves[j], plot, y)) {
+        names.push_back(plot.curves[j].name);
+        is_named[j] = true;
+      }
+    if (names.size() > 1) groups.push_back(fmt::format("{}", fmt::join(names, " and ")));
+  }
+  return groups;
+}
 
 std::vector<double> ticks_of(double low, double high, Scale scale) {
   require(low < high && std::isfinite(low) && std::isfinite(high) &&
@@ -267,22 +336,7 @@ svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 }
 
 std::string svg_of(const Plot& plot) {
-  Range xs, ys;
-  for (const Curve& curve : plot.curves) {
-    require(curve.x.size() == curve.y.size(), "report: a curve needs x and y of equal length");
-    for (std::size_t i = 0; i < curve.x.size(); ++i) {
-      if (!drawable(curve.x[i], plot.x.scale) || !drawable(curve.y[i], plot.y.scale)) continue;
-      xs.hold(curve.x[i]);
-      ys.hold(curve.y[i]);
-    }
-  }
-  const bool empty = !(xs.low <= xs.high);
-  for (const Limit& limit : plot.limits)
-    if (drawable(limit.y, plot.y.scale)) ys.hold(limit.y);
-  const Range across = widened(xs, plot.x.scale), up = widened(ys, plot.y.scale);
-  const Scaled x{plot.x.scale, across.low, across.high, kLeft, kRight},
-      y{plot.y.scale, up.low, up.high, kBottom, kTop};
-
+  const auto [x, y, is_empty] = frame_of(plot);
   const double room =
       (kRight - kLeft) / (kLetter * std::max<double>(1.0, static_cast<double>(plot.title.size())));
   std::string body =
@@ -302,13 +356,20 @@ std::string svg_of(const Plot& plot) {
   }
   for (std::size_t i = 0; i < plot.curves.size(); ++i)
     body += draw(thinned(plot.curves[i]), i, plot, x, y);
-  if (empty)
+  if (is_empty)
     body += text(0.5 * (kLeft + kRight), 0.5 * (kTop + kBottom), "nothing to draw", "middle");
   body += text(0.5 * (kLeft + kRight), kBottom + 36, words_of(plot.x), "middle");
   body += text(0, 0, words_of(plot.y), "middle",
                fmt::format(" transform=\"translate(15 {}) rotate(-90)\"", 0.5 * (kTop + kBottom)));
   double bottom = kHeight;
   body += legend(plot, bottom);
+  for (const std::string& names : coinciding(plot)) {
+    bottom += kTextHeight;
+    const std::string words = "One covers the other: " + names;
+    const double fits = (kRight - kLeft) / (kLetter * static_cast<double>(words.size()));
+    body += text(kLeft, bottom - 10, words, "start",
+                 fmt::format(" font-size=\"{:.3g}\"", std::min(11.5, fits)));
+  }
   return fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
       kWidth, std::max(bottom, kBottom + 46.0), html_escape(plot.title), body);

@@ -49,6 +49,14 @@ struct Plot {
   std::string caption = {};  // what the plot shows
 };
 
+/// The curve with its points from left to right: a measured price, such as CPU time, need not grow
+/// with every finer step.
+Curve sorted_by_x(Curve curve);
+
+/// Names of curves that cover each other, the width of a line apart at most: "A and B". Compared
+/// are curves with the same x.
+std::vector<std::string> coinciding(const Plot& plot);
+
 /// The ticks of an axis: about 4 to 8 round numbers in [low, high]; powers of ten (or some of them)
 /// on a logarithmic axis, and numbers between them where there are fewer than three.
 /// @pre low < high, finite; positive where logarithmic
@@ -57,8 +65,8 @@ std::vector<double> ticks_of(double low, double high, Scale scale);
 /// CSS rules that svg_of needs, once per page.
 const char* plot_style();
 
-/// An <svg> element, 640 units wide. A plot without a point to draw says so in the frame. A curve
-/// of more than 2000 points is drawn by the minimum and maximum of each of 1000 parts.
+/// An <svg> element, 640 units wide; names curves that cover each other; says where nothing can be
+/// drawn. Of more than 2000 points are drawn the minimum and maximum of each of 1000 parts.
 std::string svg_of(const Plot& plot);
 
 }  // namespace tumble::report

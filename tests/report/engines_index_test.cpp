@@ -161,9 +161,9 @@ TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
                       folder.path() / "index.html");
   std::ifstream file(folder.path() / "index.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
-  for (const char* words :
-       {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off", "Average integration step",
-        "The model of cost", "first 5 collisions", "--full", "TW, ignoring each other"})
+  for (const char* words : {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off",
+                            "Average integration step", "The model of cost", "first 5 collisions",
+                            "--full", "TW, ignoring each other", "timewarp does 1/"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(table_of_scenes({fine, failed}).rows[0][5].text, "30");
 }

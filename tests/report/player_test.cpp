@@ -184,6 +184,8 @@ TEST(PlayerPage, BesideAnotherFileHoldsNoScriptsAndTheSameMotionOnce) {
   EXPECT_NE(small.find("<script src=\"three.js\"></script>"), std::string::npos);
   EXPECT_EQ(small.find("class Run"), std::string::npos);
   EXPECT_NE(alone.find("class Run"), std::string::npos);
+  EXPECT_NE(alone.find("\"runs\":["), std::string::npos);
+  EXPECT_EQ(small.find("\"runs\":["), std::string::npos);  // deflated
   const std::string same =
       player_page(thrown_ball(), {{thrown_run(), "a"}, {thrown_run(), "b"}}, beside);
   EXPECT_NE(same.find("id=\"run0\""), std::string::npos);

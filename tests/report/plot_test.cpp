@@ -180,5 +180,21 @@ TEST(Plot, LongCurvesHaveAFewMarksWhereColoursRepeat) {
   EXPECT_NE(svg_of(many).find("<circle"), std::string::npos);
 }
 
+TEST(Plot, NamesCurvesThatCoverEachOther) {
+  Plot plot{.title = "t", .x = {"n"}, .y = {"time", "s", Scale::kLog}};
+  plot.curves = {{"A", {1, 2, 3}, {1, 10, 100}},
+                 {"B", {1, 2, 3}, {1.001, 10, 100}},  // a thousandth of two decades: 0.1 units
+                 {"C", {1, 2, 3}, {1, 11, 100}},      // 4 % of a decade: 6 units
+                 {"D", {1, 2, 4}, {1, 10, 100}}};     // at another place
+  EXPECT_EQ(coinciding(plot), std::vector<std::string>{"A and B"});
+  EXPECT_NE(svg_of(plot).find("One covers the other: A and B</text>"), std::string::npos);
+}
+
+TEST(Plot, SortsPointsOfAMeasuredPrice) {
+  const Curve curve = sorted_by_x({"A", {3, 1, 2}, {30, 10, 20}, true});
+  EXPECT_EQ(curve.x, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(curve.y, (std::vector<double>{10, 20, 30}));
+}
+
 }  // namespace
 }  // namespace tumble::testing

@@ -124,7 +124,7 @@ report::Plot plot_of(const std::vector<Measured>& all, const CostReference& refe
       curve.y.push_back(std::max(result.error_m, reference.floor_m));
     }
     if (curve.x.empty()) curve.name.clear();
-    plot.curves.push_back(std::move(curve));
+    plot.curves.push_back(report::sorted_by_x(std::move(curve)));
   }
   plot.limits.push_back({reference.floor_m, "error of the reference solution"});
   return plot;

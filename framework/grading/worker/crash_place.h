@@ -8,8 +8,8 @@
 namespace tumble::grading {
 
 /// Looks up frames (dying_words.h) in the debug information of the submission's shared object. Both
-/// come from a submission: addr2line reads them in a sandbox like the worker's, and only a plain file
-/// name and a number come out.
+/// come from a submission: addr2line reads them in a sandbox like the worker's, and only a plain
+/// file name and a number come out.
 /// @param worker   the job of the worker that died
 /// @param object   name inside of the shared object
 /// @param printed  what the worker printed

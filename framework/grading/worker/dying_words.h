@@ -20,7 +20,7 @@ namespace detail {
 inline constexpr int kDeadly[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 inline const char* dying_object = nullptr;  // name of the submission's shared object
 
-/// A line for a place in the submission; nothing for a place elsewhere. Of a return address the byte
+/// A line for a place in the submission; nothing for one elsewhere. Of a return address the byte
 /// before it is meant, which is in the line of the call.
 inline void say_frame(std::uintptr_t place, bool is_return) {
   Dl_info object;

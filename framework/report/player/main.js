@@ -272,7 +272,8 @@ function runLoop(player, picture) {
 }
 
 async function main() {
-  const about = JSON.parse(new TextDecoder().decode(await openedBytes('about-run')));
+  const element = byId('about-run'), isText = element.type === 'application/json';
+  const about = JSON.parse(isText ? element.textContent : new TextDecoder().decode(await openedBytes('about-run')));
   const runs = await Promise.all(about.runs.map(async (head, r) => new Run(head, await openedBytes(`run${head.channelsOf ?? r}`))));
   const player = new Player(about, runs);
   byId('player').hidden = byId('side').hidden = false;
