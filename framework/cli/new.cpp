@@ -1,5 +1,5 @@
-// tumble new assignment|effect|scene|slip|test|mutations: a part of the course, ready to be written. Of the
-// instructor's source tree alone.
+// tumble new assignment|effect|scene|slip|test: a part of the course, ready to be written; and
+// points and mutations of one. Of the instructor's source tree alone.
 #include <memory>
 
 #include <fmt/format.h>
