@@ -195,7 +195,7 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
        {"style", std::string(player_file("player.css"))},
        {"script", is_alone ? "<script>\n" + script_text() + "</script>"
                            : "<script src=\"" + link_to(options.three_file) + "\"></script>"},
-       {"data", data_element("about-run", deflated(json_text(head))) + data},
+       {"data", about_element(json_text(head), is_alone) + data},
        {"still", player_still(runs, packed)},
        {"record", record_and_notices(runs)}});
 }

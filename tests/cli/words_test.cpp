@@ -116,23 +116,6 @@ TEST_F(CommandLine, APageOfTwoTimewarpsHasTheVirtualTimesOfBoth) {
 }
 #endif
 
-// As soon as the run says how far it is, somebody presses Ctrl-C.
-TEST_F(CommandLine, CtrlCKeepsWhatWasSimulated) {
-  const int status =
-      std::system(("cd '" + folder_.string() +
-                   "' || exit 9; TUMBLE_ROOT='" TUMBLE_SOURCE_DIR "' '" TUMBLE_BINARY_DIR
-                   "/bin/tumble' run t_handle --modules library --duration-s 1e7 "
-                   "--trajectory kept.run >out 2>err & run=$!; "
-                   "while kill -0 $run && ! grep -q simulated err; do sleep 0.1; done; "
-                   "kill -INT $run; wait $run")
-                      .c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 1);  // it is not the scene's whole run
-  const std::string out = contents_of(folder_ / "out"), err = contents_of(folder_ / "err");
-  EXPECT_TRUE(holds(out, "STOPPED  Ctrl-C at ")) << out << err;
-  EXPECT_TRUE(holds(err, "wrote kept.run")) << err;
-  EXPECT_TRUE(fs::exists(folder_ / "kept.run"));
-}
-
 TEST_F(CommandLine, AnUnknownSceneIsAnsweredWithThoseThereAre) {
   const Said said = type("run nonsense");
   EXPECT_EQ(said.code, 2);
