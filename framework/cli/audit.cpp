@@ -210,7 +210,7 @@ void audit(Context& context, const AuditWords& words) {
       fmt::print("{}; --lines lists the others\n",
                  share_touched(grading::touched_lines_of_reference(course, words.id, all)));
   }
-  const bool is_whole = caught == wrong && whole == right && unwritten.empty();
+  const bool is_whole = caught == wrong && whole == right && wrong + right > 0 && unwritten.empty();
   if (words.only.empty() && words.mutants.empty() && is_whole)
     write_causes(course, words.id, results);
   context.exit = is_whole ? ExitCode::kFine : ExitCode::kCheckFailed;

@@ -81,7 +81,7 @@ const std::vector<Kind>& kinds() {
          return fmt::format("next:  the wrong line, then: ./tumble audit {} --only {}\n",
                             words.first, words.second);
        }},
-      {"test", "test a5 EnergyOf.IsTheSameForEveryObserver [--hidden]", 2,
+      {"test", "test a5 EnergyOf.IsLinearInTheMass [--hidden]", 2,
        [](const Command& command, const NewWords& words) {
          return extend::new_test(command.root, words.first, words.second, words.hidden);
        },
@@ -163,7 +163,7 @@ void add_new(CLI::App& app, Command& command) {
       "         tumble new effect low_wind\n"
       "         tumble new scene a5 tall_drop\n"
       "         tumble new slip a5 half_forgotten --function energy_of\n"
-      "         tumble new test a5 EnergyOf.IsTheSameForEveryObserver --hidden\n"
+      "         tumble new test a5 EnergyOf.IsLinearInTheMass --hidden\n"
       "         tumble new mutations a5 out/mutations     the reference, changed in one place "
       "each");
   verb.runs([&command, words] { make_new(command, *words); });

@@ -2,45 +2,12 @@
 /// far, the run before it, verdicts. Everything happens in one thread, the one that calls serve().
 #pragma once
 
-#include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "framework/live/recipe.h"
+#include "framework/live/sitting.h"
 
 namespace tumble::live {
-
-/// A source that is watched: saved, the scene begins again.
-struct Watched {
-  std::filesystem::path file;
-  std::string id;  // of its assignment
-};
-
-struct Sitting {
-  std::string name;    // of the scene
-  Recipe recipe;       // as it begins
-  int port = 0;        // 0: any
-  bool opens = false;  // opens the page in the user's browser
-  // The process that simulates: it reads a line, {"recipe", "from_s", "speed", "paused"}, and
-  // then the commands of simulate.h; it writes records.
-  std::vector<std::string> simulator;
-  // The process that prints the verdicts on an assignment, JSON: {"id", "said", "tests": [{"test",
-  // "title", "verdict", "story", "function", "group", "points"}]}; empty: none
-  std::function<std::vector<std::string>(const std::string& id)> judge;
-  // The process that finds the line of the user's file: it reads what a process said that ended
-  // badly, and prints "FILE:LINE: its text", or nothing; empty: none
-  std::vector<std::string> locate;
-  std::vector<Watched> watched;
-  std::string first_judged;     // id; empty: none
-  std::filesystem::path saves;  // folder for scenes
-  // the command that runs a saved scene again
-  std::function<std::string(const std::filesystem::path& file, const Changes& changes,
-                            const std::string& modules)>
-      again;
-  std::function<std::string(const std::string& path)> handout;  // a page by its name; empty: none
-};
 
 /// Serves until Ctrl-C, SIGTERM or the end of the terminal.
 /// @param ready  called with the address of the page

@@ -1,4 +1,4 @@
-/// What a sitting keeps (session.h), and who does what in it. Included by session*.cpp only.
+/// What a sitting keeps, and who does what in it. Included by session*.cpp only.
 #pragma once
 
 #include <unistd.h>
@@ -19,7 +19,7 @@
 #include "framework/live/mailbox.h"
 #include "framework/live/records.h"
 #include "framework/live/server.h"
-#include "framework/live/session.h"
+#include "framework/live/sitting.h"
 
 namespace tumble::live {
 

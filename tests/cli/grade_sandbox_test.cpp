@@ -1,5 +1,7 @@
 // Which sandbox protects grades: it is named on everything that is written, one below the policy is
 // refused, and all give the same verdicts. And what tumble doctor says of a machine.
+#include <regex>
+
 #include "framework/grading/sandbox/landlock.h"
 #include "tests/cli/grading_fixture.h"
 
@@ -56,6 +58,11 @@ TEST_F(GradeSandbox, ForcedGradesSayOnEveryOutputThatTheyAreNotOfficial) {
   EXPECT_EQ(results("alice")["extra_data"]["official"], true);
 }
 
+// Where nothing protects the reader of debug information, a crash has no line.
+std::string without_lines(const nlohmann::json& tests) {
+  return std::regex_replace(tests.dump(), std::regex(", a1_impulse\\.cpp:[0-9]+"), "");
+}
+
 TEST_F(GradeSandbox, AllKindsGiveTheSameVerdicts) {
   put("bob/a1_impulse.cpp", text_of(kReference));
   put("carol/a1_impulse.cpp", stub_that("int* nothing = nullptr; *nothing = 1;"));
@@ -70,7 +77,9 @@ TEST_F(GradeSandbox, AllKindsGiveTheSameVerdicts) {
     for (const char* name : {"alice", "bob", "carol", "dave", "erin"}) {
       const nlohmann::json found = results(name, kind);
       if (!first.contains(name)) first[name] = found;
-      EXPECT_EQ(found["tests"], first[name]["tests"]) << kind << ", " << name;
+      EXPECT_EQ(without_lines(found["tests"]), without_lines(first[name]["tests"]))
+          << kind << ", " << name;
+      if (kind != "bare") EXPECT_EQ(found["tests"], first[name]["tests"]) << kind << ", " << name;
       EXPECT_EQ(found["score"], first[name]["score"]) << kind << ", " << name;
     }
   }

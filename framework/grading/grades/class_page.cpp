@@ -153,9 +153,8 @@ report::Table matrix_of(const std::vector<Grade>& grades, const std::vector<Test
     if (table.rows.size() == kMostInMatrix) break;
     std::map<std::string, Verdict> verdicts;
     if (grade.state == GradeState::kJudged)
-      grade.each_verdict([&](const RubricItem& item, Verdict verdict) {
-        verdicts[item.test] = verdict;
-      });
+      grade.each_verdict(
+          [&](const RubricItem& item, Verdict verdict) { verdicts[item.test] = verdict; });
     std::vector<Cell> row = {{plain_name(grade.name), link_of(grade)},
                              {grade.has_score() ? points_text(grade.score) : "none"}};
     for (std::size_t i = first; i < last; ++i) {
