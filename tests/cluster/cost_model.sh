@@ -11,15 +11,23 @@ tumble=$root/build/bin/tumble
 export TUMBLE_ROOT=$root TUMBLE_GRADER_KEY=$folder/grader.key
 mkdir -p "$folder"
 
-# measure WORDS...: sets cpu [s] of the program and its children, wall [s], and most [MiB], the memory of the largest of them.
+# measure WORDS...: sets cpu [s] of the program and its children, wall [s], and most [MiB],
+# the largest memory of the program itself (what it starts, pandoc say, may need more).
 measure() {
   read -r cpu wall most < <(python3 - "$folder/printed.txt" "$@" <<'PY'
 import resource, subprocess, sys, time
 began = time.time()
+most = 0
 with open(sys.argv[1], "w") as printed:
-    subprocess.run(sys.argv[2:], stdout=printed, stderr=printed)
+    program = subprocess.Popen(sys.argv[2:], stdout=printed, stderr=printed)
+    while program.poll() is None:
+        with open(f"/proc/{program.pid}/status") as status:
+            for line in status:
+                if line.startswith("VmHWM:"):
+                    most = max(most, int(line.split()[1]))
+        time.sleep(0.01)
 used = resource.getrusage(resource.RUSAGE_CHILDREN)
-print(used.ru_utime + used.ru_stime, time.time() - began, used.ru_maxrss / 1024)
+print(used.ru_utime + used.ru_stime, time.time() - began, most / 1024)
 PY
   )
 }
