@@ -41,7 +41,7 @@ for scene in "$root"/assignments/*/scenes/*.json; do
   [ "$(stat -c %s "$picture" 2>/dev/null || echo 0)" -gt 20000 ] || fault "$picture is missing or empty"
   seconds=$(ffprobe -v error -show_entries format=duration -of csv=p=0 "$video" 2>/dev/null || echo 0)
   awk -v s="${seconds:-0}" 'BEGIN { exit !(s >= 1) }' || fault "$video is missing or shorter than a second"
-  grep -q "/$name.mp4" "$demo/index.html" || fault "$demo/index.html does not show $name"
+  grep -q "/$name.png" "$demo/index.html" || fault "$demo/index.html does not show $name"
   grep -q "/$name.html" "$demo/index.html" || fault "$demo/index.html does not link the page that plays $name"
 done
 [ "$scenes" -ge 10 ] || fault "only $scenes scenes under $root/assignments"
