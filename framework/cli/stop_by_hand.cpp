@@ -9,7 +9,7 @@ void ask_to_stop(int) { is_stop_asked = 1; }
 
 }  // namespace
 
-StopByHand::StopByHand(TrajectorySink& sink) : sink_(sink) {
+StopByHand::StopByHand(TrajectorySink& sink) : PassingSink(sink) {
   is_stop_asked = 0;
   struct sigaction action {};
   action.sa_handler = ask_to_stop;

@@ -17,7 +17,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace)
-    : sink_(sink), duration_(duration_s), pace_(pace), reporter_([this] { report_until_done(); }) {}
+    : PassingSink(sink),
+      duration_(duration_s),
+      pace_(pace),
+      reporter_([this] { report_until_done(); }) {}
 
 RunProgress::Pace RunProgress::usual_pace() {
   return ::isatty(STDERR_FILENO) == 1 ? Pace{2.0, 1.0, true} : Pace{};

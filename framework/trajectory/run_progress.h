@@ -7,14 +7,14 @@
 #include <mutex>
 #include <thread>
 
-#include "framework/trajectory/trajectory.h"
+#include "framework/trajectory/passing_sink.h"
 
 namespace tumble {
 
 /// Passes everything on to another sink. Nothing is printed before `first_s`; then a line every
 /// `every_s`, also while no frame arrives, so that a run that no longer advances shows at which
 /// time.
-class RunProgress final : public TrajectorySink {
+class RunProgress final : public PassingSink {
  public:
   struct Pace {
     double first_s = 5.0, every_s = 10.0;  // of wall-clock time
@@ -30,22 +30,13 @@ class RunProgress final : public TrajectorySink {
   RunProgress(const RunProgress&) = delete;
   RunProgress& operator=(const RunProgress&) = delete;
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
-    sink_.begin(info, bodies);
-  }
   void frame(const Frame& frame) override;
-  void event(const Event& event) override { sink_.event(event); }
-  void end(const Counters& counters, const std::string& stopped_by) override {
-    sink_.end(counters, stopped_by);
-  }
-  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  private:
   using Clock = std::chrono::steady_clock;
   void report_until_done();
   void report(double now_s);
 
-  TrajectorySink& sink_;
   double duration_;  // [s]
   Pace pace_;
   Clock::time_point begun_ = Clock::now();

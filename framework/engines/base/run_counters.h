@@ -12,7 +12,7 @@
 #include "framework/collision/first_impact.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_watch.h"
-#include "framework/trajectory/trajectory.h"
+#include "framework/trajectory/passing_sink.h"
 
 namespace tumble::engines {
 
@@ -67,22 +67,16 @@ struct RunCounters {
 /// "sliding_changes": no engine here ends a step of all bodies for it (the contact problem of one
 /// island finds it), and only retroactive detection reports it, so one sum of both would differ
 /// from engine to engine in the same motion.
-class DiscontinuityCount final : public TrajectorySink {
+class DiscontinuityCount final : public PassingSink {
  public:
-  explicit DiscontinuityCount(TrajectorySink& sink) : sink_(sink) {}
+  explicit DiscontinuityCount(TrajectorySink& sink) : PassingSink(sink) {}
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
-    sink_.begin(info, bodies);
-  }
-  void frame(const Frame& frame) override { sink_.frame(frame); }
   void event(const Event& event) override;
   void end(const Counters& counters, const std::string& stopped_by) override;
-  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  private:
   bool is_first_at_its_instant(const Event& event);
 
-  TrajectorySink& sink_;
   std::uint64_t count_ = 0, sliding_changes_ = 0;
   double instant_ = kUnset;               // of the event before [s]
   std::pair<int, int> pair_;              // the first at that instant,

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "framework/scene/scene.h"
-#include "framework/trajectory/trajectory.h"
+#include "framework/trajectory/passing_sink.h"
 
 namespace tumble::engines {
 
@@ -19,27 +19,19 @@ Vector3d local_origin(const scene::Scene& scene);
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene);
 
 /// Passes a run that was made in local coordinates on in those of the world.
-class WorldSink final : public TrajectorySink {
+class WorldSink final : public PassingSink {
  public:
   /// @param mass  of all movable bodies together [kg]
   WorldSink(TrajectorySink& sink, const Vector3d& origin_world, double mass,
             const Vector3d& gravity_world)
-      : sink_(sink),
+      : PassingSink(sink),
         origin_world_(origin_world),
         potential_energy_(-mass * gravity_world.dot(origin_world)) {}
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
-    sink_.begin(info, bodies);
-  }
   void frame(const Frame& frame) override;
   void event(const Event& event) override;
-  void end(const Counters& counters, const std::string& stopped_by) override {
-    sink_.end(counters, stopped_by);
-  }
-  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  private:
-  TrajectorySink& sink_;
   Vector3d origin_world_;
   double potential_energy_;  // of the whole at the origin [J]
 };

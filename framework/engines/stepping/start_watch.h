@@ -8,33 +8,27 @@
 #include <vector>
 
 #include "framework/scene/scene.h"
-#include "framework/trajectory/trajectory.h"
+#include "framework/trajectory/passing_sink.h"
 
 namespace tumble::engines {
 
 /// Hands everything on; adds notices to what end() is given.
-class StartWatch final : public TrajectorySink {
+class StartWatch final : public PassingSink {
  public:
   /// @param scene    as the user wrote it
   /// @param pushed   bodies that a callback acts on at the start: their velocities are not compared
   StartWatch(const scene::Scene& scene, std::set<int> pushed, TrajectorySink& sink)
-      : scene_(scene), pushed_(std::move(pushed)), sink_(sink) {}
+      : PassingSink(sink), scene_(scene), pushed_(std::move(pushed)) {}
 
   void add(std::string notice) { notices_.push_back(std::move(notice)); }
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
-    sink_.begin(info, bodies);
-  }
   void frame(const Frame& frame) override;
-  void event(const Event& event) override { sink_.event(event); }
   void end(const Counters& counters, const std::string& stopped_by) override;
-  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  private:
   void compare(const Frame& start);
 
   const scene::Scene& scene_;
   std::set<int> pushed_;
-  TrajectorySink& sink_;
   bool is_compared_ = false;
   std::vector<std::string> notices_;
 };

@@ -4,28 +4,21 @@
 
 #include <string>
 
-#include "framework/trajectory/trajectory.h"
+#include "framework/trajectory/passing_sink.h"
 
 namespace tumble::engines {
 
 /// Passes a run on, and stops it (StoppedRun) at the first event or frame that differs from the
 /// reference's, with expected, found, and the likely error.
-class TraceWatch final : public TrajectorySink {
+class TraceWatch final : public PassingSink {
  public:
   /// @param reference  the ordered run of the scene; times that it did not reach are not judged.
   ///   Must outlive this
   TraceWatch(TrajectorySink& sink, const Trajectory& reference)
-      : sink_(sink), reference_(reference) {}
+      : PassingSink(sink), reference_(reference) {}
 
-  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
-    sink_.begin(info, bodies);
-  }
   void frame(const Frame& frame) override;
   void event(const Event& event) override;
-  void end(const Counters& counters, const std::string& stopped_by) override {
-    sink_.end(counters, stopped_by);
-  }
-  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
   /// Why the run is incomplete although it ended: an event of the reference is missing. Empty: none
   /// is.
@@ -36,7 +29,6 @@ class TraceWatch final : public TrajectorySink {
   std::string in_words(const Event& event) const;
   std::string likely(const Event& expected, const Event& found) const;
 
-  TrajectorySink& sink_;
   const Trajectory& reference_;
   std::size_t events_ = 0, frames_ = 0;  // passed on
 };
