@@ -16,6 +16,8 @@ struct View {
   Vector3d eye_world;  // [m]
   Vector3d right_world, up_world, forward_world;
   double tan_half_height;  // tangent of half the vertical field of view [-]
+
+  bool operator==(const View&) const = default;
 };
 
 /// @param shift_world  displacement of the followed body; zero where the camera follows nothing [m]

@@ -15,12 +15,16 @@ namespace tumble::render {
 struct Vertex {
   float position[3];  // local frame
   float normal[3];    // unit
+
+  bool operator==(const Vertex&) const = default;
 };
 
 /// Triangles, counter-clockwise seen from outside.
 struct Geometry {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
+
+  bool operator==(const Geometry&) const = default;
 };
 
 /// How an object is drawn.
@@ -36,6 +40,8 @@ struct Instance {
   float color[4];              // linear RGB and opacity
   // 1: quarters in two tones, so that the rotation of a ball is visible; 0: one tone
   float quartered;
+
+  bool operator==(const Instance&) const = default;
 };
 
 /// Instances of one geometry, drawn together.
@@ -43,6 +49,8 @@ struct Batch {
   int geometry;
   Pass pass;
   std::vector<Instance> instances;
+
+  bool operator==(const Batch&) const = default;
 };
 
 /// The ground: a plane of constant z with a grid, which fades out.
@@ -52,8 +60,11 @@ struct Ground {
   double spacing_m = 0.0;  // of the grid; 0: no grid
   Vector2d centre_m = Vector2d::Zero();
   double fade_m = 10.0;  // distance from the centre at which it has faded out
+
+  bool operator==(const Ground&) const = default;
 };
 
+/// Equal drawings of equal geometries give equal pictures.
 struct Drawing {
   View view;
   double near_m = 0.1, far_m = 100.0;
@@ -62,6 +73,8 @@ struct Drawing {
   double shadow_radius_m = 1.0;
   Ground ground;
   std::vector<Batch> batches;
+
+  bool operator==(const Drawing&) const = default;
 };
 
 }  // namespace tumble::render

@@ -24,6 +24,9 @@ class FramePainter {
   Image paint(std::size_t frame) { return with_words(paint_wordless(frame)); }
   /// Renders with OpenGL; not to be called concurrently.
   Wordless paint_wordless(std::size_t frame);
+  /// The same, without rendering where `drawn`, of `other`, shows the same: as of a right
+  /// submission beside the reference.
+  Wordless paint_wordless(std::size_t frame, const FramePainter& other, const Wordless& drawn);
   /// May run while the next picture is rendered; not to be called concurrently.
   Image with_words(Wordless painted) const;
   std::size_t frame_at(double time_s) const { return stage_.frame_at(time_s); }

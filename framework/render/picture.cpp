@@ -45,6 +45,15 @@ FramePainter::Wordless FramePainter::paint_wordless(std::size_t frame) {
   return painted;
 }
 
+FramePainter::Wordless FramePainter::paint_wordless(std::size_t frame, const FramePainter& other,
+                                                    const Wordless& drawn) {
+  Wordless painted{frame, stage_.moment(frame), {}};
+  const bool is_same = painted.moment.drawing == drawn.moment.drawing &&
+                       stage_.geometries() == other.stage_.geometries();
+  painted.image = is_same ? drawn.image : painter_.paint(painted.moment.drawing);
+  return painted;
+}
+
 Image FramePainter::with_words(Wordless painted) const {
   if (options_.captions)
     write_captions(painted.image, writer_, scene_, run_, stage_, painted.frame, painted.moment,

@@ -57,8 +57,12 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
       std::vector<Part> fresh;  // a view without changes is kept
       for (std::size_t i = 0; i < painters.size(); ++i) {
         const std::size_t frame = painters[i]->frame_at(time);
-        if (shown[i] != frame) fresh.push_back({i, painters[i]->paint_wordless(frame)});
+        if (shown[i] == frame) continue;
         shown[i] = frame;
+        fresh.push_back({i, fresh.empty()
+                                ? painters[i]->paint_wordless(frame)
+                                : painters[i]->paint_wordless(frame, *painters[fresh[0].view],
+                                                              fresh[0].painted)});
       }
       if (before.valid()) before.get();
       before = std::async(std::launch::async, [&, fresh = std::move(fresh)]() mutable {
