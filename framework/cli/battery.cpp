@@ -8,7 +8,9 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/module_choice.h"
 #include "framework/cli/read_truth.h"
 #include "framework/cli/record.h"
@@ -16,6 +18,7 @@
 #include "framework/core/text.h"
 #include "framework/modules/bind_laws.h"
 #include "framework/report/battery_page.h"
+#include "framework/report/tables_json.h"
 
 namespace tumble::cli {
 namespace {
@@ -26,7 +29,7 @@ using report::Measure;
 using report::Outcome;
 
 struct BatteryOptions {
-  bool is_long = false, each = false;
+  bool is_long = false, each = false, json = false;
   std::vector<std::string> only;
   std::string out = "out", modules;
 };
@@ -102,13 +105,14 @@ void run_battery(Context& context, const BatteryOptions& options) {
     throw UserError("--only", "no case has that number or that word in its name",
                     "Run without --only to see all of them.");
   std::vector<BatteryRow> rows;
-  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case",
-             "closest to its threshold; methods that must fail", "value", "threshold", "margin",
-             "verdict");
+  if (!options.json)
+    fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case",
+               "closest to its threshold; methods that must fail", "value", "threshold", "margin",
+               "verdict");
   for (const battery::Case& a_case : wanted) {
     fmt::print(stderr, "tumble: {} {}\n", a_case.row, a_case.name);
     rows.push_back(battery::run(a_case, given));
-    print_row(rows.back(), options.each);
+    if (!options.json) print_row(rows.back(), options.each);
   }
   const report::BatteryCount count = report::count_of(rows);
   const fs::path page = fs::path(options.out) / "battery.html";
@@ -118,7 +122,13 @@ void run_battery(Context& context, const BatteryOptions& options) {
           "; integration: " + given.laws.integrator_source + ", impulses: " +
           given.laws.impulse_source + ", constraints: " + given.laws.constraint_source,
       record_of(context), page);
-  fmt::print("\n{}\n{}\n", report::sentence_of(count), page.string());
+  if (options.json)
+    print_json(context, {{"is_long", options.is_long},
+                         {"summary", report::sentence_of(count)},
+                         {"rows", report::json_of(rows)},
+                         {"page", page.string()}});
+  else
+    fmt::print("\n{}\n{}\n", report::sentence_of(count), page.string());
   if (!count.good()) context.exit = ExitCode::kCheckFailed;
 }
 
@@ -138,6 +148,7 @@ void add_battery(CLI::App& app, Context& context) {
   verb.option("--out", options->out, "Folder of the page battery.html").shows_default();
   verb.option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so")
       .default_text("reference where this tree has one, else student");
+  verb.flag("--json", options->json, "For machines");
   verb.runs([&context, options] { run_battery(context, *options); });
 }
 

@@ -8,11 +8,14 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "framework/cli/cost_all.h"
 #include "framework/cli/cost_impacts.h"
 #include "framework/cli/cost_measure.h"
 #include "framework/cli/cost_scheduler.h"
+#include "framework/cli/json_output.h"
+#include "framework/report/tables_json.h"
 
 namespace tumble::cli {
 namespace {
@@ -43,21 +46,28 @@ void print(const report::CostPage& page) {
   }
 }
 
-void print_and_write(const report::CostPage& page, const CostWords& words) {
+// @param head  what is measured, and against what: on stdout only
+void print_and_write(const Context& context, const report::CostPage& page, const CostWords& words,
+                     const std::string& head) {
+  const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
+  report::write_cost_page(page, file);
+  if (words.json) {
+    nlohmann::ordered_json parts = report::json_of(page);
+    parts["page"] = file.string();
+    return print_json(context, parts);
+  }
+  fmt::print("{}\n  {}\n", page.title, head);
   print(page);
   for (const report::CostCurve& curve : page.curves) fmt::print("  {}\n", curve.reading);
   for (const std::string& reading : page.readings) fmt::print("{}\n", reading);
   for (const std::string& what : page.not_run) fmt::print("Not run: {}.\n", what);
-  const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
-  report::write_cost_page(page, file);
   fmt::print("{}\n", file.string());
 }
 
 void tell_impacts(const Context& context, const CostWords& words) {
   report::CostPage page = cost_of_impacts(context, words);
   for (const std::string& verdict : verdicts(page)) page.readings.push_back(verdict);
-  fmt::print("{}\n  {}\n", page.title, page.about);
-  print_and_write(page, words);
+  print_and_write(context, page, words, page.about);
 }
 
 void run_cost(Context& context, const CostWords& words) {
@@ -67,8 +77,7 @@ void run_cost(Context& context, const CostWords& words) {
     if (kind->id == words.scene && kind->is_scheduler)
       return cost_of_scheduler(context, *kind, words);
   const MeasuredCost measured = measure_cost(context, words);
-  fmt::print("{}\n  {}\n", measured.page.title, measured.against);
-  print_and_write(measured.page, words);
+  print_and_write(context, measured.page, words, measured.against);
   if (measured.not_attempted) context.exit = ExitCode::kNotAttempted;
 }
 
@@ -130,6 +139,7 @@ void add_cost(CLI::App& app, Context& context) {
   verb.option("--n", words->n, "Size of a scene whose size is a parameter");
   verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made")
       .shows_default();
+  verb.flag("--json", words->json, "For machines");
   verb.footer(
       "Example: tumble cost double_pendulum\n         tumble cost a2 --modules "
       "mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with "

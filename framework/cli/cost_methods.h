@@ -20,6 +20,7 @@ struct CostWords {
   // empty: those that suit the scene
   std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps, coordinates;
   std::vector<double> tolerances;
+  bool json = false;  // the same on stdout for machines
   std::optional<double> duration_s;
   std::optional<int> n;
   // CPU time of all refinements together [s]; empty: usual_budget_s

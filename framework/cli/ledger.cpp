@@ -3,7 +3,9 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/verb.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/grades/ledger.h"
@@ -15,6 +17,7 @@ namespace fs = std::filesystem;
 
 struct LedgerWords {
   std::string action, place, head;
+  bool json = false;
 };
 
 // The sentences that say what is wrong.
@@ -51,11 +54,15 @@ void verify(Context& context, const LedgerWords& words) {
                     "Name a folder of results, or a ledger.jsonl.");
   const grading::LedgerContent ledger = grading::read_ledger(file);
   const auto faults = faults_of(ledger, place, words.head);
+  if (!faults.empty()) context.exit = ExitCode::kCheckFailed;
+  if (words.json)
+    return print_json(context, {{"ledger", file.string()},
+                                {"entries", ledger.entries.size()},
+                                {"submissions", grading::latest_entries(ledger).size()},
+                                {"head", ledger.head},
+                                {"faults", faults}});
   for (const std::string& fault : faults) fmt::print("{}: {}\n", file.string(), fault);
-  if (!faults.empty()) {
-    context.exit = ExitCode::kCheckFailed;
-    return;
-  }
+  if (!faults.empty()) return;
   fmt::print("{}: {} entries of {} submissions fit together{}\nhead {}\n", file.string(),
              ledger.entries.size(), grading::latest_entries(ledger).size(),
              is_folder ? ", and describe the results beside it" : "", ledger.head);
@@ -75,6 +82,7 @@ void add_ledger(CLI::App& app, Context& context) {
               "The digest that an earlier verify printed as head and that was kept elsewhere: the "
               "ledger must still hold that entry")
       .type_name("DIGEST");
+  verb.flag("--json", words->json, "For machines");
   verb.footer(
       "Exit: 0 every entry fits, 1 one does not (the first is named) or a result beside it is not "
       "the one that it names, 2 something to repair.\n"

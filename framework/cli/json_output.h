@@ -1,0 +1,14 @@
+/// Output of verbs for other programs.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "framework/cli/command.h"
+
+namespace tumble::cli {
+
+/// Prints one object on stdout: the command, the version, then `parts`. Bytes that are no UTF-8 are
+/// replaced.
+void print_json(const Command& command, const nlohmann::ordered_json& parts);
+
+}  // namespace tumble::cli
