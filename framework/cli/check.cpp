@@ -1,20 +1,48 @@
 // tumble check a1 [FILE] [PATTERN...]: the student's loop.
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "framework/cli/check_program.h"
+#include "framework/cli/json_output.h"
 
 namespace tumble::cli {
+namespace {
+
+// The verdicts for other programs, such as an editor.
+ExitCode check_for_machines(const Command& command, const CheckWords& words) {
+  const CheckedTests checked = check_quietly(command, words);
+  nlohmann::ordered_json tests = nlohmann::ordered_json::array();
+  for (const grading::TestResult& result : checked.results)
+    tests.push_back({{"test", result.test},
+                     {"verdict", grading::words(result.verdict)},
+                     {"story", result.story},
+                     {"calls", result.calls},
+                     {"last_call", result.last_call},
+                     {"printed", result.printed}});
+  print_json(command, {{"assignment", words.id},
+                       {"file", checked_file(command, words).string()},
+                       {"why_no_test_ran", checked.said},
+                       {"tests", std::move(tests)}});
+  return checked.said.empty() ? grading::exit_code(checked.results) : ExitCode::kCheckFailed;
+}
+
+}  // namespace
 
 void add_check(CLI::App& app, Command& command) {
   auto id = std::make_shared<std::string>();
   auto rest = std::make_shared<std::vector<std::string>>();
   Verb verb(app, "check", "Build your file and run the public tests: a verdict and a story each");
   add_check_words(verb, *rest, *id);
+  auto json = std::make_shared<bool>(false);
+  verb.flag("--json", *json, "For machines");
   verb.footer(
       "Exit: 0 all right, 1 something is wrong or does not compile, 2 something to repair, 4 the "
       "rest is right but not all is attempted.");
-  verb.runs(
-      [&command, id, rest] { command.exit = check_once(command, read_check_words(*id, *rest)); });
+  verb.runs([&command, id, rest, json] {
+    const CheckWords words = read_check_words(*id, *rest);
+    command.exit = *json ? check_for_machines(command, words) : check_once(command, words);
+  });
 }
 
 }  // namespace tumble::cli

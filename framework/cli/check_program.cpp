@@ -234,6 +234,7 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
               {}};
   }
   program.insert(program.end(), {"--json", results.string()});
+  program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   const ProgramOutcome ran = grading::run_program(program, Output::kCaptured);
   if (!fs::exists(results))
     return {

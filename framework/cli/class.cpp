@@ -4,7 +4,9 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/verb.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/version.h"
@@ -22,10 +24,12 @@ namespace tumble::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 using grading::plain_name;
 
 struct ClassWords {
   std::string action, out, name, test, to;
+  bool json = false;
 };
 
 // The folder of results, and what is asked of it.
@@ -50,7 +54,9 @@ std::vector<grading::Grade> grades_of(const Class& all) {
 grading::Grade grade_called(const Class& all) {
   std::vector<std::string> known;
   for (grading::Grade& grade : grades_of(all)) {
-    if (grade.name == all.words.name || grade.folder == all.words.name) return std::move(grade);
+    if (all.words.name == grade.name || all.words.name == grade.folder ||
+        all.words.name == plain_name(grade.name))  // as it is shown
+      return std::move(grade);
     known.push_back(grade.name);
   }
   throw UserError(
@@ -65,20 +71,43 @@ std::string number_of(Number number, const std::string& what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
 
+bool is_asked(const Class& all, const grading::ScoredTest& test) {
+  return all.words.test.empty() ? test.result.verdict != grading::Verdict::kRight
+                                : test.item.test == all.words.test;
+}
+
+void story_for_machines(const Class& all, const grading::Grade& grade) {
+  Json tests = Json::array();
+  for (const grading::ScoredTest& test : grade.tests)
+    if (is_asked(all, test))
+      tests.push_back({{"test", test.item.test},
+                       {"title", test.item.title},
+                       {"hidden", test.item.hidden},
+                       {"verdict", grading::words(test.result.verdict)},
+                       {"score", test.score},
+                       {"points", test.item.points},
+                       {"calls", test.result.calls},
+                       {"last_call", test.result.last_call},
+                       {"story", test.result.story}});
+  print_json(all.context, {{"name", grade.name},
+                           {"summary", grading::summary_of(grade)},
+                           {"story", grade.story},
+                           {"tests", std::move(tests)}});
+}
+
 // One test of one submission, with its whole story, also of a hidden test.
 void story(const Class& all) {
   const grading::Grade grade = grade_called(all);
   std::vector<std::string> known;
   for (const grading::ScoredTest& test : grade.tests) known.push_back(test.item.test);
+  if (all.words.json) return story_for_machines(all, grade);
   fmt::print("{}: {}\n\n", plain_name(grade.name), grading::summary_of(grade));
   const bool is_judged = grade.state == grading::GradeState::kJudged;
   if (!is_judged && all.words.test.empty())
     return fmt::print("{}\n", grading::plain_text(grade.story));
   std::size_t shown = 0;
   for (const grading::ScoredTest& test : grade.tests) {
-    const bool is_asked = all.words.test.empty() ? test.result.verdict != grading::Verdict::kRight
-                                                 : test.item.test == all.words.test;
-    if (!is_asked) continue;
+    if (!is_asked(all, test)) continue;
     ++shown;
     fmt::print("{}{}\n{}: {}, {} of {} points, {}{}\n{}\n\n", test.item.test,
                test.item.hidden ? " (hidden)" : "", test.item.title,
@@ -118,38 +147,60 @@ void page(const Class& all) {
 
 void late(const Class& all) {
   const auto standings = grading::read_standings(fs::path(all.words.out) / grading::kStandingFile);
+  Json told = Json::array();
   std::size_t count = 0;
   for (const grading::Standing& s : standings) {
     if (s.late_days == 0 && s.after && s.is_time_known) continue;
+    ++count;
+    if (all.words.json) {
+      told.push_back({{"name", s.person.name},
+                      {"submission", s.submission},
+                      {"why", s.why},
+                      {"late_days", s.late_days},
+                      {"before", s.before ? Json(*s.before) : Json()},
+                      {"after", s.after ? Json(*s.after) : Json()}});
+      continue;
+    }
     fmt::print("{}: {}{}\n", plain_name(s.person.name), s.why,
                s.before && s.after && *s.before != *s.after
                    ? fmt::format(" ({} -> {})", grading::points_text(*s.before),
                                  grading::points_text(*s.after))
                    : "");
-    ++count;
   }
+  if (all.words.json)
+    return print_json(all.context, {{"of", standings.size()}, {"late", std::move(told)}});
   fmt::print("{} of {} late, without a score or without a time\n", count, standings.size());
 }
 
 // Groups of the roster, equal files, and files that are alike.
 void together(const Class& all) {
+  const bool json = all.words.json;
+  Json told{{"groups", Json::array()}, {"equal", Json::array()}, {"alike", Json::array()}};
   const fs::path file = fs::path(all.words.out) / grading::kStandingFile;
   if (fs::exists(file)) {
     std::map<std::string, std::vector<std::string>> groups;
     for (const grading::Standing& s : grading::read_standings(file))
       if (!s.submission.empty()) groups[s.submission].push_back(plain_name(s.person.name));
     for (const auto& [submission, names] : groups)
-      if (names.size() > 1)
+      if (names.size() > 1 && json)
+        told["groups"].push_back({{"submission", submission}, {"names", names}});
+      else if (names.size() > 1)
         fmt::print("as a group: {} ({})\n", fmt::join(names, ", "), plain_name(submission));
   }
   for (auto& names : grading::equal_submissions(records_of(all))) {
     for (std::string& name : names) name = plain_name(name);
-    fmt::print("the same file: {}\n", fmt::join(names, ", "));
+    if (json)
+      told["equal"].push_back(names);
+    else
+      fmt::print("the same file: {}\n", fmt::join(names, ", "));
   }
-  if (!grading::can_compare_sources())
-    return fmt::print(
-        "not compared further: sim_c++ is not installed (sudo apt-get install "
-        "similarity-tester)\n");
+  if (!grading::can_compare_sources()) {
+    told["alike"] = Json();
+    if (json) print_json(all.context, told);
+    return fmt::print(json ? stderr : stdout,
+                      "not compared further: sim_c++ is not installed (sudo apt-get install "
+                      "similarity-tester)\n");
+  }
   constexpr int kLeastPercent = 80;
   constexpr std::size_t kMostPairs = 40;
   const auto& kind = all.context.registry.find(all.settings.assignment);
@@ -157,6 +208,12 @@ void together(const Class& all) {
   const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
   const auto pairs =
       grading::similar_pairs(sources, grading::starter_of(course, kind), kLeastPercent, 0);
+  if (json) {
+    for (const auto& pair : pairs)
+      told["alike"].push_back(
+          {{"percent", pair.percent}, {"names", {sources[pair.a].name, sources[pair.b].name}}});
+    return print_json(all.context, told);
+  }
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i)
     fmt::print("alike by {} %: {}, {}\n", pairs[i].percent, plain_name(sources[pairs[i].a].name),
                plain_name(sources[pairs[i].b].name));
@@ -176,6 +233,12 @@ void slips(const Class& all) {
                "the tests that they fail\n",
                all.settings.assignment);
   for (const grading::Grade& grade : grades_of(all)) slips.add(grade);
+  if (all.words.json) {
+    Json told = Json::array();
+    for (const grading::SlipCount& slip : slips.made_most())
+      told.push_back({{"slip", slip.slip}, {"names", slip.names}});
+    return print_json(all.context, {{"slips", std::move(told)}});
+  }
   for (const grading::SlipCount& slip : slips.made_most())
     fmt::print("{:>5}  {}\n", slip.names.size(), slip.slip);
 }
@@ -184,15 +247,27 @@ void changed(const Class& all) {
   const auto ledger = grading::read_ledger(fs::path(all.words.out) / grading::kLedgerFile);
   if (!ledger.fault.empty())
     throw UserError(all.words.out, "has a ledger that does not fit together: " + ledger.fault);
+  Json told = Json::array();
   std::size_t count = 0;
   for (const grading::LedgerEntry& entry : ledger.entries) {
     if (entry.changes.empty() && entry.change.empty()) continue;
     ++count;
+    if (all.words.json) {
+      Json tests = Json::array();
+      for (const grading::TestChange& c : entry.changes)
+        tests.push_back(
+            {{"test", c.test}, {"before", c.before}, {"after", c.after}, {"reason", c.reason}});
+      told.push_back({{"name", entry.name}, {"change", entry.change}, {"tests", std::move(tests)}});
+      continue;
+    }
     fmt::print("{}: {}\n", entry.name,
                entry.change.empty() ? "the same score, by other tests" : entry.change);
     for (const grading::TestChange& c : entry.changes)
       fmt::print("  {}: {} -> {} ({})\n", c.test, c.before, c.after, c.reason);
   }
+  if (all.words.json)
+    return print_json(all.context,
+                      {{"entries", ledger.entries.size()}, {"changed", std::move(told)}});
   fmt::print(
       "{} of the ledger's {} changed an earlier result\n", count,
       ledger.entries.size() == 1 ? "one entry" : fmt::format("{} entries", ledger.entries.size()));
@@ -210,6 +285,9 @@ void run(Context& context, const ClassWords& words) {
     throw UserError("class " + words.action,
                     "there is no such action." + did_you_mean(words.action, known),
                     fmt::format("There are {}.", fmt::join(known, ", ")));
+  if (words.json && words.action == "page")
+    throw UserError("--json", "a page is for people",
+                    "Say tumble class story OUT NAME --json, or leave it out.");
   it->second({context, words, grading::settings_of(words.out)});
 }
 
@@ -229,6 +307,7 @@ void add_class(CLI::App& app, Context& context) {
   verb.option("test", words->test, "For story: Suite.Name; default: every test that is not right")
       .type_name("TEST");
   verb.option("--to", words->to, "For page: where it goes, outside of OUT").type_name("FOLDER");
+  verb.flag("--json", words->json, "For machines; not of page");
   verb.footer(
       "story OUT NAME [TEST]    one test of one student with its whole story, also of a hidden "
       "one\n"

@@ -9,13 +9,16 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "framework/cli/cost_measure.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/report/html.h"
 #include "framework/report/peer_rows.h"
+#include "framework/report/tables_json.h"
 
 namespace tumble::cli {
 namespace {
@@ -220,8 +223,14 @@ void cost_of_all(Context& context, const CostWords& words) {
   const bool has_peers = fs::is_directory(rows);
   if (has_peers)
     tables.push_back(table_of_peers(report::read_peer_rows(rows), "../peers/index.html"));
-  for (const report::Table& table : tables) print(table);
   write_page(context, tables, words, has_peers);
+  if (words.json) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const report::Table& table : tables) all.push_back(report::json_of(table));
+    return print_json(context, {{"tables", std::move(all)},
+                                {"page", (fs::path(words.out) / "index.html").string()}});
+  }
+  for (const report::Table& table : tables) print(table);
   fmt::print("{}\n", (fs::path(words.out) / "index.html").string());
 }
 

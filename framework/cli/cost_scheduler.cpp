@@ -7,14 +7,17 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "framework/cli/find_scene.h"
+#include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/engines/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/grades/scheduler_section.h"
 #include "framework/report/cost_page.h"
+#include "framework/report/tables_json.h"
 #include "framework/scene/sized_scenes.h"
 
 namespace tumble::cli {
@@ -204,6 +207,25 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-";
 }
 
+// Counts of every run, each as a number of the whole run.
+nlohmann::ordered_json json_of(const std::vector<Way>& ways) {
+  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+  for (const Way& way : ways)
+    for (const auto* ladder : {&way.curve.by_step, &way.curve.by_size})
+      for (const SchedulerRun& run : *ladder)
+        runs.push_back({{"name", way.curve.name},
+                        {"processes", run.processes},
+                        {"step_s", run.step_s},
+                        {"committed", run.committed},
+                        {"due", run.due},
+                        {"integrations", run.integrations},
+                        {"undone", run.undone},
+                        {"rollbacks", run.rollbacks},
+                        {"states_kept", run.states_kept},
+                        {"cpu_s", run.cpu_s}});
+  return runs;
+}
+
 void print(const std::vector<Way>& ways) {
   fmt::print("{:<52} {:>9} {:>9} {:>12} {:>12} {:>10} {:>10} {:>7} {:>10}\n",
              "for each committed event:", "processes", "step [s]", "committed", "integrations",
@@ -247,15 +269,18 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
            : "; and at growing size: " + scene::sized_scene_named(measuring.sized())->title);
 
   // The same on stdout and on the page.
-  fmt::print("{} ({}) on: {}\n", kind.id, words.modules.empty() ? "student" : words.modules,
-             scenes);
-  print(ways);
-  report::Page page("What accuracy costs",
-                    fmt::format("{} ({}) on: {}", kind.id,
-                                words.modules.empty() ? "student" : words.modules, scenes));
+  const std::string subject = fmt::format(
+      "{} ({}) on: {}", kind.id, words.modules.empty() ? "student" : words.modules, scenes);
+  if (!words.json) {
+    fmt::print("{}\n", subject);
+    print(ways);
+  }
+  std::vector<std::string> sentences;
+  report::Page page("What accuracy costs", subject);
   for (const SchedulerReading& reading : readings) {
     const grading::CostLine line = grading::line_of(reading);
-    fmt::print("  {}\n", line.reading);
+    sentences.push_back(line.reading);
+    if (!words.json) fmt::print("  {}\n", line.reading);
     page.paragraph(line.reading, line.is_wasteful    ? report::Look::kWarning
                                  : line.is_right     ? report::Look::kGood
                                  : line.is_attempted ? report::Look::kBad
@@ -273,11 +298,17 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   page.record(record_of(context, measuring.scene()));
   const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
   page.write(file);
-  if (ways[0].is_sandboxed)
+  if (words.json)
+    print_json(context, {{"title", subject},
+                         {"readings", sentences},
+                         {"runs", json_of(ways)},
+                         {"is_sandboxed", ways[0].is_sandboxed},
+                         {"page", file.string()}});
+  if (ways[0].is_sandboxed && !words.json)
     fmt::print(
         "This module runs in the sandbox, where each decision crosses to another process and back: "
         "compare its counts, not its CPU time.\n");
-  fmt::print("{}\n", file.string());
+  if (!words.json) fmt::print("{}\n", file.string());
   if (std::any_of(readings.begin(), readings.end(), [](const SchedulerReading& reading) {
         return reading.kind == SchedulerReading::Kind::kNotWritten;
       }))

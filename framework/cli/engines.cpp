@@ -5,12 +5,15 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "framework/cli/engine_rows.h"
 #include "framework/cli/engines_all.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
+#include "framework/report/tables_json.h"
 #include "framework/scene/sized_scenes.h"
 
 namespace tumble::cli {
@@ -52,18 +55,30 @@ void run_engines(Context& context, const EnginesWords& words) {
                     "Give a scene whose size is a parameter, such as atoms, or leave --sizes out.");
   for (const int n : words.sizes) {
     ladder.push_back(run_all(context, find_scene(context, words.scene, n), chosen, words));
+    if (words.json) continue;
     fmt::print("n = {}\n", n);
     print_rows(ladder.back());
   }
   const std::vector<EngineRow> rows =
       ladder.empty() || words.n ? run_all(context, scene, chosen, words) : ladder.back();
-  fmt::print("{}\n  impulses by {} · motion by {}\n", scene.title, chosen.laws.impulse_source,
-             chosen.laws.integrator_source);
-  print_rows(rows);
   const std::filesystem::path page = std::filesystem::path(words.out) / scene.name / "index.html";
   report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene),
                              page);
-  fmt::print("{}\n", page.string());
+  if (words.json) {
+    nlohmann::ordered_json sizes = nlohmann::ordered_json::array();
+    for (const std::vector<EngineRow>& of_size : ladder)
+      sizes.push_back({{"n", of_size.front().bodies}, {"engines", report::json_of(of_size)}});
+    print_json(context, {{"scene", scene.name},
+                         {"title", scene.title},
+                         {"engines", report::json_of(rows)},
+                         {"sizes", std::move(sizes)},
+                         {"page", page.string()}});
+  } else {
+    fmt::print("{}\n  impulses by {} · motion by {}\n", scene.title, chosen.laws.impulse_source,
+               chosen.laws.integrator_source);
+    print_rows(rows);
+    fmt::print("{}\n", page.string());
+  }
   for (const EngineRow& row : rows)
     if ((!row.counts.empty() && !row.stopped_by.empty()) || !row.faults.empty())
       context.exit = ExitCode::kCheckFailed;
@@ -105,6 +120,7 @@ void add_engines(CLI::App& app, Context& context) {
   verb.option("--out", words->out,
               "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one")
       .shows_default();
+  verb.flag("--json", words->json, "For machines");
   verb.footer(
       "Example: tumble engines\n         tumble engines atoms --sizes 30,100,300\nTimes are CPU "
       "times in this run (by the clock with --threads) and are meant to be compared with each "

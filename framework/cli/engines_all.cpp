@@ -5,15 +5,18 @@
 #include <exception>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "framework/cli/engine_rows.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/render/picture.h"
 #include "framework/report/engines_index.h"
 #include "framework/report/player.h"
+#include "framework/report/tables_json.h"
 #include "framework/report/virtual_times_panel.h"
 #include "framework/scene/sized_scenes.h"
 
@@ -296,9 +299,22 @@ void engines_of_all(Context& context, const EnginesWords& words) {
     if (!scene.problem.empty() || !scene.is_right) context.exit = ExitCode::kCheckFailed;
     // after each scene: a stopped run leaves the page of all scenes so far
     report::write_engines_index(index, fs::path(words.out) / "index.html");
-    if (!words.quiet) print_scene(scene);
+    if (!words.quiet && !words.json) print_scene(scene);
   }
   if (words.quiet) return;
+  if (words.json) {
+    nlohmann::ordered_json scenes = nlohmann::ordered_json::array(), sizes = scenes;
+    for (const EnginesScene& scene : index.scenes)
+      scenes.push_back({{"scene", scene.name},
+                        {"problem", scene.problem},
+                        {"right", scene.is_right},
+                        {"engines", report::json_of(scene.rows)}});
+    for (const std::vector<EngineRow>& rows : index.ladder)
+      sizes.push_back({{"n", rows.front().bodies}, {"engines", report::json_of(rows)}});
+    return print_json(context, {{"scenes", std::move(scenes)},
+                                {"sizes", std::move(sizes)},
+                                {"page", (fs::path(words.out) / "index.html").string()}});
+  }
   for (const std::vector<EngineRow>& rows : index.ladder) {
     fmt::print("atoms (n = {})\n", rows.front().bodies);
     print_rows(rows);

@@ -22,6 +22,7 @@ struct EnginesWords {
   bool full = false;  // sizes of the paper
   bool no_videos = false;
   bool small = false;  // a few scenes, smaller still
+  bool json = false;   // on stdout, for machines
   bool quiet = false;  // nothing on stdout: used within a larger report
 };
 

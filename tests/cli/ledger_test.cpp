@@ -76,6 +76,15 @@ TEST_F(LedgerOfThree, GrowsOnlyByWhatIsNew) {
   EXPECT_EQ(latest_entries(read_ledger(file())).at("ada").score, 90.0);
 }
 
+// The name of a folder with a line break: escaped once, and the same after it was read again.
+TEST_F(LedgerOfThree, AnEscapedNameStaysAsItIs) {
+  const LedgerEntry odd = entry("a\\x0Ab", 80.0);
+  Ledger(file()).append(odd);
+  EXPECT_EQ(read_ledger(file()).entries.back().name, odd.name);
+  Ledger(file()).append(odd);
+  EXPECT_EQ(lines().size(), 4u) << "nothing is new";
+}
+
 TEST_F(LedgerOfThree, AnEditedEntryIsNamed) {
   auto all = lines();
   all[1].replace(all[1].find("80"), 2, "90");

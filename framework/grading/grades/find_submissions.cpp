@@ -243,13 +243,13 @@ bool is_real_folder(const fs::path& path) {
 // of a platform.
 fs::path root_of(const fs::path& folder, bool is_unpacked) {
   std::vector<fs::path> entries;
-  for (const fs::path path : sorted_entries(folder))
+  for (const fs::path& path : sorted_entries(folder))
     if (!is_litter(path.filename().string())) entries.push_back(path);
   if (entries.size() != 1 || !is_real_folder(entries[0])) return folder;
   if (fs::exists(fs::symlink_status(entries[0] / kGradescopeMetadata))) return entries[0];
   if (!is_unpacked) return folder;
   std::size_t folders = 0, files = 0, named = 0;
-  for (const fs::path inner : sorted_entries(entries[0])) {
+  for (const fs::path& inner : sorted_entries(entries[0])) {
     const std::string name = inner.filename().string();
     if (is_litter(name)) continue;
     ++(is_real_folder(inner) ? folders : files);

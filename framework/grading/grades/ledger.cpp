@@ -34,7 +34,7 @@ std::string one_line(const Json& json) {
 // Everything but the number, the chain and what a change was: whether two entries say the same.
 Json facts_of(const LedgerEntry& entry) {
   return {{"assignment", entry.assignment},
-          {"name", plain_name(entry.name)},
+          {"name", entry.name},
           {"folder", entry.folder},
           {"submission", entry.submission},
           {"judging", entry.judging},

@@ -27,7 +27,9 @@ inline constexpr const char* kLedgerFile = "ledger.jsonl";
 
 /// What one entry says.
 struct LedgerEntry {
-  std::string assignment, name, folder;
+  std::string assignment;
+  std::string name;                         // as plain_name gives it
+  std::string folder;                       // of its results, in OUT
   std::string submission, judging, rubric;  // digests, as in GradeKey
   std::string version;                      // of the program
   std::string compiler;                     // in words, with its version
