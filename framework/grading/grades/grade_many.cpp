@@ -267,8 +267,9 @@ class Batch {
     // this process ends by a signal, without running destructors
     for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);
     fmt::print(stderr,
-               "stopped: {} of {} submissions are graded; the same command continues from here\n",
-               done_, work_.size());
+               "stopped: {} of {} submissions are graded, and kept in {}; the same command continues "
+               "from here\n",
+               done_, work_.size(), out_.string());
   }
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
