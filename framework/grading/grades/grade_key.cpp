@@ -60,6 +60,7 @@ std::string pictures_digest(const Course& course, const std::string& id,
       fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
   for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes)
     text += scene.filename().string() + digest_of_file(scene) + ' ';
+  text += page_code_digest(course, id, options.code_in_pages);
   return digest(text + digest_of_file(built_module(course, id, "reference")));
 }
 
