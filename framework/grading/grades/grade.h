@@ -132,8 +132,11 @@ struct GradeOptions {
   bool media = true;
   bool cost = true;  // measures what accuracy costs with a submission's methods, for its page
   MediaOptions media_options;
-  // with `media`: whose code runs in a page
-  CodeInPages code_in_pages = CodeInPages::kOwn;
+  // whose code runs in a page; nothing: the submission's where pictures are made
+  std::optional<CodeInPages> code_in_pages;
+  CodeInPages page_code() const {
+    return code_in_pages.value_or(media ? CodeInPages::kOwn : CodeInPages::kNone);
+  }
   // a kind of sandbox that is used although the policy refuses it; results are marked
   std::string accepted_sandbox;
   std::vector<std::filesystem::path> scenes;  // empty: the assignment's demo scenes

@@ -88,7 +88,7 @@ function stoppedWords({ t, kind, name, words }) {
 class Bench {
   constructor(root, own, right) {
     Object.assign(this, { root, own, right, pushes: [], t: 0, isPlaying: false, results: [] });
-    this.camera = { turn: -1.2, rise: 0.25, far: 2.6 };
+    this.camera = { turn: -1.2, rise: 0.25, far: 1.9 };
   }
 
   build(list) {
@@ -194,14 +194,13 @@ class Bench {
     this.numbers.textContent = '';
     if (own.facts.length === 0) return;
     const table = $('table'), head = $('tr'), body = $('tbody');
-    for (const name of ['What has to hold', 'has to be', 'this file', ...(right ? ['the right law'] : []), '']) head.append($('th', name, { scope: 'col' }));
-    for (const fact of own.facts) {
-      const row = $('tr'), verdict = this.verdict(fact), other = right && right.facts.find(f => f.name === fact.name);
-      row.append($('td', fact.unit === '' ? fact.name : `${fact.name} [${fact.unit}]`), $('td', fact.wanted === null ? '' : shown(fact.wanted), { class: 'number' }), $('td', shown(fact.value), { class: 'number' }));
+    for (const name of ['', 'What has to hold', 'has to be', 'this file', ...(right ? ['the right law'] : [])]) head.append($('th', name, { scope: 'col' }));
+    own.facts.forEach((fact, i) => {
+      const row = $('tr'), verdict = this.verdict(fact), other = right && right.facts[i];
+      row.append($('td', verdict, { class: verdict === 'right' ? 'good' : 'bad' }), $('td', fact.unit === '' ? fact.name : `${fact.name} [${fact.unit}]`), $('td', fact.wanted === null ? '' : shown(fact.wanted), { class: 'number' }), $('td', shown(fact.value), { class: 'number' }));
       if (right) row.append($('td', other ? shown(other.value) : '', { class: 'number' }));
-      row.append($('td', verdict, { class: verdict === 'right' ? 'good' : 'bad' }));
       body.append(row);
-    }
+    });
     const top = $('thead');
     top.append(head);
     table.append(top, body);

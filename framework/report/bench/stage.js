@@ -11,7 +11,7 @@ Object.assign(Bench.prototype, {
   sized() {
     const { canvas } = this, ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
     if (canvas.width !== Math.round(width * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
-    return { width, height, ratio, focal: Math.min(1.6 * height, 1.05 * width) };
+    return { width, height, ratio, focal: Math.min(1.6 * height, 1.15 * width) };
   },
   project(view, size, p) {
     const d = sub(p, view.eye), depth = -dot(d, view.back), k = size.focal / Math.max(0.05, depth);
