@@ -83,7 +83,7 @@ function bounced(to, brick, e, seen) {
 const aboutPoint = (body, p) => add(spin(body), times(body.mass, cross(sub(body.x, p), body.v)));
 
 const drop = {
-  id: 'drop', title: 'A brick falls on the floor', about: 'Without friction. Each corner that meets the floor asks relative_normal_velocity, collision_impulse and apply_impulse.',
+  id: 'drop', takesPushes: true, title: 'A brick falls on the floor', about: 'Without friction. Each corner that meets the floor asks relative_normal_velocity, collision_impulse and apply_impulse. Drag from the brick to push it.',
   controls: [
     { id: 'e', label: 'restitution e', min: 0, max: 1, step: 0.05, value: 0.5, unit: '' },
     { id: 'mass', label: 'mass', min: 0.5, max: 10, step: 0.5, value: 3, unit: 'kg' },
@@ -135,7 +135,7 @@ function nearestOfBox(body, p) {
 const gapOf = (a, b) => norm(sub(a.x, nearestOfBox(b, a.x))) - a.shape.radius;
 
 const strike = {
-  id: 'strike', title: 'A ball strikes a brick', about: 'In free space. The two touch once: collision_impulse and apply_impulse, and resolve_collision beside them.',
+  id: 'strike', takesPushes: true, title: 'A ball strikes a brick', about: 'In free space. The two touch once: collision_impulse and apply_impulse, and resolve_collision beside them. Drag from the brick to push it.',
   controls: [
     { id: 'e', label: 'restitution e', min: 0, max: 1, step: 0.05, value: 0.8, unit: '' },
     { id: 'ball', label: 'mass of the ball', min: 0.1, max: 10, step: 0.1, value: 1, unit: 'kg' },
@@ -194,7 +194,7 @@ const strike = {
 };
 
 const push = {
-  id: 'push', title: 'A force pushes a brick', about: 'In free space, for 0.2 s, at a place of the brick. Each step asks wrench_of_point_force, linear_acceleration and angular_acceleration.',
+  id: 'push', takesPushes: true, title: 'A force pushes a brick', about: 'In free space, for 0.2 s, at a place of the brick. Each step asks wrench_of_point_force, linear_acceleration and angular_acceleration. Drag from the brick to push it once more.',
   controls: [
     { id: 'force', label: 'force, to the right', min: 0, max: 20, step: 1, value: 8, unit: 'N' },
     { id: 'mass', label: 'mass', min: 0.5, max: 10, step: 0.5, value: 3, unit: 'kg' },

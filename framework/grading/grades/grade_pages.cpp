@@ -245,8 +245,9 @@ static void add_bench(report::Page& page, const Grade& grade, const PageView& vi
     return page.paragraph("It does not run in this page: " + plain_text(grade.no_page_code),
                           Look::kMuted);
   page.paragraph(
-      "Change the numbers, drag from the brick to push it: every answer is computed here by this "
-      "file's own functions, compiled for the page.");
+      "Change the numbers: every answer is computed here by this file's own functions, compiled "
+      "for "
+      "the page.");
   report::add_bench(page, view.bench);
 }
 

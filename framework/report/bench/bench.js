@@ -101,7 +101,7 @@ class Bench {
     label.append(choose);
     this.about = $('p', '', { class: 'muted' });
     this.controls = $('div', '', { class: 'bench-controls' });
-    this.canvas = $('canvas', '', { tabindex: 0, role: 'img', 'aria-describedby': 'bench-state', 'aria-label': 'The motion. Drag from the brick to push it, from elsewhere to turn the view; arrow keys turn it, too.' });
+    this.canvas = $('canvas', '', { tabindex: 0, role: 'img', 'aria-describedby': 'bench-state', 'aria-label': 'The motion. Drag to turn the view, or from a brick to push it where the text says so; arrow keys turn it, too.' });
     this.scrub = $('input', '', { type: 'range', min: 0, max: 0, step: 1, value: 0, 'aria-label': 'Time' });
     this.clock = $('output', '', { class: 'bench-clock' });
     this.play = $('button', 'Play', { type: 'button' });
@@ -197,7 +197,7 @@ class Bench {
     for (const name of ['', 'What has to hold', 'has to be', 'this file', ...(right ? ['the right law'] : [])]) head.append($('th', name, { scope: 'col' }));
     own.facts.forEach((fact, i) => {
       const row = $('tr'), verdict = this.verdict(fact), other = right && right.facts[i];
-      row.append($('td', verdict, { class: verdict === 'right' ? 'good' : 'bad' }), $('td', fact.unit === '' ? fact.name : `${fact.name} [${fact.unit}]`), $('td', fact.wanted === null ? '' : shown(fact.wanted), { class: 'number' }), $('td', shown(fact.value), { class: 'number' }));
+      row.append($('td', verdict, { class: { right: 'good', wrong: 'bad', '': 'muted' }[verdict] }), $('td', fact.unit === '' ? fact.name : `${fact.name} [${fact.unit}]`), $('td', fact.wanted === null ? '' : shown(fact.wanted), { class: 'number' }), $('td', shown(fact.value), { class: 'number' }));
       if (right) row.append($('td', other ? shown(other.value) : '', { class: 'number' }));
       body.append(row);
     });
@@ -213,11 +213,12 @@ class Bench {
     if (!is) return;
     if (this.t >= +this.scrub.max) this.t = 0;
     let before = null;
+    const timed = this.results.find(r => r.frames.length > 1), span = timed ? timed.frames[1].t - timed.frames[0].t : 1 / 60;
     const tick = now => {
       if (!this.isPlaying) return;
       const seconds = before === null ? 0 : Math.min(0.1, (now - before) / 1000);
       before = now;
-      this.t = Math.min(+this.scrub.max, this.t + seconds * 60);   // 60 frames are a second
+      this.t = Math.min(+this.scrub.max, this.t + seconds / span);
       this.draw();
       if (this.t >= +this.scrub.max) this.setPlaying(false);
       else requestAnimationFrame(tick);

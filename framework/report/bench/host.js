@@ -130,15 +130,17 @@ class Law {
     const number = this.names.indexOf(name);
     if (number < 0) throw new Ended('wrong', name, 'the module does not have it');
     this.hears(name);
-    this.called = name;
-    this.functions = functions;
+    const outer = [this.called, this.functions];   // of a call that is being answered: a callback may call
+    [this.called, this.functions] = [name, functions];
     try {
-      return this.guarded_(() => {
+      const answer = this.guarded_(() => {
         const { tumble_room, tumble_call, memory } = this.instance.exports;
         const room = tumble_room(writer.length) >>> 0;
         new Uint8Array(memory.buffer).set(writer.bytes(), room);
         return this.answer_(tumble_call(number));
       });
+      [this.called, this.functions] = outer;
+      return answer;
     } catch (error) {
       this.begin();
       throw error;

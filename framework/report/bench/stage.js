@@ -139,7 +139,7 @@ Object.assign(Bench.prototype, {
   // Near the brick of this file's run, on the screen; where a ray really hits is asked of the law.
   isOnBrick([x, y]) {
     const [own] = this.results;
-    if (!own || own.frames.length === 0) return false;
+    if (!this.one.takesPushes || !own || own.frames.length === 0) return false;
     const size = this.sized(), view = this.eyes(), points = corners(this.pose(own, 0, this.t)).map(p => this.project(view, size, p));
     const [xs, ys] = [points.map(p => p[0]), points.map(p => p[1])];
     return x >= Math.min(...xs) && x <= Math.max(...xs) && y >= Math.min(...ys) && y <= Math.max(...ys);

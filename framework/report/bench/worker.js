@@ -1,5 +1,5 @@
 // The worker's end: runs an assignment's experiments on one module and answers with what moved.
-// experiments (of the assignment's own script): {id, title, about, controls, run(recorder, values, pushes)}.
+// experiments (of the assignment's own script): {id, title, about, controls, takesPushes, run(recorder, values, pushes)}.
 
 const longestRun = 5000;   // ms of one run, all calls together
 
@@ -57,7 +57,7 @@ if (typeof onmessage !== 'undefined' && typeof window === 'undefined' && typeof 
     try {
       if (data.wasm) {
         law = new Law(data.wasm, hears);
-        postMessage({ ready: experiments.map(({ id, title, about, controls }) => ({ id, title, about, controls })) });
+        postMessage({ ready: experiments.map(({ id, title, about, controls, takesPushes }) => ({ id, title, about, controls, takesPushes })) });
         return;
       }
       last = '';
