@@ -1,8 +1,8 @@
 // Answers of a module of WebAssembly beside those of the same source on this machine's processor.
 // Usage: node page_module.mjs ROOT MODULE.wasm CALLS
 // CALLS: for each call its function's name, arguments and answer, each after its length (u32).
-// Prints for each function: NAME CALLS BYTES-EQUAL WORST, the worst relative difference of a number
-// to the largest number of its answer.
+// Prints for each function: NAME CALLS BYTES-EQUAL WORST, the worst difference of a number, in parts
+// of the largest number of its answer, or of 1 where that is smaller: arguments are of that size.
 import { readFileSync } from 'node:fs';
 
 const [root, wasm, calls] = process.argv.slice(2);
@@ -20,7 +20,7 @@ while (at < bytes.length) {
   if (answer.length !== native.length) { one.worst = Infinity; continue; }
   // vectors of three: eight bytes of size, then the numbers; a lone number has no size
   const numbers = b => { const all = []; for (let i = 0; i < b.length;) { if (b.length > 8) i += 8; for (let k = 0; k < (b.length > 8 ? 3 : 1); ++k, i += 8) all.push(b.readDoubleLE(i)); } return all; };
-  const a = numbers(answer), b = numbers(native), scale = Math.max(...b.map(Math.abs));
+  const a = numbers(answer), b = numbers(native), scale = Math.max(1, ...b.map(Math.abs));
   one.worst = Math.max(one.worst, ...a.map((x, i) => Math.abs(x - b[i]) / scale));
 }
 for (const [name, { calls: n, equal, worst }] of seen) console.log(name, n, equal, worst);
