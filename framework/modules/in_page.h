@@ -142,7 +142,7 @@ inline const char* what_of(const void* object, const std::type_info& type) {
 
 }  // namespace tumble::modules::in_page
 
-// What clang calls for `throw`. The object is never freed: the page begins anew with a fresh module.
+// What clang calls for `throw`. The object is never freed: the page begins with a fresh module.
 extern "C" __attribute__((weak)) void* __cxa_allocate_exception(std::size_t size) noexcept {
   return std::malloc(size);
 }
