@@ -136,6 +136,9 @@ void page(const Class& all) {
                     "Name another folder.");
   grading::PageView view;
   view.is_alone = true;
+  const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
+  view.bench =
+      grading::bench_of(out / grade.folder, grading::page_script(course, all.settings.assignment));
   grading::submission_page(all.context.registry.find(all.settings.assignment), grade,
                            version_in_words(kProgramVersion), view)
       .write(to / "index.html");

@@ -21,6 +21,7 @@ struct GradeWords {
   int jobs = 0;  // one a core
   double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
+  std::string code_in_pages;  // empty: by no_media
   std::string sandbox, accepted_sandbox, policy;
   std::string shard, on, hosts;
   int shards = 0;
@@ -69,6 +70,7 @@ std::vector<std::string> words_of_task(const Context& context, const GradeWords&
                                   "--budget-s",
                                   fmt::format("{}", words.budget_s)};
   if (words.no_media) all.push_back("--no-media");
+  if (!words.code_in_pages.empty()) all.insert(all.end(), {"--code-in-pages", words.code_in_pages});
   if (!words.sandbox.empty()) all.insert(all.end(), {"--sandbox", words.sandbox});
   if (!words.accepted_sandbox.empty())
     all.insert(all.end(), {"--accept-sandbox", words.accepted_sandbox});
@@ -117,6 +119,8 @@ void grade(Context& context, const GradeWords& words) {
     };
   request.options.budget_s = words.budget_s;
   request.options.media = !words.no_media;
+  if (!words.code_in_pages.empty())
+    request.options.code_in_pages = grading::code_in_pages_of(words.code_in_pages);
   request.options.accepted_sandbox = words.accepted_sandbox;
   request.options.may_lower = [&](const std::vector<grading::Lowering>& lowerings) {
     return keep_scores(words.id, out, lowerings);
@@ -163,6 +167,12 @@ void add_grade(CLI::App& app, Context& context) {
   verb.flag(
       "--no-media", words->no_media,
       "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.option("--code-in-pages", words->code_in_pages,
+              "Whose functions answer in a page: own (the file's; in the TA's page "
+              "the right ones beside them), both (in the student's page, too: it holds the "
+              "solution, compiled), none")
+      .type_name("WHOSE")
+      .default_text("own; with --no-media none");
   verb.option(
           "--policy", words->policy,
           "Due dates, late days, penalties, attempts, groups and the roster; the gradebook then "

@@ -82,6 +82,7 @@ void regrade(Context& context, const RegradeWords& words) {
   request.options.jobs = words.jobs;
   request.options.budget_s = before.budget_s;
   request.options.media = before.media;
+  request.options.code_in_pages = grading::code_in_pages_of(before.code_in_pages);
   request.options.accepted_sandbox = words.accepted_sandbox;
   request.options.only = words.only;
   request.options.again = words.again;

@@ -33,7 +33,7 @@ class Sha256 {
     unsigned size = 0;
     if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
       throw std::runtime_error("SHA-256 failed");
-    return hex({reinterpret_cast<const char*>(bytes.data()), size});
+    return {reinterpret_cast<const char*>(bytes.data()), size};
   }
 
  private:
@@ -53,11 +53,13 @@ std::string hex(std::string_view bytes) {
   return text;
 }
 
-std::string digest(std::string_view bytes) {
+std::string digest_bytes(std::string_view bytes) {
   Sha256 hash;
   hash.add(bytes);
   return hash.end();
 }
+
+std::string digest(std::string_view bytes) { return hex(digest_bytes(bytes)); }
 
 std::string digest_of_file(const std::filesystem::path& file) {
   std::error_code failed;
@@ -69,7 +71,7 @@ std::string digest_of_file(const std::filesystem::path& file) {
   std::array<char, 1 << 16> piece;
   while (in.read(piece.data(), piece.size()) || in.gcount() > 0)
     hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
-  return in.bad() ? "missing" : hash.end();
+  return in.bad() ? "missing" : hex(hash.end());
 }
 
 std::string authentication_code(std::string_view key, std::string_view bytes) {

@@ -10,6 +10,8 @@ namespace tumble {
 
 /// @return SHA-256 (FIPS 180-4) of the bytes, 64 hex digits
 std::string digest(std::string_view bytes);
+/// The same, as 32 bytes.
+std::string digest_bytes(std::string_view bytes);
 /// Digest of a file's bytes, read in blocks; "missing" where the file cannot be read.
 std::string digest_of_file(const std::filesystem::path& file);
 

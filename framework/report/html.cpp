@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "framework/core/digest.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/report/channels.h"
 
 namespace tumble::report {
 namespace {
@@ -14,6 +16,14 @@ constexpr const char* kPolicy =
     "default-src 'none'; img-src 'self' file: data:; media-src 'self' file: data:; style-src "
     "'unsafe-inline'; "
     "base-uri 'none'; form-action 'none'";
+
+// The page's one script, by its digest: no text of a page becomes a script. Workers of the page's
+// own text; both may compile WebAssembly, and inherit that there is no network.
+std::string policy_for(const std::string& script) {
+  if (script.empty()) return kPolicy;
+  return std::string(kPolicy) + "; script-src 'sha256-" + base64(digest_bytes(script)) +
+         "' 'wasm-unsafe-eval'; worker-src blob:";
+}
 
 // A table with more columns has less space between them, so that it fits the page and paper.
 constexpr std::size_t kManyColumns = 7;
@@ -304,20 +314,33 @@ void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
   body_ += "</div>\n";
 }
 
+void Page::program(const PageProgram& program) {
+  require(script_.empty(), "report: a page has one program");
+  require(program.script.find("</script") == std::string::npos,
+          "report: a script must not hold the end of its element");
+  body_ += "<div id=\"" + html_escape(program.id) + "\"><p class=\"muted\">" +
+           html_escape(program.before) + "</p></div>\n";
+  for (const PageData& data : program.data)
+    body_ += "<script type=\"application/octet-stream\" id=\"" + html_escape(data.id) + "\">" +
+             html_escape(data.base64) + "</script>\n";
+  script_ = program.script;
+  style_ = program.style;
+}
+
 void Page::record(std::string_view text) { record_ = html_escape(text); }
 
 std::string Page::html() const {
   require(open_.empty(), "report: a part of the page has no end");
   const std::string title = html_escape(title_);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  html +=
-      std::string("<meta http-equiv=\"Content-Security-Policy\" content=\"") + kPolicy + "\">\n";
+  html += "<meta http-equiv=\"Content-Security-Policy\" content=\"" + policy_for(script_) + "\">\n";
   html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-          title + "</title>\n<style>" + kStyle + plot_style() +
+          title + "</title>\n<style>" + kStyle + plot_style() + style_ +
           "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1>";
   html += (subtitle_.empty() ? "" : "<p>" + html_escape(subtitle_) + "</p>") +
           "</header>\n<main>\n" + body_ + "</main>\n";
   if (!record_.empty()) html += "<footer><p>" + record_ + "</p></footer>\n";
+  if (!script_.empty()) html += "<script>" + script_ + "</script>\n";
   return html + "</body>\n</html>\n";
 }
 

@@ -8,7 +8,7 @@
 ///
 /// Everything that comes from a submission is text to these functions: it is escaped here and
 /// nowhere else, and the page forbids scripts and network access, so that a story cannot attack its
-/// reader.
+/// reader. A page with a program lets this one script run, by its digest, and no other.
 #pragma once
 
 #include <filesystem>
@@ -60,6 +60,21 @@ struct Field {
   std::vector<Cell> links = {};  // where the text holds a cell's text, it leads where the cell does
 };
 
+/// Bytes for a page's script, in base64.
+struct PageData {
+  std::string id;  // of the element that holds them
+  std::string base64;
+};
+
+/// A part that a script fills: of this program, never of a submission.
+struct PageProgram {
+  std::string id;      // of the element that the script fills
+  std::string before;  // what stands there without scripts
+  std::string script;  // without "</script"
+  std::string style;
+  std::vector<PageData> data;
+};
+
 /// A part of a page that holds other parts.
 enum class Part {
   kBox,    // with a border: what to read first
@@ -107,6 +122,10 @@ class Page {
   void plot(const Arms& arms);
   /// Large numbers with names: scores at the head of a page.
   void tiles(const std::vector<std::pair<std::string, Cell>>& tiles);
+  /// A part that a script fills. It may compile WebAssembly and start workers of its own text; it
+  /// reaches no network.
+  /// @pre  the page has no other
+  void program(const PageProgram& program);
   /// Last line of the page: command, version, hash.
   void record(std::string_view text);
 
@@ -120,7 +139,7 @@ class Page {
  private:
   void figure(const std::string& svg, const std::string& caption, bool is_small);
 
-  std::string title_, subtitle_, body_, record_;
+  std::string title_, subtitle_, body_, record_, script_, style_;
   std::vector<const char*> open_;  // tags of parts without their end
 };
 

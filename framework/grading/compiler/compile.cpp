@@ -51,6 +51,30 @@ constexpr const char* kToWorker = TUMBLE_COMPILE
     "\"$4/module\" >&3";
 #undef TUMBLE_COMPILE
 
+// To WebAssembly, with every library inside: no import but those of modules/in_page.h and of WASI.
+// eigen_assert ends the call, as where it is graded, without its words.
+#define TUMBLE_COMPILE_FOR_PAGE                                                             \
+  "cd \"$3\" && /usr/bin/clang++-14 --target=wasm32-wasi -std=c++20 -O2 -ffp-contract=off " \
+  "-fno-finite-loops -fexceptions -DTUMBLE_BUILDING_MODULE "                                \
+  "'-Deigen_assert(x)=((x)?(void)0:__builtin_trap())' -w -fno-color-diagnostics "           \
+  "-ferror-limit=20 -I \"$2\" -isystem " TUMBLE_EIGEN_INCLUDE " -x c++ -c \"$1\" -o "
+constexpr const char* kToBridge =
+    TUMBLE_COMPILE_FOR_PAGE "\"$4/module\" && exec cat \"$4/module\" >&3";
+constexpr const char* kToPage = TUMBLE_COMPILE_FOR_PAGE
+    "\"$4/own.o\" && /usr/bin/clang++-14 --target=wasm32-wasi -mexec-model=reactor -Wl,--no-entry "
+    "-Wl,--strip-all -Wl,--gc-sections -Wl,--threads=1 -Wl,-z,stack-size=1048576 "
+    "-Wl,--max-memory=67108864 \"$4/own.o\" \"$5\" -o \"$4/module\" && exec cat \"$4/module\" >&3";
+#undef TUMBLE_COMPILE_FOR_PAGE
+
+const char* command_of(CompileJob::Form form, bool links_worker) {
+  switch (form) {
+    case CompileJob::Form::kBridge: return kToBridge;
+    case CompileJob::Form::kPage: return kToPage;
+    case CompileJob::Form::kModule: break;
+  }
+  return links_worker ? kToWorker : kToSharedObject;
+}
+
 // Headers of the tree that a text includes, directly or indirectly, restricted to those that
 // students have.
 void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
@@ -190,7 +214,8 @@ Compiled compile_submission(const CompileJob& job) {
   collect_headers(job.root, text_of(job.root / job.header), needed);
   collect_headers(job.root, *source, needed);
   for (const std::string& header : needed) headers.add_file(job.root / header, header);
-  stage_precompiled(headers, job.build);
+  const bool is_native = job.form == CompileJob::Form::kModule;
+  if (is_native) stage_precompiled(headers, job.build);
   submission.add_text(*source, name);
 
   int ends[2];
@@ -202,13 +227,15 @@ Compiled compile_submission(const CompileJob& job) {
   inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
   // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
-  const bool links_worker = traits_of(inside.kind).links_worker;
+  const bool links_worker = traits_of(inside.kind).links_worker && is_native;
   if (links_worker)
     inside.binds.push_back(
         {tools.add_file(program(job.build, "worker_" + job.id + ".o"), "worker.o"), kWorkerInside});
+  if (job.form == CompileJob::Form::kPage)
+    inside.binds.push_back({tools.add_file(job.bridge, "bridge.o"), kWorkerInside});
   inside.command = {"/usr/bin/sh",
                     "-c",
-                    links_worker ? kToWorker : kToSharedObject,
+                    command_of(job.form, links_worker),
                     "compile",
                     plain_name ? name : "./" + name,
                     kHeadersInside,

@@ -32,6 +32,13 @@ struct CompileJob {
   // build tree with bin/sandbox_init and the precompiled header in submission_sdk/; empty: that of
   // this program
   std::filesystem::path build = {};
+  enum class Form {
+    kModule,  // for this machine's processor, as graded
+    kBridge,  // WebAssembly, not linked: the side of a page (page_module.h)
+    kPage,    // WebAssembly, linked with `bridge`
+  };
+  Form form = Form::kModule;
+  std::filesystem::path bridge = {};  // an object file
 };
 
 struct Compiled {

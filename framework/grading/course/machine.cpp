@@ -18,6 +18,7 @@
 #include <fmt/ranges.h>
 
 #include "framework/core/error.h"
+#include "framework/grading/compiler/page_module.h"
 #include "framework/grading/course/run_program.h"
 #include "framework/grading/sandbox/landlock.h"
 #include "framework/grading/sandbox/protection.h"
@@ -92,6 +93,16 @@ Finding compiler() {
       fs::exists("/usr/bin/g++") ? first_line({"/usr/bin/g++", "--version"}) : "";
   if (!version.empty()) return {State::kGood, "compiler", version, ""};
   return {State::kMissing, "compiler", "no /usr/bin/g++", "apt-get install g++"};
+}
+
+Finding code_in_pages() {
+  const auto missing = missing_page_packages();
+  if (missing.empty())
+    return {State::kGood, "code in pages", "clang 14 for WebAssembly with its libraries", ""};
+  return {State::kNote, "code in pages",
+          fmt::format("no: graded pages show pictures alone, because {} {} missing",
+                      fmt::join(missing, " "), missing.size() == 1 ? "is" : "are"),
+          fmt::format("apt-get install --yes --no-install-recommends {}", kPagePackages)};
 }
 
 Finding packages(const fs::path& root) {
@@ -208,6 +219,7 @@ MachineReport examine_machine(const fs::path& root, const fs::path& build) {
                      sandbox(report),
                      compiler(),
                      packages(root),
+                     code_in_pages(),
                      memory(),
                      disk("disk, build", build),
                      disk("disk, temporary", "/tmp"),

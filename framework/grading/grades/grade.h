@@ -12,6 +12,7 @@
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/grades/media.h"
+#include "framework/grading/grades/page_code.h"
 #include "framework/grading/grades/shard.h"
 #include "framework/grading/verdicts/verdict.h"
 
@@ -99,6 +100,7 @@ struct Grade {
   std::string sandbox;               // what protected the grader, in words
   bool is_official = true;           // the policy accepts that protection
   bool has_handout = false;          // OUT/handout.html, which stories link to
+  std::string no_page_code = {};     // why its code does not run in its page, where it was to
 
   /// Calls `see` with every test, also where only marks are left.
   void each_verdict(const std::function<void(const RubricItem&, Verdict)>& see) const;
@@ -130,6 +132,11 @@ struct GradeOptions {
   bool media = true;
   bool cost = true;  // measures what accuracy costs with a submission's methods, for its page
   MediaOptions media_options;
+  // whose code runs in a page; nothing: the submission's where pictures are made
+  std::optional<CodeInPages> code_in_pages;
+  CodeInPages page_code() const {
+    return code_in_pages.value_or(media ? CodeInPages::kOwn : CodeInPages::kNone);
+  }
   // a kind of sandbox that is used although the policy refuses it; results are marked
   std::string accepted_sandbox;
   std::vector<std::filesystem::path> scenes;  // empty: the assignment's demo scenes

@@ -187,6 +187,7 @@ GradeRecord record_of(const Json& json) {
   grade.sandbox = json.at("sandbox");
   grade.is_official = json.at("official");
   grade.has_handout = json.value("handout", false);
+  grade.no_page_code = json.value("no_page_code", std::string());
   for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
   for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
   if (json.contains("causes")) grade.causes = causes_in(json.at("causes"));
@@ -325,6 +326,7 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   json["causes"] = json_of_causes(grade.causes);
   json["media"] = Json::array();
   for (const SceneMedia& media : grade.media) json["media"].push_back(media_json(media));
+  json["no_page_code"] = grade.no_page_code;
   json["cost"] = cost_json(grade.cost);
   json["files"] = record.files;
   // Converted to text and back, so that the signature is of the data as read later, after invalid
@@ -358,13 +360,16 @@ EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignmen
 }
 
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
-                 const fs::path& folder, const std::string& machine_key) {
+                 const fs::path& folder, const std::string& machine_key, const std::string& script,
+                 const std::string& right) {
   write_whole(folder / "results.json", gradescope_json(grade));
   const std::string record = graded_from(grade, key);
   PageView view;
   if (grade.has_handout) view = {std::string("../") + kHandoutPage, kind.folder};
+  view.bench = bench_of(folder, script, right);
   submission_page(kind, grade, record, view).write(folder / "index.html");
   view.is_alone = true;
+  view.bench = bench_of(folder, script);
   submission_page(kind, for_student(grade), record, view).write(folder / "student.html");
   write_whole(folder / kRecord,
               record_json({grade, key, kind.id, digests_below(folder)}, machine_key));

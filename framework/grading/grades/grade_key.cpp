@@ -54,13 +54,14 @@ std::string rubric_digest(const Rubric& rubric) {
 
 std::string pictures_digest(const Course& course, const std::string& id,
                             const GradeOptions& options) {
-  if (!options.media) return "";
+  const std::string code = page_code_digest(course, id, options.page_code());
+  if (!options.media) return options.page_code() == CodeInPages::kNone ? "" : code;
   const MediaOptions& m = options.media_options;
   std::string text =
       fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
   for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes)
     text += scene.filename().string() + digest_of_file(scene) + ' ';
-  return digest(text + digest_of_file(built_module(course, id, "reference")));
+  return digest(text + code + digest_of_file(built_module(course, id, "reference")));
 }
 
 std::string submission_digest(const Submission& submission) {

@@ -56,7 +56,7 @@ class Batch {
     if (options.shard) fs::remove(done_file(out, *options.shard));
     output_.emplace(options.shard ? shard_folder(out, *options.shard) : out, submissions, id,
                     RunSettings{id, fs::canonical(submissions), options.budget_s, options.media,
-                                options.policy});
+                                options.policy, word_of(options.page_code())});
     if (!options.shard) ledger_.emplace(output_->path() / kLedgerFile);
     if (ledger_ && ledger_->was_mended())
       notice(
@@ -231,7 +231,8 @@ class Batch {
   }
 
   bool pictures_do(const Work& work) const {
-    return !options_.media || work.earlier.record->key.pictures == work.key.pictures;
+    const bool are_asked_for = options_.media || options_.page_code() != CodeInPages::kNone;
+    return !are_asked_for || work.earlier.record->key.pictures == work.key.pictures;
   }
   bool verdicts_stand(const Work& work) const {
     if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
@@ -245,6 +246,7 @@ class Batch {
 
   void grade_open_ones() {
     start_ = Clock::now();
+    if (!open_.empty()) page_code_.emplace(course_, id_, options_.page_code());
     report_progress("");
     const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
     run_in_processes(
@@ -298,10 +300,16 @@ class Batch {
       grade->folder = work.folder;
       if (!is_rerun || !options_.media)
         keep_media(work.earlier_place, made_of(work), earlier, *grade, key);
+      if (is_rerun) {
+        forget_page_code(made_of(work));
+        if (grade->state == GradeState::kJudged)
+          grade->no_page_code = page_code_->add(work.submission->source, made_of(work));
+      }
       grade->change.clear();
       grade->changes.clear();
       if (earlier) note_changes(*earlier, key, *grade);
-      write_grade(kind_, *grade, key, made_of(work), key_.bytes);
+      write_grade(kind_, *grade, key, made_of(work), key_.bytes, page_script(course_, id_),
+                  page_code_->right());
     } catch (const std::exception& error) {
       write_whole(draft_of(work) / "fault.txt", error.what());
       throw;
@@ -450,6 +458,7 @@ class Batch {
   std::optional<Ledger> ledger_;  // of the class
   const std::string compiler_ = compiler_in_words();
   MachineKey key_;
+  std::optional<PageCode> page_code_;  // made where a submission is open
   MarksOfClass marks_;
   std::vector<Work> work_;
   std::vector<Work*> open_, held_;

@@ -237,6 +237,20 @@ void add_cost(report::Page& page, const CostSection& cost) {
       Look::kMuted);
 }
 
+// Its code answers in the page, or why it does not.
+static void add_bench(report::Page& page, const Grade& grade, const PageView& view) {
+  if (view.bench.own.empty() && grade.no_page_code.empty()) return;
+  page.heading("Try this file's code", 2, "try");
+  if (view.bench.own.empty())
+    return page.paragraph("It does not run in this page: " + plain_text(grade.no_page_code),
+                          Look::kMuted);
+  page.paragraph(
+      "Change the numbers: every answer is computed here by this file's own functions, compiled "
+      "for "
+      "the page.");
+  report::add_bench(page, view.bench);
+}
+
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
                              const std::string& record, const PageView& view) {
   report::Page page(plain_name(grade.name),
@@ -244,6 +258,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   std::vector<Cell> links;
   if (!view.is_alone) links.push_back({"All submissions", "../index.html"});
   if (!grade.causes.empty()) links.push_back({"Mend first", "#mend-first"});
+  if (!view.bench.own.empty()) links.push_back({"Try the code", "#try"});
   links.insert(links.end(), {{"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
   if (!grade.cost.scene.empty()) links.push_back({"What accuracy costs", "#cost"});
   if (!view.handout.empty()) links.push_back({"Handout", view.handout});
@@ -257,6 +272,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   }
   add_changes(page, grade);
   add_mend_first(page, grade, view);
+  add_bench(page, grade, view);
   page.heading("Tests", 2, "tests");
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
   page.heading("Stories", 2, "stories");

@@ -85,7 +85,7 @@ void refuse_foreign_in(const fs::path& folder) {
       const std::string ending = media.path().extension().string();
       const bool is_ours = fs::is_regular_file(media.symlink_status()) &&
                            (ending == ".png" || ending == ".mp4" || ending == ".html" ||
-                            media.path().filename() == "three.js");
+                            ending == ".wasm" || media.path().filename() == "three.js");
       if (!is_ours) refuse_foreign(media.path());
     }
   }
@@ -123,6 +123,7 @@ RunSettings settings_of(const fs::path& out) {
     settings.submissions = json.at("submissions").get<std::string>();
     settings.budget_s = json.at("budget_s");
     settings.media = json.at("media");
+    settings.code_in_pages = json.value("code_in_pages", settings.code_in_pages);
     settings.policy = json.at("policy").get<std::string>();
     return settings;
   } catch (const nlohmann::json::exception&) {
@@ -277,6 +278,7 @@ void OutputFolder::claim(const std::set<std::string>& folders) {
                                            {"submissions", settings_.submissions.string()},
                                            {"budget_s", settings_.budget_s},
                                            {"media", settings_.media},
+                                           {"code_in_pages", settings_.code_in_pages},
                                            {"policy", settings_.policy.string()},
                                            {"folders", folders_}};
   write_whole(path_ / kManifest,

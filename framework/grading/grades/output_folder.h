@@ -20,6 +20,7 @@ struct RunSettings {
   double budget_s = 60.0;
   bool media = true;
   std::filesystem::path policy;  // absolute; empty: none
+  std::string code_in_pages = "own";
 };
 
 /// The settings of the last grading into a folder of results.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/report/bench.h"
 #include "framework/report/html.h"
 
 namespace tumble::grading {
@@ -15,7 +16,8 @@ struct PageView {
   // page of the handout, relative to this page, and its name in stories ("a1_impulse"); empty:
   // stories name it without a link
   std::string handout = {}, handout_name = {};
-  bool is_alone = false;  // there is no page of all submissions to go to
+  bool is_alone = false;     // there is no page of all submissions to go to
+  report::Bench bench = {};  // its code, in the page; without a module: none
 };
 
 /// A line of an x-ray (framework/grading/verdicts/xray.h): "r_a   (1, 0, -1) m   <- mark".
