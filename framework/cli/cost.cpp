@@ -95,7 +95,7 @@ void add_cost(CLI::App& app, Context& context) {
       .type_name("SCENE");
   verb.option("--methods", words->methods,
               "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, "
-              "dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none")
+              "dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 and gauss6 (implicit); none")
       .separated_by(',');
   verb.option("--engines", words->engines,
               "Beside rd with each method: auto (rd, in closed form where nothing but gravity "

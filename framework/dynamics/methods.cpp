@@ -20,6 +20,7 @@
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
+#include "framework/dynamics/gauss.h"
 
 namespace tumble {
 namespace {
@@ -256,7 +257,8 @@ const std::vector<Method>& methods() {
       {"dopri5", "Dormand-Prince 5(4)", 5, true, false},
       {"fehlberg78", "Fehlberg 7(8)", 8, true, false},
       {"bulirsch-stoer", "Bulirsch-Stoer", kUnset, true, false},
-      {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true}};
+      {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true},
+      {"gauss6", "Gauss 6 (implicit)", 6, false, true}};
   return all;
 }
 
@@ -281,6 +283,7 @@ StepFunction step_of(const Method& method, double tolerance) {
   if (method.word == "midpoint") return midpoint;
   if (method.word == "verlet") return verlet;
   if (method.word == "rk4") return one_step<odeint::runge_kutta4<State>>;
+  if (method.word == "gauss6") return gauss_step;
   if (method.word == "dopri5")
     return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) {
       return adaptive(

@@ -28,7 +28,7 @@ struct Method {
 };
 
 /// In the order in which they are drawn: euler, symplectic, midpoint, verlet, rk4, dopri5,
-/// fehlberg78, bulirsch-stoer, rosenbrock4.
+/// fehlberg78, bulirsch-stoer, rosenbrock4, gauss6.
 const std::vector<Method>& methods();
 
 /// @throws UserError naming the known words

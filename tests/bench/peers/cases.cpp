@@ -146,7 +146,7 @@ BenchCase long_chain(int n, double duration) {
           "shorter steps pays for all of it again.",
       .scene = chain_of_hinges("S2", n, kChainLink, 0.02, 1.0, Vector3d::UnitX()),
       .sample_times = times(0.1, static_cast<int>(std::lround(duration * 10))),
-      .steps = halvings(1.0 / 240, n > 100 ? 3 : 5)};
+      .steps = halvings(1.0 / 60, n > 100 ? 5 : 7)};
   if (n > 100)
     bench.goals = {{.words = "a step at most 12 times as dear as of 100 rods",
                     .step = 1.0 / 240,

@@ -30,6 +30,7 @@ const std::vector<std::pair<std::string, std::string>> kEventEngines = {
 const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince",
                   kFehlberg = "Fehlberg 7(8)", kRungeKuttaInJoints = "RK4, joint coordinates",
                   kFehlbergInJoints = "Fehlberg 7(8), joint coordinates",
+                  kGaussInJoints = "Gauss 6, joint coordinates",
                   kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
 // In joint coordinates nothing is projected: a step is as long as the time between samples.
@@ -76,9 +77,12 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
     laws.integrate_step = step_of(method_named("dopri5"), setting.tolerance);
   if (setting.method == kFehlberg || setting.method == kFehlbergInJoints)
     laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
+  if (setting.method == kGaussInJoints)
+    laws.integrate_step = step_of(method_named("gauss6"), kUnset);
   scene::Scene scene = bench.scene;
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
-  if (setting.method == kRungeKuttaInJoints || setting.method == kFehlbergInJoints)
+  if (setting.method == kRungeKuttaInJoints || setting.method == kFehlbergInJoints ||
+      setting.method == kGaussInJoints)
     scene.coordinates = scene::Coordinates::kReduced;
   std::string engine = "rd";
   for (const auto& [word, method] : kEventEngines)
@@ -120,6 +124,12 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
     all.emplace_back();
     for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12})
       all.back().push_back({kFehlbergInJoints, bench.sample_times.front(), tolerance});
+  }
+  if (scene == "S6") {
+    // parts of the time between samples: its steps need not follow the links' swings
+    all.emplace_back();
+    for (const double part : {1.0, 2.0, 5.0, 10.0, 20.0, 96.0})
+      all.back().push_back({kGaussInJoints, bench.sample_times.front() / part});
   }
   if (scene == "S1" || scene == "S2" || scene == "S6") {
     const double within = scene == "S1"   ? kAdaptiveStepOfTop
