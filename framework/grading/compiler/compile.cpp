@@ -49,11 +49,21 @@ constexpr const char* kToWorker = TUMBLE_COMPILE
     "objcopy --keep-global-symbol=\"$6\" \"$4/module.o\""
     " && /usr/bin/g++ -static-pie \"$5\" \"$4/module.o\" -o \"$4/module\" && exec cat "
     "\"$4/module\" >&3";
+// Own tests: dynamic, because GoogleTest and fmt are of the system. No table of a module is
+// exported.
+constexpr const char* kToTests =
+    "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
+    " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" "
+    "-ffile-prefix-map=\"$2\"=/headers -ffile-prefix-map=\"$3\"=/submission "
+    "-isystem " TUMBLE_EIGEN_INCLUDE
+    " -include \"$2/precompiled.h\" -include \"$2/own_tests.h\" -x c++ \"$1\" -x none \"$5\" "
+    "-lgtest -lfmt -lcrypto -o \"$4/module\" && exec cat \"$4/module\" >&3";
 #undef TUMBLE_COMPILE
 
 // Headers of the tree that a text includes, directly or indirectly, restricted to those that
 // students have.
-void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
+void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found,
+                     const std::string& tests = "") {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
     const auto first = line.find_first_not_of(" \t");
@@ -62,10 +72,13 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
     if (line.find("include") == std::string::npos || open == std::string::npos || close <= open)
       continue;
     const std::string name = line.substr(open + 1, close - open - 1);
-    const bool students = name.starts_with("framework/") || name.starts_with("assignments/");
+    const bool is_of_tests =
+        !tests.empty() && (name.starts_with(tests) || name == "tests/support/story.h");
+    const bool students =
+        name.starts_with("framework/") || name.starts_with("assignments/") || is_of_tests;
     if (!students || !name.ends_with(".h") || name.find("..") != std::string::npos) continue;
     if (!fs::is_regular_file(root / name) || !found.insert(name).second) continue;
-    collect_headers(root, text_of(root / name), found);
+    collect_headers(root, text_of(root / name), found, tests);
   }
 }
 
@@ -188,9 +201,13 @@ Compiled compile_submission(const CompileJob& job) {
   Stage headers(&user), submission(&user), tools(&user);
   std::set<std::string> needed = {job.header.string()};
   collect_headers(job.root, text_of(job.root / job.header), needed);
-  collect_headers(job.root, *source, needed);
+  const std::string tests =
+      job.is_tests ? "tests/" + job.header.parent_path().filename().string() + "/" : "";
+  collect_headers(job.root, *source, needed, tests);
   for (const std::string& header : needed) headers.add_file(job.root / header, header);
   stage_precompiled(headers, job.build);
+  if (job.is_tests)
+    headers.add_text("#undef TUMBLE_BUILDING_MODULE\n#include <gtest/gtest.h>\n", "own_tests.h");
   submission.add_text(*source, name);
 
   int ends[2];
@@ -203,12 +220,17 @@ Compiled compile_submission(const CompileJob& job) {
   // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
   const bool links_worker = traits_of(inside.kind).links_worker;
-  if (links_worker)
+  if (links_worker || job.is_tests)
     inside.binds.push_back(
-        {tools.add_file(program(job.build, "worker_" + job.id + ".o"), "worker.o"), kWorkerInside});
+        {tools.add_file(
+             program(job.build, (job.is_tests ? "own_tests_" : "worker_") + job.id + ".o"),
+             "worker.o"),
+         kWorkerInside});
   inside.command = {"/usr/bin/sh",
                     "-c",
-                    links_worker ? kToWorker : kToSharedObject,
+                    job.is_tests   ? kToTests
+                    : links_worker ? kToWorker
+                                   : kToSharedObject,
                     "compile",
                     plain_name ? name : "./" + name,
                     kHeadersInside,

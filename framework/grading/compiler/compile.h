@@ -32,6 +32,9 @@ struct CompileJob {
   // build tree with bin/sandbox_init and the precompiled header in submission_sdk/; empty: that of
   // this program
   std::filesystem::path build = {};
+  // a student's own tests of the module: becomes a program, linked with bin/own_tests_ID.o; may
+  // include GoogleTest and the headers of the public tests
+  bool is_tests = false;
 };
 
 struct Compiled {
