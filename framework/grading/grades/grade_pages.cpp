@@ -237,6 +237,15 @@ void add_cost(report::Page& page, const CostSection& cost) {
       Look::kMuted);
 }
 
+void add_own_tests(report::Page& page, const OwnTestsGrade& own) {
+  if (!own.is_there) return;
+  page.heading(fmt::format("{}: {} of {}", kOwnTestsTitle, points_text(own.score),
+                           points_text(own.possible)),
+               2, "own-tests");
+  page.preformatted(plain_text(own.story));
+  if (!own.names.empty()) page.paragraph("For the grader only: " + own.names + ".", Look::kMuted);
+}
+
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
                              const std::string& record, const PageView& view) {
   report::Page page(plain_name(grade.name),
@@ -259,6 +268,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   add_mend_first(page, grade, view);
   page.heading("Tests", 2, "tests");
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
+  add_own_tests(page, grade.own_tests);
   page.heading("Stories", 2, "stories");
   if (const auto stories = std::count_if(
           grade.tests.begin(), grade.tests.end(),
@@ -302,6 +312,7 @@ Grade for_student(Grade grade) {
     for (std::string& test : cause.tests)
       if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
   grade.remarks.clear();
+  grade.own_tests.names.clear();
   return grade;
 }
 
