@@ -16,6 +16,7 @@
 #include "framework/grading/grades/touched_lines.h"
 #include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/causes_file.h"
+#include "framework/grading/grades/equal_mutations.h"
 #include "framework/grading/grades/scoring.h"
 
 namespace tumble::cli {
@@ -182,6 +183,9 @@ void audit(Context& context, const AuditWords& words) {
       fmt::print(stderr, "{} of {} judged\n", done, total);
   };
   const auto results = grading::audit(course, words.id, candidates, words.jobs, told);
+  const auto equal = words.mutants.empty() ? grading::EqualMutations()
+                                           : grading::read_equal_mutations(course, words.id);
+  std::size_t explained = 0;
   std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0, uncompiled = 0;
   for (const AuditResult& r : results) {
     // of collected or proposed ones: nobody can hand it in
@@ -193,6 +197,11 @@ void audit(Context& context, const AuditWords& words) {
     (r.candidate.is_right ? right : wrong) += 1;
     if (r.is_as_it_should()) (r.candidate.is_right ? whole : caught) += 1;
     if (r.is_named) ++named;
+    const std::string because =
+        r.candidate.is_right || r.is_as_it_should() ? "" : grading::why_equal(r.candidate, equal);
+    if (because.empty()) continue;
+    ++explained;
+    if (!words.json) fmt::print("{} makes no difference: {}\n", r.candidate.name, because);
   }
   if (words.json) {
     print_json(results);
@@ -205,12 +214,19 @@ void audit(Context& context, const AuditWords& words) {
         "\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of "
         "{} right solutions have every point\n",
         caught, wrong, named, whole, right);
+    if (!words.mutants.empty())
+      fmt::print("{} survive with a reason, {} without one: {:.1f} in 100\n", explained,
+                 wrong - caught - explained,
+                 wrong == 0 ? 0.0
+                            : 100.0 * static_cast<double>(wrong - caught - explained) /
+                                  static_cast<double>(wrong));
     if (uncompiled > 0) fmt::print("{} more do not compile and do not count\n", uncompiled);
     if (words.only.empty())
       fmt::print("{}; --lines lists the others\n",
                  share_touched(grading::touched_lines_of_reference(course, words.id, all)));
   }
-  const bool is_whole = caught == wrong && whole == right && wrong + right > 0 && unwritten.empty();
+  const bool is_whole =
+      caught + explained == wrong && whole == right && wrong + right > 0 && unwritten.empty();
   if (words.only.empty() && words.mutants.empty() && is_whole)
     write_causes(course, words.id, results);
   context.exit = is_whole ? ExitCode::kFine : ExitCode::kCheckFailed;
@@ -247,6 +263,8 @@ void add_audit(CLI::App& app, Context& context) {
       "Places of a new assignment that are still \"(to be written: ...)\" come first, with file "
       "and "
       "line.\n"
+      "Of --mutants, solutions_private/aN_name/equal_mutations.json may say which changes make no "
+      "difference, and why: they count as explained.\n"
       "Exit: 0 all caught, no right solution accused and nothing left to be written, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });
 }

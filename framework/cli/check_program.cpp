@@ -165,6 +165,38 @@ ExitCode check_foreign(const Command& command, const CheckWords& words, const fs
   return run_tests(command, words, {program.string(), "--submission", object.string(), "--quick"});
 }
 
+// ---- The student's own tests: two sandboxes, as the grader runs them ----
+
+ExitCode check_own_tests(const Command& command, const CheckWords& words, const fs::path& file,
+                         const fs::path& header) {
+  const fs::path program = command.build / "bin" / ("own_tests_" + words.id),
+                 tests = fs::absolute(words.own_tests);
+  if (!fs::exists(program))
+    throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
+  const PrivateFolder folder;
+  const fs::path object = folder.path() / (words.id + ".so"), own = folder.path() / "tests";
+  const std::string& name = folder_of(words.id);
+  const auto is_built = [&](const grading::BuiltSubmission& built) {
+    if (built.outcome == grading::BuiltSubmission::Outcome::kGraderFault)
+      throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
+    return built.outcome == grading::BuiltSubmission::Outcome::kBuilt;
+  };
+  const auto module =
+      grading::build_module(command.root, command.build, words.id, name, file, object);
+  if (!is_built(module)) return does_not_compile(file, header, module.said);
+  const auto built =
+      grading::build_own_tests(command.root, command.build, words.id, name, tests, own);
+  if (!is_built(built)) return does_not_compile(tests, header, built.said);
+  print_warnings(tests, built.said);
+  std::fflush(stdout);
+  std::vector<std::string> run = {program.string(), "--tests",       own.string(),
+                                  "--submission",   object.string(), "--quick"};
+  if (!words.results.empty()) run.insert(run.end(), {"--json", words.results.string()});
+  const int code = grading::run_program(run, Output::kOurs).code;
+  return code < 0 || code > static_cast<int>(ExitCode::kNotAttempted) ? ExitCode::kCheckFailed
+                                                                      : static_cast<ExitCode>(code);
+}
+
 }  // namespace
 
 void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id) {
@@ -251,6 +283,15 @@ ExitCode check_once(const Command& command, const CheckWords& words) {
   const std::string folder = folder_of(words.id);
   const fs::path own = own_file(command, folder),
                  header = command.root / "assignments" / folder / (folder + ".h");
+  if (!words.own_tests.empty()) {
+    if (!words.patterns.empty())
+      throw UserError(words.patterns.front(), "cannot choose among your own tests",
+                      "All of the file run.");
+    if (!fs::is_regular_file(words.own_tests))
+      throw UserError(words.own_tests, "there is no such file",
+                      "tumble start makes a folder with one to begin from.");
+    return check_own_tests(command, words, file, header);
+  }
   std::error_code missing;
   if (!fs::equivalent(file, own, missing)) return check_foreign(command, words, file, header);
   return command.is_installed ? check_installed(command, words, file, header)

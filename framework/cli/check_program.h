@@ -16,6 +16,7 @@ struct CheckWords {
   std::string id;
   std::optional<std::filesystem::path> file;  // instead of the stub
   std::vector<std::string> patterns;          // of test names
+  std::string own_tests;                      // the student's own tests in place of the public ones
   std::filesystem::path results;              // where verdicts are written as well; may be empty
 };
 

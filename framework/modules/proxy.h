@@ -140,6 +140,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
             throw;
           } catch (const WrongSize& wrong) {
             connection.wrong_size(name, wrong.what());
+            throw;  // unreachable: wrong_size throws
           } catch (...) {
             connection.abandon_call();
             throw;

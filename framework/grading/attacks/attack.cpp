@@ -103,6 +103,7 @@ class AttackReader {
          [&] {
            attack_.base = one_of({"stub", "reference"}, value);
          }},
+        {"own points", [&] { take_own_points(value); }},
         {"folder", [&] { take_folder(value); }},
         {"not in", [&] { take_not_in(value); }},
         {"needs", [&] { attack_.needs_root = one_of({"root"}, value) == "root"; }},
@@ -139,6 +140,12 @@ class AttackReader {
              "They are: right, wrong, not attempted, crashed, out of time or memory, same.");
       attack_.verdicts.insert(word);
     }
+  }
+
+  void take_own_points(const std::string& value) {
+    const auto json = nlohmann::json::parse(value, nullptr, false);
+    if (!json.is_number()) fail("the points of own tests are no number", "");
+    attack_.own_points = json.get<double>();
   }
 
   void take_folder(const std::string& value) {

@@ -23,6 +23,7 @@
 ///   base     stub (default) or reference: the text that is changed
 ///   story    words that some story or note must hold; may stand several times
 ///   never    words that no page of it may hold; may stand several times
+///   own points  what its own tests must earn (grades/own_tests.h), a number
 ///   folder   name of the submission, as a JSON string
 ///   not in   kinds of sandbox that do not promise to hold it, with spaces between them
 ///   needs    root, where only root can make the submission
@@ -44,6 +45,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -78,6 +80,7 @@ struct Attack {
   std::string module = "a1";
   std::string base = "stub";
   std::vector<std::string> stories, never;
+  std::optional<double> own_points;
   std::string folder;  // any bytes but '/' and NUL
   std::set<std::string> not_in;
   bool needs_root = false, media = false, is_sample = false;

@@ -20,8 +20,9 @@ struct Test {
 std::map<std::string, Test> tests_of(const Json& results) {
   std::map<std::string, Test> all;
   for (const Json& test : results.at("tests"))
-    all[test.at("extra_data").at("test")] = {test.at("extra_data").at("verdict"),
-                                             test.value("score", 0.0)};
+    if (test.at("extra_data").contains("test"))  // own tests have none
+      all[test.at("extra_data").at("test")] = {test.at("extra_data").at("verdict"),
+                                               test.value("score", 0.0)};
   return all;
 }
 
@@ -78,6 +79,14 @@ void compare_results(const Attack& attack, const std::string& results, const std
   else
     result.found = state;
   if (state != "judged" && result.score > 0.0) result.faults.push_back("it has points");
+  if (attack.own_points) {
+    const Json own = about.value("own_tests", Json::object());
+    const double points = own.value("score", -1.0);
+    if (points != *attack.own_points)
+      result.faults.push_back(fmt::format("its own tests have {} points, and {} are expected",
+                                          points, *attack.own_points));
+    result.found += fmt::format(", own tests {} points", points);
+  }
   for (const std::string& words : attack.stories)
     if (!holds(ours, words) && !holds(about, words))
       result.faults.push_back("no story holds '" + words + "'");

@@ -24,11 +24,10 @@ std::vector<std::string> own_compilation(const fs::path& root, const fs::path& b
   return words;
 }
 
-BuiltSubmission build_module(const fs::path& root, const fs::path& build, const std::string& id,
-                             const std::string& folder, const fs::path& source,
-                             const fs::path& object) {
-  const Compiled compiled =
-      compile_submission({root, header_in(folder), source, object, {}, id, build});
+namespace {
+
+BuiltSubmission built(const CompileJob& job) {
+  const Compiled compiled = compile_submission(job);
   switch (compiled.outcome) {
     case Compiled::Outcome::kBuilt: return {BuiltSubmission::Outcome::kBuilt, compiled.said};
     case Compiled::Outcome::kRefused: return {BuiltSubmission::Outcome::kRefused, compiled.said};
@@ -38,6 +37,20 @@ BuiltSubmission build_module(const fs::path& root, const fs::path& build, const 
     case Compiled::Outcome::kGraderFault: break;
   }
   return {BuiltSubmission::Outcome::kGraderFault, compiled.said};
+}
+
+}  // namespace
+
+BuiltSubmission build_module(const fs::path& root, const fs::path& build, const std::string& id,
+                             const std::string& folder, const fs::path& source,
+                             const fs::path& object) {
+  return built({root, header_in(folder), source, object, {}, id, build});
+}
+
+BuiltSubmission build_own_tests(const fs::path& root, const fs::path& build, const std::string& id,
+                                const std::string& folder, const fs::path& source,
+                                const fs::path& object) {
+  return built({root, header_in(folder), source, object, {}, id, build, CompileJob::Form::kTests});
 }
 
 }  // namespace tumble::grading

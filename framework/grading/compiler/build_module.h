@@ -22,6 +22,12 @@ BuiltSubmission build_module(const std::filesystem::path& root, const std::files
                              const std::filesystem::path& source,
                              const std::filesystem::path& object);
 
+/// The same for a student's own tests of the module: `object` becomes a program for own_tests_ID.
+BuiltSubmission build_own_tests(const std::filesystem::path& root,
+                                const std::filesystem::path& build, const std::string& id,
+                                const std::string& folder, const std::filesystem::path& source,
+                                const std::filesystem::path& object);
+
 /// The words of a compilation of the user's own file outside the sandbox, with the same flags and
 /// the same precompiled header: g++ and what follows.
 std::vector<std::string> own_compilation(const std::filesystem::path& root,

@@ -49,6 +49,15 @@ constexpr const char* kToWorker = TUMBLE_COMPILE
     "objcopy --keep-global-symbol=\"$6\" \"$4/module.o\""
     " && /usr/bin/g++ -static-pie \"$5\" \"$4/module.o\" -o \"$4/module\" && exec cat "
     "\"$4/module\" >&3";
+// Own tests: dynamic, because GoogleTest and fmt are of the system. No table of a module is
+// exported.
+constexpr const char* kToTests =
+    "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
+    " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" "
+    "-ffile-prefix-map=\"$2\"=/headers -ffile-prefix-map=\"$3\"=/submission "
+    "-isystem " TUMBLE_EIGEN_INCLUDE
+    " -include \"$2/precompiled.h\" -include \"$2/own_tests.h\" -x c++ \"$1\" -x none \"$5\" "
+    "-lgtest -lfmt -lcrypto -o \"$4/module\" && exec cat \"$4/module\" >&3";
 #undef TUMBLE_COMPILE
 
 // To WebAssembly, with every library inside: no import but those of modules/in_page.h and of WASI.
@@ -70,6 +79,7 @@ const char* command_of(CompileJob::Form form, bool links_worker) {
   switch (form) {
     case CompileJob::Form::kBridge: return kToBridge;
     case CompileJob::Form::kPage: return kToPage;
+    case CompileJob::Form::kTests: return kToTests;
     case CompileJob::Form::kModule: break;
   }
   return links_worker ? kToWorker : kToSharedObject;
@@ -77,7 +87,8 @@ const char* command_of(CompileJob::Form form, bool links_worker) {
 
 // Headers of the tree that a text includes, directly or indirectly, restricted to those that
 // students have.
-void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
+void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found,
+                     const std::string& tests = "") {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
     const auto first = line.find_first_not_of(" \t");
@@ -86,10 +97,13 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
     if (line.find("include") == std::string::npos || open == std::string::npos || close <= open)
       continue;
     const std::string name = line.substr(open + 1, close - open - 1);
-    const bool students = name.starts_with("framework/") || name.starts_with("assignments/");
+    const bool is_of_tests =
+        !tests.empty() && (name.starts_with(tests) || name == "tests/support/story.h");
+    const bool students =
+        name.starts_with("framework/") || name.starts_with("assignments/") || is_of_tests;
     if (!students || !name.ends_with(".h") || name.find("..") != std::string::npos) continue;
     if (!fs::is_regular_file(root / name) || !found.insert(name).second) continue;
-    collect_headers(root, text_of(root / name), found);
+    collect_headers(root, text_of(root / name), found, tests);
   }
 }
 
@@ -212,10 +226,16 @@ Compiled compile_submission(const CompileJob& job) {
   Stage headers(&user), submission(&user), tools(&user);
   std::set<std::string> needed = {job.header.string()};
   collect_headers(job.root, text_of(job.root / job.header), needed);
-  collect_headers(job.root, *source, needed);
+  const std::string tests = job.form == CompileJob::Form::kTests
+                                ? "tests/" + job.header.parent_path().filename().string() + "/"
+                                : "";
+  collect_headers(job.root, *source, needed, tests);
   for (const std::string& header : needed) headers.add_file(job.root / header, header);
-  const bool is_native = job.form == CompileJob::Form::kModule;
-  if (is_native) stage_precompiled(headers, job.build);
+  const bool is_native = job.form == CompileJob::Form::kModule,
+             is_tests = job.form == CompileJob::Form::kTests;
+  if (is_native || is_tests) stage_precompiled(headers, job.build);
+  if (is_tests)
+    headers.add_text("#undef TUMBLE_BUILDING_MODULE\n#include <gtest/gtest.h>\n", "own_tests.h");
   submission.add_text(*source, name);
 
   int ends[2];
@@ -228,9 +248,11 @@ Compiled compile_submission(const CompileJob& job) {
   // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
   const bool links_worker = traits_of(inside.kind).links_worker && is_native;
-  if (links_worker)
+  if (links_worker || is_tests)
     inside.binds.push_back(
-        {tools.add_file(program(job.build, "worker_" + job.id + ".o"), "worker.o"), kWorkerInside});
+        {tools.add_file(program(job.build, (is_tests ? "own_tests_" : "worker_") + job.id + ".o"),
+                        "worker.o"),
+         kWorkerInside});
   if (job.form == CompileJob::Form::kPage)
     inside.binds.push_back({tools.add_file(job.bridge, "bridge.o"), kWorkerInside});
   inside.command = {"/usr/bin/sh",

@@ -36,6 +36,9 @@ struct CompileJob {
     kModule,  // for this machine's processor, as graded
     kBridge,  // WebAssembly, not linked: the side of a page (page_module.h)
     kPage,    // WebAssembly, linked with `bridge`
+    // a student's own tests of the module: becomes a program, linked with bin/own_tests_ID.o; may
+    // include GoogleTest and the headers of the public tests
+    kTests,
   };
   Form form = Form::kModule;
   std::filesystem::path bridge = {};  // an object file

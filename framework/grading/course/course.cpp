@@ -96,6 +96,7 @@ void require_rubric_of_judge(const Course& course, const std::string& id) {
 }
 
 CourseSnapshot::CourseSnapshot(const Course& course, const std::string& id) : course_(course) {
+  course_.kept = course.build;
   course_.build = folder_.path();
   const auto copy = [&](const fs::path& file) {
     std::error_code failed;
@@ -110,6 +111,9 @@ CourseSnapshot::CourseSnapshot(const Course& course, const std::string& id) : co
   for (const std::string& program : {judge, "worker_" + id, std::string("sandbox_init")})
     copy(fs::path("bin") / program);
   if (traits_of(chosen_sandbox()).links_worker) copy(fs::path("bin") / ("worker_" + id + ".o"));
+  // of a course whose rubric has a rule for own tests: prepare_own_tests says where one is missing
+  for (const std::string& file : {"own_tests_" + id, "own_tests_" + id + ".o"})
+    if (fs::exists(course.build / "bin" / file)) copy(fs::path("bin") / file);
   for (const modules::ModuleKind* kind : course.registry->all())
     if (const fs::path file = built_module(course, kind->id, "reference"); fs::exists(file))
       copy(file.lexically_relative(course.build));

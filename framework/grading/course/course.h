@@ -18,6 +18,8 @@ struct Course {
   std::string command;  // as typed, for records
   // the public tests alone, by the program that students have, too
   bool public_only = false;
+  // the build tree that `build` was copied from: what is made once and kept; empty: `build`
+  std::filesystem::path kept = {};
 };
 
 /// build/bin/judge_a1; check_a1_sandboxed, which has the same words, for the public tests alone.

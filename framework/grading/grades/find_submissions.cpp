@@ -27,6 +27,7 @@ constexpr std::size_t kMostFiles = 5000;  // examined: even a whole build tree h
 struct Found {
   // with the right name; other sources; .zip etc.
   std::vector<fs::path> named, sources, archives, headers;
+  std::vector<fs::path> own_tests;                       // a1_impulse_tests.cpp for a1_impulse.cpp
   std::vector<std::pair<fs::path, std::string>> locked;  // folders that cannot be read, and why
   bool cut = false, is_deep = false;
   std::string refused;  // why a part of it was not unpacked; then nothing of it is used
@@ -74,6 +75,8 @@ void sort_in(const fs::path& path, const std::string& name, const std::string& w
              Found& found) {
   if (lowercase(name) == lowercase(wanted))
     found.named.push_back(path);
+  else if (lowercase(name) == lowercase(fs::path(wanted).stem().string() + "_tests.cpp"))
+    found.own_tests.push_back(path);
   else if (is_source(name))
     found.sources.push_back(path);
   else if (is_archive(name))
@@ -160,6 +163,18 @@ void choose_from_archive(const fs::path& archive, const std::string& wanted, Unp
   choose_source(found, wanted, place, nullptr, submission);
 }
 
+void choose_own_tests(const Found& found, const fs::path& folder, Submission& submission) {
+  if (found.own_tests.empty()) return;
+  const fs::path& first = found.own_tests.front();
+  if (found.own_tests.size() > 1 && !are_equal(found.own_tests))
+    submission.notes.push_back("its own tests were not run, because there are several: " +
+                               listed(found.own_tests, folder));
+  else if (const std::string why = why_not(first); !why.empty())
+    submission.notes.push_back("its own tests were not run: " + why);
+  else
+    submission.own_tests = first;
+}
+
 void choose_source(Found found, const std::string& wanted, const fs::path& folder,
                    Unpacked* unpacked, Submission& submission) {
   const auto note = [&](const std::string& text) { submission.notes.push_back(text); };
@@ -218,6 +233,7 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
     if (!found.headers.empty())
       note("headers beside it were not used: " + listed(found.headers, folder) +
            ". Only the one file is compiled, with the course's own headers");
+    choose_own_tests(found, folder, submission);
     submission.problem = why_not(submission.source);
     if (!submission.problem.empty()) submission.source.clear();
   }

@@ -15,7 +15,7 @@ std::size_t Grade::count(Verdict verdict) const {
 }
 
 bool Grade::is_final() const {
-  bool all_final = state != GradeState::kGraderFault;
+  bool all_final = state != GradeState::kGraderFault && own_tests.is_final;
   each_verdict([&](const RubricItem&, Verdict verdict) {
     all_final = all_final && is_final_verdict(verdict);
   });

@@ -12,6 +12,7 @@
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/grades/media.h"
+#include "framework/grading/grades/own_tests_grade.h"
 #include "framework/grading/grades/page_code.h"
 #include "framework/grading/grades/shard.h"
 #include "framework/grading/verdicts/verdict.h"
@@ -25,8 +26,9 @@ struct Submission {
   std::filesystem::path source;
   // for the grader: why there is nothing to compile; empty: there is a source
   std::string problem;
-  std::vector<std::string> notes;  // unusual, but no obstacle
-  std::string student_id = {};     // Canvas's number of the student, if the file's name has one
+  std::vector<std::string> notes;        // unusual, but no obstacle
+  std::filesystem::path own_tests = {};  // a file of tests beside the source; may be empty
+  std::string student_id = {};  // Canvas's number of the student, if the file's name has one
 };
 
 /// The content of a folder of submissions.
@@ -89,6 +91,7 @@ struct Grade {
   std::vector<Cause> causes;      // of what is not right, the costliest first
   std::vector<SceneMedia> media;
   CostSection cost;  // only on the page, not in the record
+  OwnTestsGrade own_tests;
   double score = 0.0, possible = 0.0;
   // nothing has changed since an earlier run, whose results are kept
   bool taken_over = false;

@@ -190,6 +190,12 @@ GradeRecord record_of(const Json& json) {
   grade.no_page_code = json.value("no_page_code", std::string());
   for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
   for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
+  if (json.contains("own_tests")) {
+    const Json& own = json.at("own_tests");
+    grade.own_tests = {
+        true,           own.at("final"), own.at("score"), own.at("possible"), own.at("story"),
+        own.at("names")};
+  }
   if (json.contains("causes")) grade.causes = causes_in(json.at("causes"));
   grade.cost = cost_of(json.at("cost"));
   return record;
@@ -237,6 +243,18 @@ std::string gradescope_json(const Grade& grade) {
     entry["tags"] = test.item.level.empty() ? Json::array() : Json::array({test.item.level});
     entry["visibility"] = test.item.hidden ? "after_published" : "visible";
     entry["extra_data"] = {{"test", test.item.test}, {"verdict", words(test.result.verdict)}};
+    page["tests"].push_back(std::move(entry));
+  }
+  if (const OwnTestsGrade& own = grade.own_tests; own.is_there) {
+    // extra points: they are not among those that can be reached
+    Json entry = {{"name", kOwnTestsTitle}};
+    if (grade.has_score()) entry["score"] = own.score;
+    entry["max_score"] = 0;
+    entry["status"] = own.score == own.possible ? "passed" : "failed";
+    entry["output"] = plain_text(own.story);
+    entry["tags"] = Json::array();
+    entry["visibility"] = "visible";
+    entry["extra_data"] = {{"extra_points", own.possible}};
     page["tests"].push_back(std::move(entry));
   }
   return dumped(page);
@@ -321,6 +339,12 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   json["sandbox"] = grade.sandbox;
   json["official"] = grade.is_official;
   json["handout"] = grade.has_handout;
+  if (grade.own_tests.is_there)
+    json["own_tests"] = {{"final", grade.own_tests.is_final},
+                         {"score", grade.own_tests.score},
+                         {"possible", grade.own_tests.possible},
+                         {"story", grade.own_tests.story},
+                         {"names", grade.own_tests.names}};
   json["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) json["tests"].push_back(test_json(test));
   json["causes"] = json_of_causes(grade.causes);

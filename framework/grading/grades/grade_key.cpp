@@ -67,7 +67,8 @@ std::string pictures_digest(const Course& course, const std::string& id,
 std::string submission_digest(const Submission& submission) {
   std::string text = submission.problem + '\0';
   for (const std::string& note : submission.notes) text += note + '\0';
-  return digest(text + (submission.source.empty() ? "" : digest_of_file(submission.source)));
+  return digest(text + (submission.source.empty() ? "" : digest_of_file(submission.source)) +
+                (submission.own_tests.empty() ? "" : " " + digest_of_file(submission.own_tests)));
 }
 
 std::string folder_of(const std::string& name) {

@@ -27,6 +27,7 @@
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/grade_submission.h"
 #include "framework/grading/grades/output_folder.h"
+#include "framework/grading/grades/own_tests.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/course/processes.h"
@@ -90,8 +91,18 @@ class Batch {
   void read_once(std::vector<Submission>& submissions) {
     std::size_t number = 0;
     for (Submission& submission : submissions) {
-      if (submission.source.empty()) continue;
       std::string why;
+      if (!submission.own_tests.empty()) {
+        const auto tests = read_plain_file(submission.own_tests, CompileLimits{}.source_bytes, why);
+        const fs::path copy =
+            sources_.path() / std::to_string(number++) / submission.own_tests.filename();
+        if (tests)
+          write_whole(copy, *tests);
+        else
+          submission.notes.push_back("its own tests were not run: " + why);
+        submission.own_tests = tests ? copy : fs::path();
+      }
+      if (submission.source.empty()) continue;
       const auto text = read_plain_file(submission.source, CompileLimits{}.source_bytes, why);
       const fs::path copy =
           sources_.path() / std::to_string(number++) / submission.source.filename();
@@ -119,11 +130,20 @@ class Batch {
     const std::string judging = digest(grader_digest(course_, id_, options_.budget_s) +
                                        protection_.words),
                       pictures = pictures_digest(course_, id_, options_);
+    const bool has_tests = std::any_of(submissions.begin(), submissions.end(),
+                                       [](const Submission& s) { return !s.own_tests.empty(); });
+    std::string own_tests;
+    if (has_tests && wants_own_tests(course_, id_)) {
+      prepare_own_tests(course_, id_);
+      own_tests = own_tests_digest(course_, id_);
+    }
     for (std::size_t i = 0; i < submissions.size(); ++i) {
       Work work;
       work.submission = &submissions[i];
       work.folder = folders[i];
-      work.key = {submission_digest(submissions[i]), judging, rubric_digest(rubric_), pictures};
+      work.key = {submission_digest(submissions[i]),
+                  submissions[i].own_tests.empty() ? judging : digest(judging + own_tests),
+                  rubric_digest(rubric_), pictures};
       read_earlier(work);
       take_over_or_open(work);
       work_.push_back(std::move(work));

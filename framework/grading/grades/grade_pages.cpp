@@ -246,9 +246,17 @@ static void add_bench(report::Page& page, const Grade& grade, const PageView& vi
                           Look::kMuted);
   page.paragraph(
       "Change the numbers: every answer is computed here by this file's own functions, compiled "
-      "for "
-      "the page.");
+      "for the page.");
   report::add_bench(page, view.bench);
+}
+
+void add_own_tests(report::Page& page, const OwnTestsGrade& own) {
+  if (!own.is_there) return;
+  page.heading(fmt::format("{}: {} of {}", kOwnTestsTitle, points_text(own.score),
+                           points_text(own.possible)),
+               2, "own-tests");
+  page.preformatted(plain_text(own.story));
+  if (!own.names.empty()) page.paragraph("For the grader only: " + own.names + ".", Look::kMuted);
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
@@ -275,6 +283,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   add_bench(page, grade, view);
   page.heading("Tests", 2, "tests");
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
+  add_own_tests(page, grade.own_tests);
   page.heading("Stories", 2, "stories");
   if (const auto stories = std::count_if(
           grade.tests.begin(), grade.tests.end(),
@@ -318,6 +327,7 @@ Grade for_student(Grade grade) {
     for (std::string& test : cause.tests)
       if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
   grade.remarks.clear();
+  grade.own_tests.names.clear();
   return grade;
 }
 

@@ -15,6 +15,7 @@
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/grades/measure_cost.h"
+#include "framework/grading/grades/own_tests.h"
 #include "framework/grading/grades/scoring.h"
 
 namespace tumble::grading {
@@ -79,6 +80,12 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   grade.has_handout = has_handout(course, id);
   const ObjectFile object{folder / ("." + id + ".so")};
   judge(course, id, submission, rubric, object, options.budget_s, grade);
+  if (!submission.own_tests.empty()) {
+    if (wants_own_tests(course, id))
+      grade.own_tests = judge_own_tests(course, id, submission.own_tests);
+    else
+      grade.notes.push_back("own tests earn no points here, and were not run");
+  }
   add_up(grade);
   if (grade.state == GradeState::kJudged)
     grade.causes = causes_of(grade.tests, audited_slips_of(course, id),

@@ -89,6 +89,7 @@ void add_up(Grade& grade) {
     grade.score += test.score;
     grade.possible += test.item.points;
   }
+  grade.score += grade.own_tests.score;  // extra points
   // Points have few decimals: rounding removes the round-off of their sum.
   constexpr double kGrain = 1e6;
   grade.score = std::round(grade.score * kGrain) / kGrain;

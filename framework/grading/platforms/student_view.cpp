@@ -50,6 +50,12 @@ StudentView student_view(const std::string& assignment, const std::string& title
     view.tests.push_back({test.item.test, plain_name(test.item.title), test.item.level, test.score,
                           test.item.points, test.result.verdict, text});
   }
+  if (const OwnTestsGrade& own = grade.own_tests; own.is_there) {
+    view.score += own.score;
+    view.tests.push_back({"OwnTests.ExtraPoints", kOwnTestsTitle, "", own.score, 0.0,
+                          own.score == own.possible ? Verdict::kRight : Verdict::kWrong,
+                          plain_text(own.story)});
+  }
   view.score = rounded(view.score);
   view.possible = rounded(view.possible);
   return view;

@@ -32,6 +32,27 @@ RubricItem read_item(const nlohmann::json& entry, const std::string& where) {
   return item;
 }
 
+// "own_tests" of either rubric; nothing where it has none.
+std::optional<OwnTestsRule> read_own_tests(const nlohmann::json& document,
+                                           const std::string& file) {
+  if (!document.contains("own_tests")) return std::nullopt;
+  const std::string where = file + " /own_tests";
+  OwnTestsRule rule;
+  try {
+    const nlohmann::json& own = document["own_tests"];
+    rule.points = own.value("points", 0.0);
+    rule.share = own.value("share", 1.0);
+    rule.slips = own.value("slips", std::vector<std::string>());
+  } catch (const nlohmann::json::exception& error) {
+    throw UserError(where, std::string("is no rule for own tests: ") + error.what(),
+                    "It has points and share; of the hidden rubric slips.");
+  }
+  if (!(rule.points >= 0.0)) throw UserError(where, "has points below 0");
+  if (!(rule.share > 0.0 && rule.share <= 1.0))
+    throw UserError(where, "its share is not in (0, 1]", "It is the part of the slips to catch.");
+  return rule;
+}
+
 }  // namespace
 
 const RubricItem* Rubric::find(const std::string& test) const {
@@ -58,6 +79,7 @@ Rubric read_rubric(const std::filesystem::path& file, bool hidden) {
   Rubric rubric;
   rubric.assignment = document.value("assignment", "");
   rubric.title = document.value("title", "");
+  rubric.own_tests = read_own_tests(document, file.string());
   if (!document.contains("tests") || !document["tests"].is_array())
     throw UserError(file.string(), "has no array \"tests\"");
   std::set<std::string> seen;
@@ -80,6 +102,7 @@ Rubric joined(const Rubric& open, const Rubric& hidden) {
                       "test '" + item.test + "' is both public and hidden");
     all.items.push_back(item);
   }
+  if (all.own_tests && hidden.own_tests) all.own_tests->slips = hidden.own_tests->slips;
   // points: they have few decimals, so the sum is exact up to round-off
   constexpr double kFull = 100.0, kSlack = 1e-9;
   if (std::abs(all.total() - kFull) > kSlack)

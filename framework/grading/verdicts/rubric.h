@@ -3,10 +3,12 @@
 ///
 ///   {"assignment": "a1", "title": "Impulse",
 ///    "tests": [{"test": "Suite.Name", "points": 5, "level": "basic", "title": "short human
-///    title"}]}
+///    title"}],
+///    "own_tests": {"points": 5, "share": 0.75}}     may be left out; the hidden one has "slips"
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,10 +24,20 @@ struct RubricItem {
   bool operator==(const RubricItem&) const = default;
 };
 
+/// Extra points for a student's own tests (grades/own_tests.h).
+struct OwnTestsRule {
+  double points = 0.0;             // on top of those of the tests
+  double share = 1.0;              // of the slips, to be caught for all of them
+  std::vector<std::string> slips;  // names of known-wrong solutions; of the hidden rubric
+
+  bool operator==(const OwnTestsRule&) const = default;
+};
+
 struct Rubric {
   std::string assignment;  // "a1"
   std::string title;
   std::vector<RubricItem> items;
+  std::optional<OwnTestsRule> own_tests = {};
 
   /// @return null when no item names the test
   const RubricItem* find(const std::string& test) const;

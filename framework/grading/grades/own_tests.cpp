@@ -1,0 +1,266 @@
+#include "framework/grading/grades/own_tests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/core/digest.h"
+#include "framework/core/files.h"
+#include "framework/core/text.h"
+#include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/course/build_submission.h"
+#include "framework/grading/course/run_program.h"
+#include "framework/grading/grades/audit.h"
+#include "framework/grading/grades/scoring.h"
+#include "framework/grading/sandbox/protection.h"
+#include "framework/grading/verdicts/plain_text.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRuns = 2;            // of each module: one would not show a verdict by chance
+constexpr double kRunWall = 600.0;  // s: the relay has limits of its own, far shorter
+constexpr int kMostSlow = 4;        // runs that end out of time; then the rest is not run
+
+struct Module {
+  Candidate candidate;
+  std::string text;
+  fs::path object;
+};
+
+std::string joined_names(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+fs::path relay_of(const Course& course, const std::string& id) {
+  return course.build / "bin" / ("own_tests_" + id);
+}
+
+// The slips of the rule, in an order that says nothing of their names; then the right solutions.
+std::vector<Module> modules_of(const Course& course, const std::string& id) {
+  const auto rule = rubric_of(course, id).own_tests;
+  require(rule.has_value(), "own tests: the rubric has no rule for them");
+  std::vector<Candidate> all = find_candidates(course, id), chosen;
+  for (const std::string& slip : rule->slips) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
+      return !c.is_right && c.file.stem() == slip;
+    });
+    if (found == all.end())
+      throw UserError("rubric_hidden.json of " + id + " /own_tests/slips",
+                      "no known-wrong solution is called '" + slip + "'");
+    chosen.push_back(*found);
+  }
+  const auto order = [](const Candidate& c) { return digest("own tests " + c.name); };
+  std::sort(chosen.begin(), chosen.end(),
+            [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
+  for (const Candidate& candidate : all)
+    if (candidate.is_right) chosen.push_back(candidate);
+  const std::vector<JudgedSource> sources = sources_of(chosen);
+  // what decides the bytes of an object beside its text
+  const std::string made_by = digest_of_file("/usr/bin/g++") +
+                              digest_of_file(module_header(course, id)) +
+                              traits_of(chosen_sandbox()).name;
+  const fs::path kept = (course.kept.empty() ? course.build : course.kept) / "own_tests" / id;
+  std::vector<Module> modules;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    modules.push_back({chosen[i], sources[i].text,
+                       kept / (digest(made_by + digest(sources[i].text)).substr(0, 32) + ".so")});
+  return modules;
+}
+
+void build(const Course& course, const std::string& id, const Module& module) {
+  const PrivateFolder folder;
+  const fs::path file = folder.path() / (module.candidate.file.stem().string() + ".cpp");
+  write_whole(file, module.text);
+  std::string said;
+  make_whole(module.object, [&](const fs::path& draft) {
+    const BuiltSubmission built = build_submission(course, id, file, draft);
+    if (built.outcome != BuiltSubmission::Outcome::kBuilt) said = built.said + " ";
+  });
+  if (!said.empty()) throw UserError(module.candidate.file.string(), "does not compile: " + said);
+}
+
+// One run of all tests on one module. @return nothing where the grader failed
+std::optional<std::vector<TestResult>> run_once(const Course& course, const std::string& id,
+                                                const fs::path& program, const fs::path& module) {
+  const PrivateFolder folder;
+  // A name that is the same for every module.
+  const fs::path object = folder.path() / "module.so", record = folder.path() / "results.json";
+  fs::copy_file(module, object);
+  const ProgramOutcome outcome =
+      run_program({relay_of(course, id).string(), "--tests", program.string(), "--submission",
+                   object.string(), "--json", record.string(), "--quick"},
+                  Output::kCaptured, kRunWall);
+  // A relay that died without a result was killed by what the tests sent: no test has passed.
+  if (!fs::exists(record)) {
+    if (outcome.code >= 128) return std::vector<TestResult>{};
+    return std::nullopt;
+  }
+  return read_results(record.string());
+}
+
+}  // namespace
+
+bool wants_own_tests(const Course& course, const std::string& id) {
+  const auto rule = rubric_of(course, id).own_tests;
+  return rule && !rule->slips.empty();
+}
+
+void prepare_own_tests(const Course& course, const std::string& id) {
+  for (const fs::path& file :
+       {relay_of(course, id), fs::path(relay_of(course, id).string() + ".o")})
+    if (!fs::exists(file))
+      throw UserError(file.string(), "is not built", "Build it: ninja -C build own_tests_" + id);
+  for (const Module& module : modules_of(course, id)) {
+    if (fs::exists(module.object)) continue;
+    fs::create_directories(module.object.parent_path());
+    build(course, id, module);
+  }
+}
+
+std::string own_tests_digest(const Course& course, const std::string& id) {
+  const auto rule = rubric_of(course, id).own_tests;
+  std::string text = fmt::format("{} {} ", rule->points, rule->share) +
+                     digest_of_file(relay_of(course, id)) +
+                     digest_of_file(relay_of(course, id).string() + ".o");
+  for (const Module& module : modules_of(course, id))
+    text += module.candidate.name + digest(module.text);
+  return digest(text);
+}
+
+OwnTestsGrade judge_own_tests(const Course& course, const std::string& id, const fs::path& tests) {
+  const OwnTestsRule rule = *rubric_of(course, id).own_tests;
+  OwnTestsGrade grade;
+  grade.is_there = true;
+  grade.possible = rule.points;
+  const PrivateFolder folder;
+  const fs::path program = folder.path() / "tests";
+  const BuiltSubmission built = build_own_tests(course.root, course.build, id,
+                                                course.registry->find(id).folder, tests, program);
+  if (built.outcome != BuiltSubmission::Outcome::kBuilt) {
+    grade.is_final = built.outcome == BuiltSubmission::Outcome::kRefused;
+    grade.story =
+        "does not compile: " + compiler_story(built.said, tests, module_header(course, id));
+    return grade;
+  }
+  const std::vector<Module> modules = modules_of(course, id);
+  std::vector<TriedModule> tried;
+  std::size_t slips = 0, rights = 0;
+  for (const Module& module : modules)
+    tried.push_back({module.candidate.is_right ? fmt::format("right solution {}", ++rights)
+                                               : fmt::format("slip {}", ++slips),
+                     module.candidate.name,
+                     module.candidate.is_right,
+                     {}});
+  std::vector<std::size_t> order;
+  for (int run = 0; run < kRuns; ++run)
+    for (std::size_t i = 0; i < modules.size(); ++i) order.push_back(i);
+  // The result is the same in any order; a file of tests must not know it.
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(std::random_device{}()));
+  std::vector<std::string> names;
+  std::vector<std::pair<std::size_t, std::vector<TestResult>>> runs;
+  int slow = 0;
+  for (const std::size_t i : order) {
+    auto results = run_once(course, id, program, modules[i].object);
+    if (!results || std::any_of(results->begin(), results->end(),
+                                [](const TestResult& r) { return !is_final_verdict(r.verdict); })) {
+      grade.is_final = false;
+      grade.story = "the grader could not run them; this costs no points, and is tried again";
+      return grade;
+    }
+    slow += std::any_of(results->begin(), results->end(), [](const TestResult& r) {
+      return r.verdict == Verdict::kOutOfResources && r.timed_out_s == 0.0 && r.calls == 0;
+    });
+    if (slow >= kMostSlow) {
+      grade.story = fmt::format("out of time: the tests themselves did not end in {} runs", slow);
+      return grade;
+    }
+    for (const TestResult& result : *results)
+      if (std::find(names.begin(), names.end(), result.test) == names.end())
+        names.push_back(result.test);
+    runs.emplace_back(i, std::move(*results));
+  }
+  std::sort(names.begin(), names.end());
+  // A test that did not run did not pass.
+  for (const auto& [i, results] : runs) {
+    std::vector<std::string> failed;
+    for (const std::string& name : names)
+      if (std::none_of(results.begin(), results.end(), [&](const TestResult& r) {
+            return r.test == name && r.verdict == Verdict::kRight;
+          }))
+        failed.push_back(name);
+    tried[i].failed.push_back(failed);
+  }
+  return graded_own_tests(rule, names, tried);
+}
+
+OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::string>& tests,
+                               const std::vector<TriedModule>& modules) {
+  std::map<std::string, std::set<std::string>> accuses;  // by test: right solutions
+  std::set<std::string> unsteady;
+  for (const TriedModule& module : modules) {
+    for (const auto& run : module.failed) {
+      for (const std::string& test : run)
+        if (module.is_right) accuses[test].insert(module.shown);
+      for (const std::string& test : tests) {
+        const bool first = std::count(module.failed[0].begin(), module.failed[0].end(), test) > 0;
+        if (first != (std::count(run.begin(), run.end(), test) > 0)) unsteady.insert(test);
+      }
+    }
+  }
+  std::set<std::string> bad = unsteady;
+  for (const auto& [test, right] : accuses) bad.insert(test);
+
+  std::string lines;
+  OwnTestsGrade grade;
+  grade.is_there = true;
+  grade.possible = rule.points;
+  std::size_t slips = 0, caught = 0;
+  for (const TriedModule& module : modules) {
+    if (module.is_right) continue;
+    ++slips;
+    std::vector<std::string> by;
+    for (const std::string& test : module.failed[0])
+      if (!bad.contains(test)) by.push_back(test);
+    caught += !by.empty();
+    lines +=
+        module.shown + (by.empty() ? ": not caught\n" : ": caught by " + joined_names(by) + '\n');
+    grade.names += (grade.names.empty() ? "" : ", ") + module.shown + " is " + module.name;
+  }
+  for (const auto& [test, right] : accuses)
+    lines += fmt::format("{} accuses {}: it catches nothing, and takes one slip back\n", test,
+                         joined_names({right.begin(), right.end()}));
+  for (const std::string& test : unsteady)
+    if (!accuses.contains(test))
+      lines +=
+          test + " gave two verdicts for one module: it catches nothing, and takes one slip back\n";
+  for (const TriedModule& module : modules)
+    if (module.is_right) grade.names += ", " + module.shown + " is " + module.name;
+  // at least one, or a file without tests would have all points
+  const std::size_t needed = std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::ceil(rule.share * static_cast<double>(slips) - 1e-9)));
+  const std::size_t counted_slips = std::min(caught, needed);
+  const std::size_t left = counted_slips > bad.size() ? counted_slips - bad.size() : 0;
+  constexpr double kGrain = 100.0;  // hundredths of a point
+  grade.score =
+      std::floor(rule.points * static_cast<double>(left) / static_cast<double>(needed) * kGrain +
+                 1e-9) /
+      kGrain;
+  grade.story = fmt::format(
+      "{}: {} of {} slips caught, {} needed for all {} points; {} against right solutions or not "
+      "repeatable\n",
+      counted(tests.size(), "test"), caught, slips, needed, points_text(rule.points),
+      counted(bad.size(), "test"));
+  grade.story += lines;
+  return grade;
+}
+
+}  // namespace tumble::grading
