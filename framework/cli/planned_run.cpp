@@ -220,7 +220,7 @@ void add_plan_words(Verb& verb, RunWords& words) {
       .type_name("S");
   verb.option("--method", words.method,
               "Method of integration in place of the laws' own: euler, symplectic, midpoint, "
-              "verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4")
+              "verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4, gauss6")
       .type_name("WORD");
   verb.option("--tolerance", words.tolerance, "Of a method that chooses its steps by one")
       .positive();

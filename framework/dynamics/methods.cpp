@@ -248,17 +248,16 @@ VectorXd rosenbrock(const OdeFunction& any, double t, const VectorXd& y, double 
 }  // namespace
 
 const std::vector<Method>& methods() {
-  static const std::vector<Method> all = {
-      {"euler", "Euler", 1, false, false},
-      {"symplectic", "symplectic Euler", 1, false, false},
-      {"midpoint", "midpoint", 2, false, false},
-      {"verlet", "Verlet", 2, false, false},
-      {"rk4", "RK4", 4, false, false},
-      {"dopri5", "Dormand-Prince 5(4)", 5, true, false},
-      {"fehlberg78", "Fehlberg 7(8)", 8, true, false},
-      {"bulirsch-stoer", "Bulirsch-Stoer", kUnset, true, false},
-      {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true},
-      {"gauss6", "Gauss 6 (implicit)", 6, false, true}};
+  static const std::vector<Method> all = {{"euler", "Euler", 1, false, false},
+                                          {"symplectic", "symplectic Euler", 1, false, false},
+                                          {"midpoint", "midpoint", 2, false, false},
+                                          {"verlet", "Verlet", 2, false, false},
+                                          {"rk4", "RK4", 4, false, false},
+                                          {"dopri5", "Dormand-Prince 5(4)", 5, true, false},
+                                          {"fehlberg78", "Fehlberg 7(8)", 8, true, false},
+                                          {"bulirsch-stoer", "Bulirsch-Stoer", kUnset, true, false},
+                                          {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true},
+                                          {"gauss6", "Gauss 6 (implicit)", 6, false, true}};
   return all;
 }
 

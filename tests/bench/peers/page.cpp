@@ -49,7 +49,8 @@ constexpr const char* kRules[] = {
     "other of its own ways beats is drawn, and every row stands in the fold below the picture.",
     "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the "
     "course's reference modules: retroactive detection with RK4 at a fixed step, or with "
-    "Dormand-Prince or Fehlberg 7(8) (error control, from Boost.Odeint) behind the same law; and, "
+    "Dormand-Prince or Fehlberg 7(8) (error control, from Boost.Odeint) or Gauss's implicit method "
+    "of order 6 behind the same law, links as rows or in joint coordinates; and, "
     "where nothing but gravity and impacts acts and the tree has them, conservative advancement "
     "and timewarp, whose flights are closed forms.",
 };
@@ -143,30 +144,60 @@ Cell price_cell(const PeerRow* row, bool with_name, Look look) {
   return {(with_name ? row->engine + " " : "") + unbroken(report::price_of(row->cpu_s)), "", look};
 }
 
+bool is_ahead(const PeerRow* ours, const PeerRow* theirs) {
+  return ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
+}
+
+/// Ahead or behind, and by how much.
+Cell standing(const PeerRow* ours, const PeerRow* theirs) {
+  if (ours == nullptr && theirs == nullptr) return {"-", "", Look::kMuted};
+  if (theirs == nullptr) return {"alone", "", Look::kGood};
+  if (ours == nullptr) return {"behind", "", Look::kBad};
+  const bool ahead = is_ahead(ours, theirs);
+  const double ratio = ahead ? theirs->cpu_s / ours->cpu_s : ours->cpu_s / theirs->cpu_s;
+  return {unbroken(fmt::format(
+              "{} {}", ahead ? "ahead" : "behind",
+              ratio < 100 ? fmt::format("{:.2g}", ratio) : fmt::format("{:.0f}", ratio))),
+          "", ahead ? Look::kGood : Look::kBad};
+}
+
+/// In how many cells of the overview that some peer reaches Tumble is ahead of all of them.
+std::string score(const std::vector<BenchCase>& cases, const PeerRows& measured) {
+  int reached = 0, won = 0, alone = 0;
+  for (const BenchCase& bench : cases)
+    for (const double mark : kMarks) {
+      const PeerRow *ours = cheapest_row(measured.rows, bench.id, kOurs, false, mark),
+                    *theirs = cheapest_row(measured.rows, bench.id, kOurs, true, mark);
+      if (theirs != nullptr) ++reached, won += is_ahead(ours, theirs) ? 1 : 0;
+      if (theirs == nullptr && ours != nullptr) ++alone;
+    }
+  return fmt::format(
+      "Tumble is ahead of every peer in {} of the {} cells that some peer reaches, and alone in {} "
+      "others.",
+      won, reached, alone);
+}
+
 report::Table overview(const std::vector<BenchCase>& cases, const PeerRows& measured) {
   report::Table table;
   table.caption =
       "What an error of at most 1e-3, 1e-6, 1e-9 costs: Tumble's CPU time, the cheapest peer's, "
-      "and the first over the second. - : none gets there.";
+      "and how many times the peer's is Tumble's (ahead), or Tumble's the peer's (behind). alone: "
+      "no peer gets there. - : none gets there.";
   table.columns = {{"Scene"}};
   for (const double mark : kMarks)
     table.columns.insert(
         table.columns.end(),
-        {{fmt::format("1e{:.0f}", std::log10(mark)), true}, {"peer", true}, {"×", true}});
+        {{fmt::format("1e{:.0f}", std::log10(mark)), true}, {"peer", true}, {"", true}});
   for (const BenchCase& bench : cases) {
     std::vector<Cell> cells{{unbroken(bench.id.substr(0, 2) + " " + bench.name), "#" + bench.id}};
     for (const double mark : kMarks) {
       const PeerRow *ours = cheapest_row(measured.rows, bench.id, kOurs, false, mark),
                     *theirs = cheapest_row(measured.rows, bench.id, kOurs, true, mark);
-      const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
+      const bool wins = is_ahead(ours, theirs);
       cells.push_back(price_cell(ours, false, wins ? Look::kGood : Look::kPlain));
       cells.push_back(
           price_cell(theirs, true, !wins && theirs != nullptr ? Look::kWarning : Look::kPlain));
-      const double ratio = ours && theirs ? ours->cpu_s / theirs->cpu_s : std::nan("");
-      cells.push_back(std::isfinite(ratio) ? Cell{ratio < 0.1 ? fmt::format("{:.1g}", ratio)
-                                                              : fmt::format("{:.2g}", ratio),
-                                                  "", ratio <= 1 ? Look::kGood : Look::kBad}
-                                           : Cell{"-", "", Look::kMuted});
+      cells.push_back(standing(ours, theirs));
     }
     table.rows.push_back(std::move(cells));
   }
@@ -368,6 +399,7 @@ void write(const std::filesystem::path& rows, const std::filesystem::path& file,
                             "nothing but that it runs."
                           : "Scenes S1 to S8, error against CPU time");
   page.table(overview(cases, measured));
+  page.paragraph(score(cases, measured));
   page.paragraph(losses(cases, measured));
   page.table(goals_table(cases, measured));
   page.heading("How it was measured");
