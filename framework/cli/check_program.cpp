@@ -171,6 +171,10 @@ ExitCode check_own_tests(const Command& command, const CheckWords& words, const 
                          const fs::path& header) {
   const fs::path program = command.build / "bin" / ("own_tests_" + words.id),
                  tests = fs::absolute(words.own_tests);
+  if (command.is_installed && !fs::exists(program))
+    throw UserError("--my-tests", "the installed package cannot run tests of your own",
+                    "It works in the course's source tree: ./tumble check " + words.id +
+                        " YOUR.cpp --my-tests FILE");
   if (!fs::exists(program))
     throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
   const PrivateFolder folder;
@@ -209,7 +213,7 @@ void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id
 
 CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest) {
   folder_of(id);
-  CheckWords words{id, {}, {}, {}};
+  CheckWords words{id, {}, {}, {}, {}};
   for (const std::string& word : rest) {
     const bool is_file =
         word.ends_with(".cpp") || word.ends_with(".cc") || word.find('/') != std::string::npos;

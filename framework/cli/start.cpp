@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string readme_of(const modules::ModuleName& name, const std::string& check,
-                      const fs::path& root) {
+                      const fs::path& root, bool has_tests) {
   return fmt::format(R"(# {title} ({id})
 
 - `{folder}.cpp`: **your file**. Every function throws "not implemented" until you write it.
@@ -24,8 +24,7 @@ std::string readme_of(const modules::ModuleName& name, const std::string& check,
   change has no effect.
 - `{folder}.md`: the handout: theory with numbered equations, what to hand in, hints.
 - `tests/`: the public tests, copies to read.
-- `{folder}_tests.cpp`: a file for tests of your own, which `tumble check {id} --my-tests` runs.
-- `compile_flags.txt`: for editors that use clangd.
+{tests}- `compile_flags.txt`: for editors that use clangd.
 
 ```
 {check}
@@ -37,14 +36,19 @@ All handouts, models and scenes are below `{root}`.
 )",
                      fmt::arg("title", name.title), fmt::arg("id", name.id),
                      fmt::arg("folder", name.folder), fmt::arg("check", check),
-                     fmt::arg("root", root.string()));
+                     fmt::arg("root", root.string()),
+                     fmt::arg("tests", has_tests ? "- `" + name.folder +
+                                                       "_tests.cpp`: a file for tests of your own; "
+                                                       "its first line says how it is run.\n"
+                                                 : ""));
 }
 
 // A file of tests to begin from; empty where the assignment has no header for tests.
 std::string own_tests_of(const fs::path& root, const modules::ModuleName& name) {
   const std::string fixtures = "tests/" + name.folder + "/" + name.id + "_fixtures.h";
   if (!fs::exists(root / fixtures)) return "";
-  return fmt::format(R"(// Your own tests of {id}:  tumble check {id} --my-tests {folder}_tests.cpp
+  return fmt::format(
+      R"(// Your own tests of {id}:  tumble check {id} {folder}.cpp --my-tests {folder}_tests.cpp
 // student() has the functions of {folder}.h. A test passes for every right solution, and fails for
 // a wrong one. The public tests in tests/ show how one is written.
 #include "{fixtures}"
@@ -54,13 +58,12 @@ namespace tumble::testing {{
 TEST(Mine, SaysWhatMustHold) {{
   // a case whose answer you know, for example:
   //   EXPECT_NEAR(student()....., 9.0, 1e-12);
-  GTEST_SKIP() << "not written yet";
+  FAIL() << "not written yet";
 }}
 
 }}  // namespace tumble::testing
 )",
-                     fmt::arg("id", name.id), fmt::arg("folder", name.folder),
-                     fmt::arg("fixtures", fixtures));
+      fmt::arg("id", name.id), fmt::arg("folder", name.folder), fmt::arg("fixtures", fixtures));
 }
 
 std::string commands_of(const Command& command, const modules::ModuleName& name,
@@ -98,10 +101,12 @@ void start(const Command& command, const std::string& id, const fs::path& word) 
   copy_new(public_files / name.folder / (name.folder + ".h"), folder / (name.folder + ".h"));
   copy_new(command.root / "tests" / name.folder, folder / "tests");
   copy_new(command.root / "handouts" / (name.folder + ".md"), folder / (name.folder + ".md"));
-  if (const std::string tests = own_tests_of(command.root, name); !tests.empty())
+  if (const std::string tests = own_tests_of(command.root, name);
+      !tests.empty() && !command.is_installed)
     write_whole(folder / (name.folder + "_tests.cpp"), tests);
   write_whole(folder / "README.md",
-              readme_of(name, commands_of(command, name, folder), command.root));
+              readme_of(name, commands_of(command, name, folder), command.root,
+                        fs::exists(folder / (name.folder + "_tests.cpp"))));
   write_whole(folder / "compile_flags.txt",
               "-std=c++20\n-I\n" + command.root.string() + "\n-isystem\n/usr/include/eigen3\n");
   // Last: a folder with this file is complete.

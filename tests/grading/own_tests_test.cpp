@@ -18,10 +18,10 @@ TriedModule right(const Failed& first, const Failed& second) {
 }
 
 TEST(OwnTests, EachSlipCaughtEarnsItsShare) {
-  const OwnTestsGrade grade = graded_own_tests(
-      kFourSlips, {"S.A", "S.B"},
-      {slip(1, {"S.A"}, {"S.A"}), slip(2, {"S.B"}, {"S.B"}), slip(3, {}, {}),
-       slip(4, {"S.A", "S.B"}, {"S.A", "S.B"}), right({}, {})});
+  const OwnTestsGrade grade =
+      graded_own_tests(kFourSlips, {"S.A", "S.B"},
+                       {slip(1, {"S.A"}, {"S.A"}), slip(2, {"S.B"}, {"S.B"}), slip(3, {}, {}),
+                        slip(4, {"S.A", "S.B"}, {"S.A", "S.B"}), right({}, {})});
   EXPECT_EQ(grade.score, 3.0);
   EXPECT_NE(grade.story.find("slip 3: not caught"), std::string::npos);
   EXPECT_EQ(grade.story.find("secret"), std::string::npos);
@@ -54,9 +54,9 @@ TEST(OwnTests, TheShareIsEnoughForAllPoints) {
   OwnTestsRule rule = kFourSlips;
   rule.share = 0.5;
   const Failed a = {"S.A"};
-  EXPECT_EQ(graded_own_tests(rule, {"S.A"},
-                             {slip(1, a, a), slip(2, a, a), slip(3, {}, {}), slip(4, {}, {}),
-                              right({}, {})})
+  EXPECT_EQ(graded_own_tests(
+                rule, {"S.A"},
+                {slip(1, a, a), slip(2, a, a), slip(3, {}, {}), slip(4, {}, {}), right({}, {})})
                 .score,
             4.0);
 }

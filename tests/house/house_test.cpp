@@ -32,8 +32,8 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"engines",
      {"base", "stepping", "contact", "judging", "rd", "events", "timewarp", "truths", "cost"}},
     {"grading",
-     {"verdicts", "test_program", "sandbox", "compiler", "worker", "course", "handins", "grades",
-      "platforms", "attacks"}}};
+     {"verdicts", "test_program", "sandbox", "compiler", "worker", "own_tests", "course", "handins",
+      "grades", "platforms", "attacks"}}};
 
 int rank_of(const std::string& folder) {
   const auto it = std::find(kFolders.begin(), kFolders.end(), folder);
