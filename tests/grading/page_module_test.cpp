@@ -110,9 +110,9 @@ TEST(ImportsOf, BytesThatAreNoModuleAreRefused) {
   EXPECT_EQ(imports_of(""), std::nullopt);
   EXPECT_EQ(imports_of("\177ELF----"), std::nullopt);
   EXPECT_EQ(imports_of(head), std::vector<std::string>{});
-  EXPECT_EQ(imports_of(head + std::string("\2\377", 2)), std::nullopt);          // an endless size
-  EXPECT_EQ(imports_of(head + std::string("\2\2\1\377", 4)), std::nullopt);      // ends in a name
-  EXPECT_EQ(imports_of(head + std::string("\2\6\1\1a\1b\2", 8)), std::nullopt);  // a memory
+  EXPECT_EQ(imports_of(head + std::string("\2\377", 2)), std::nullopt);      // an endless size
+  EXPECT_EQ(imports_of(head + std::string("\2\2\1\377", 4)), std::nullopt);  // ends in a name
+  EXPECT_EQ(imports_of(head + std::string("\2\7\1\1a\1b\2\0", 9)), std::nullopt);  // a memory
   EXPECT_EQ(imports_of(head + std::string("\2\7\1\1a\1b\0\0", 9)), std::vector<std::string>{"a.b"});
 }
 
