@@ -38,7 +38,7 @@ bool has_story(const ScoredTest& test) {
 void add_tiles(report::Page& page, const Grade& grade) {
   std::vector<std::pair<std::string, Cell>> tiles;
   const Look look = !grade.is_final()               ? Look::kWarning
-                    : grade.score == grade.possible ? Look::kGood
+                    : grade.score >= grade.possible ? Look::kGood
                                                     : Look::kPlain;
   tiles.push_back({"of " + points_text(grade.possible) + " points",
                    {grade.has_score() ? points_text(grade.score) : "none", "", look}});

@@ -108,7 +108,7 @@ std::map<std::string, std::string> artemis_files(const StudentView& view) {
   if (hidden.count > 0) points += "; hidden tests: " + hidden.text;
   if (!view.is_official) points += "\nNot an official grade; sandbox: " + view.sandbox;
   files["customFeedbacks/1_points.json"] =
-      feedback("Tumble: points", view.score == view.possible, points);
+      feedback("Tumble: points", view.score >= view.possible, points);
   if (!view.said.empty())
     files["customFeedbacks/2_file.json"] =
         feedback("Tumble: your file", view.state == GradeState::kJudged, view.said);
