@@ -23,12 +23,13 @@ done
 # What an editor opens the source tree in.
 "${podman[@]}" build --quiet --isolation chroot --network host --build-arg BASE=localhost/tumble-base -t tumble-dev -f "$tree/.devcontainer/Containerfile" "$tree" >/dev/null
 echo "built the dev container"
-inside() { "${podman[@]}" run --rm --network=none --ulimit nofile=1024:1024 --ulimit nproc=2000:2000 "tumble-$1" bash -euc "$2"; }
+limits=(--ulimit nofile=1024:1024 --ulimit nproc=2000:2000)   # of podman's own, some are above what this machine allows
+inside() { "${podman[@]}" run --rm --network=none "${limits[@]}" "tumble-$1" bash -euc "$2"; }
 inside course 'tumble start a1 a1; cd a1; code=0; tumble check a1 >said || code=$?; tail -n 3 said; test $code = 4; test ! -e /opt/tumble-grader'
 inside grader 'tumble doctor || true; mkdir -p s/right; cp /opt/tumble-grader/solutions_private/a1_impulse/a1_impulse.cpp s/right; tumble grade a1 s --no-media --out out; grep -q 100 out/gradebook.csv'
 # As an editor does it: the tree is mounted, and its first command is run in it. A copy, because it builds.
 mkdir "$work/tree"
 git -C "$tree" archive HEAD | tar -C "$work/tree" -xf -
 after=$(sed -n 's/.*"postCreateCommand": "\(.*\)",/\1/p' "$tree/.devcontainer/devcontainer.json")
-"${podman[@]}" run --rm --network=none -v "$work/tree:/workspaces/tumble" -w /workspaces/tumble tumble-dev bash -euc "$after; code=0; ./tumble check a1 > said || code=\$?; test \$code = 4; clangd --version"
+"${podman[@]}" run --rm --network=none "${limits[@]}" -v "$work/tree:/workspaces/tumble" -w /workspaces/tumble tumble-dev bash -euc "$after; code=0; ./tumble check a1 > said || code=\$?; test \$code = 4; clangd --version"
 echo "the three containers work"
