@@ -258,9 +258,9 @@ TEST(House, ThirdPartiesStayInTheirRooms) {
 }
 
 TEST(House, HeavyHeadersStayOutOfOurHeaders) {
-  const std::vector<std::string> heavy = {"assimp/",     "valijson/", "nlohmann/", "GL/",
-                                          "EGL/",        "png.h",     "seccomp.h", "openssl/",
-                                          "Eigen/Dense", "httplib.h"};
+  const std::vector<std::string> heavy = {
+      "assimp/", "valijson/", "nlohmann/json.hpp", "GL/",         "EGL/",
+      "png.h",   "seccomp.h", "openssl/",          "Eigen/Dense", "httplib.h"};
   const std::vector<Include> includes = framework_includes();
   // A header that only its own room includes is a part of that room's .cpp files.
   const auto leaves_its_room = [&](const Include& header) {

@@ -288,10 +288,11 @@ class Batch {
     for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
     // this process ends by a signal, without running destructors
     for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);
-    fmt::print(stderr,
-               "stopped: {} of {} submissions are graded, and kept in {}; the same command continues "
-               "from here\n",
-               done_, work_.size(), out_.string());
+    fmt::print(
+        stderr,
+        "stopped: {} of {} submissions are graded, and kept in {}; the same command continues "
+        "from here\n",
+        done_, work_.size(), out_.string());
   }
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
