@@ -5,29 +5,29 @@ const laws = {
   // f: (t, y) -> y', called back by the module
   step: (to, method, f, t, y, h) => to.number(method, w => w.u32(0).f64(t).vector(y).f64(h), r => sized(method, r.vector(), y.length),
     [bytes => { const r = new Reader(bytes), at = r.f64(); return new Writer().vector(f(at, r.vector())).bytes(); }]),
-  derivative: (to, y, body) => sized('rigid_body_derivative', read(to.number('rigid_body_derivative', w => {
+  derivative: (to, y, body) => sized('rigid_body_derivative', to.number('rigid_body_derivative', w => {
     const inverseMass = inverse(body.mass), diagonal = f => [0, 1, 2].map(i => [0, 1, 2].map(j => i === j ? f(body.moments[i]) : 0));
     w.vector(y.slice(0, 3)).quaternion(y.slice(3, 7)).vector(y.slice(7, 10)).vector(y.slice(10, 13));
     w.f64(body.mass).f64(inverseMass).matrix(diagonal(m => m)).matrix(diagonal(m => 1 / m)).vector([0, 0, 0]).vector([0, 0, 0]);
-  }, r => r.vector())), 13),
+  }, r => r.vector()), 13),
   renormalize: (to, [w, x, y, z]) => {
     const [a, b, c, d] = to.number('renormalize', out => out.quaternion([w, x, y, z]), r => [r.f64(), r.f64(), r.f64(), r.f64()]);
     return [d, a, b, c];
   },
 };
-const read = x => x;
 function sized(name, y, n) {
   if (y.length !== n) throw new Ended('wrong', name, `it returned ${y.length} numbers, but ${n} are needed`);
   return y;
 }
 const methods = ['euler_step', 'rk4_step'];
+const method = { id: 'method', label: 'method: 1 Euler, 2 RK4', min: 1, max: 2, step: 1, value: 2, unit: '' };
 
 // A ball on a circle: x' = v, v' = -k x with k of one turn in two seconds. Known in closed form.
 const swing = {
   id: 'swing', title: 'A ball on a circle, by steps', about: "Attracted to the middle, with the speed of a circle of 0.4 m. Method 1 is euler_step, method 2 is rk4_step; its error is what the page measures against the closed form.",
   controls: [
     { id: 'h', label: 'step', min: 0.01, max: 0.25, step: 0.01, value: 0.1, unit: 's' },
-    { id: 'method', label: 'method: 1 Euler, 2 RK4', min: 1, max: 2, step: 1, value: 2, unit: '' },
+    method,
     { id: 'turns', label: 'turns', min: 1, max: 5, step: 1, value: 2, unit: '' },
   ],
   error(to, method, h, turns, frames) {
@@ -60,7 +60,7 @@ const tumble = {
   id: 'tumble', title: 'A brick tumbles about its middle axis', about: 'Without forces: rk4_step (or euler_step) over the rigid_body_derivative of the file, renormalize after each step.',
   controls: [
     { id: 'h', label: 'step', min: 0.005, max: 0.1, step: 0.005, value: 0.02, unit: 's' },
-    { id: 'method', label: 'method: 1 Euler, 2 RK4', min: 1, max: 2, step: 1, value: 2, unit: '' },
+    method,
     { id: 'spin', label: 'spin', min: 1, max: 12, step: 0.5, value: 6, unit: 'rad/s' },
     { id: 'aside', label: 'of it, about the long axis', min: 0, max: 1, step: 0.05, value: 0.1, unit: 'rad/s' },
   ],

@@ -272,6 +272,8 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
   program.insert(program.end(), {"--json", results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   const ProgramOutcome ran = grading::run_program(program, Output::kCaptured);
+  if (ran.code == static_cast<int>(ExitCode::kUserError))  // its words, such as a pattern
+    throw UserError("check " + id, ran.printed.substr(0, ran.printed.find_last_not_of('\n') + 1));
   if (!fs::exists(results))
     return {
         "the program with your code ended before its tests could be judged: look for code that "

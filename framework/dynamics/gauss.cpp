@@ -4,10 +4,12 @@
 // of which one is real and two are each other's conjugates.
 #include "framework/dynamics/gauss.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 #include <Eigen/Eigenvalues>
@@ -22,9 +24,9 @@ using Stages = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // k_1, k_2, k_3
 constexpr int kMostNewtonIterations = 12;
 // Newton's last change leaves an error of its rate of convergence, some 1e-3, times its own size.
 constexpr double kRounding = 1e-14;
-// A change that no longer falls is rounding: of f, which a fast swing multiplies by w h.
+// A change that no longer falls is rounding of f, which a fast oscillation multiplies by w h.
 constexpr double kStagnates = 1e-9, kSlow = 0.3;
-// A root that changes lead away from is another one than the path through y leads to.
+// Changes that do not fall fast enough lead to another root than the one that is continuous in h.
 constexpr double kDiverges = 0.5;
 constexpr int kMostHalvings = 10;
 

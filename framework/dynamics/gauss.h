@@ -1,4 +1,5 @@
-/// Gauss's method of order 6: implicit, for systems with swings much faster than what is looked at.
+/// Gauss's method of order 6: implicit, for systems with oscillations much faster than the motion
+/// of interest.
 #pragma once
 
 #include "framework/dynamics/ode.h"
@@ -8,10 +9,10 @@ namespace tumble {
 /// y(t) to y(t + h) by collocation at the three Gauss points: the polynomial of degree 3 through y
 /// whose slope is f at t + c_i h,
 ///   k_i = f(t + c_i h, y + h sum_j a_ij k_j),    y(t + h) = y + h sum_i b_i k_i            (G.1)
-/// It is symplectic, keeps quadratic invariants (|q|, the energy of a linear swing), and lengthens
-/// no swing at any step. A swing with w h > 2 keeps its size, but not its phase. What dies away in
-/// less than h does so slowly and alternates: for friction and strong dampers Rosenbrock's method
-/// is the one.
+/// It is symplectic and keeps quadratic invariants (|q|, the energy of a linear oscillator), so it
+/// is stable for an oscillation of any frequency w. One with w h > 2 keeps its amplitude, but not
+/// its phase. What is damped within less than h decays slowly and with alternating sign: for
+/// friction and strong dampers use Rosenbrock's method.
 ///
 /// (G.1) is solved by Newton's method with df/dy at y, by differences. Where that does not end, the
 /// two halves of h are taken one after the other, and so on.

@@ -55,6 +55,12 @@ TEST(Check, AFunctionThatIsMissingIsNamedWithWhatIsExpected) {
                "declared in a1_impulse.h:"});
 }
 
+TEST(Check, JsonHasTheCompilersWordsAndTheSameExitCode) {
+  const File file("#include \"assignments/a1_impulse/a1_impulse.h\"\nint x = ;\n");
+  expect_said(check({file.path.string(), "--json"}), 1,
+              {"\"assignment\": \"a1\"", "mine.cpp:2:9: error:", "\"tests\": []"});
+}
+
 TEST(Check, AnErrorInsideEigenBeginsWithTheStudentsLine) {
   const File file(
       "#include \"assignments/a1_impulse/a1_impulse.h\"\nnamespace tumble::a1 {\nVector3d "
@@ -79,6 +85,12 @@ bool untouched() {
 }
 #define SKIP_UNLESS_UNTOUCHED() \
   if (!untouched()) GTEST_SKIP() << "somebody has worked in this tree's a1"
+
+TEST(Check, JsonOfAPatternThatNoTestHasIsRefused) {
+  SKIP_UNLESS_UNTOUCHED();
+  const File file(stub());
+  expect_said(check({file.path.string(), "--json", "nosuch.*"}), 2, {"no test has this name"});
+}
 
 TEST(Check, WarningsOfTheFileAreShownAboveTheTests) {
   SKIP_UNLESS_UNTOUCHED();

@@ -35,10 +35,7 @@ Words read_words(int argc, char** argv) {
   Words words;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const auto value = [&]() -> std::string {
-      if (i + 1 >= argc) throw UserError(word, "needs a value");
-      return argv[++i];
-    };
+    const auto value = [&] { return value_after(argc, argv, i); };
     if (word == "--json")
       words.json = value();
     else if (word == "--rubric")

@@ -53,6 +53,11 @@ std::vector<std::string> chosen_tests(const std::vector<std::string>& tests,
                       tests.front().substr(0, tests.front().find('.')) + ".*'.");
 }
 
+std::string value_after(int argc, char** argv, int& i) {
+  if (i + 1 >= argc) throw UserError(argv[i], "needs a value");
+  return argv[++i];
+}
+
 double number_word(const std::string& flag, const std::string& word) {
   char* rest = nullptr;
   const double number = std::strtod(word.c_str(), &rest);

@@ -1,4 +1,4 @@
-/// Arguments on a test program's command line that select tests.
+/// Words on the command line of a program that runs tests.
 #pragma once
 
 #include <string>
@@ -14,6 +14,10 @@ bool chosen(const std::string& test, const std::string& filter);
 /// @throws UserError with the nearest names when it selects none
 std::vector<std::string> chosen_tests(const std::vector<std::string>& tests,
                                       const std::string& filter);
+
+/// The word after argv[i], which is the value of that option; `i` becomes its index.
+/// @throws UserError where there is none
+std::string value_after(int argc, char** argv, int& i);
 
 /// The number of seconds after a flag.
 /// @throws UserError when it is not a number above 0

@@ -55,10 +55,7 @@ Words read_words(const char* id, int argc, char** argv) {
   words.worker.id = id;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const auto value = [&]() -> std::string {
-      if (i + 1 >= argc) throw UserError(word, "needs a value");
-      return argv[++i];
-    };
+    const auto value = [&] { return value_after(argc, argv, i); };
     if (word == "--submission")
       words.worker.module = value();
     else if (word == "--json")
