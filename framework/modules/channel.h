@@ -71,7 +71,8 @@ class Channel {
   std::uint64_t draw();
 
   int read_fd_, write_fd_;
-  std::uint64_t question_ = 0;  // number of the judge's latest message
+  int reads_to_sleep_ = 0, pause_ = 0;  // on a busy machine: how many reads do without polling
+  std::uint64_t question_ = 0;          // number of the judge's latest message
   End side_;
   std::array<std::uint64_t, 32> lots_{};  // drawn ahead: one system call for many questions
   std::size_t lots_left_ = 0;
