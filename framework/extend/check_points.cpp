@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "framework/core/error.h"
@@ -117,6 +118,7 @@ class Check {
     check_sum();
     check_functions();
     check_handout();
+    check_own_tests();
     return std::move(faults_);
   }
 
@@ -185,6 +187,42 @@ class Check {
         say(place_of(file, line_at(text_of(root_ / file), row.at)),
             "the row of level " + row.level + " is not the rubrics'. It ends with  " + row.right +
                 "  (./tumble new points " + id_of(folder_) + " writes it)");
+  }
+
+  // Points of the rule stand in the public rubric, the slips to catch in the hidden one.
+  void check_own_tests() {
+    const bool has_points = open_.own_tests && open_.own_tests->points > 0.0;
+    const std::vector<std::string> slips =
+        hidden_.own_tests ? hidden_.own_tests->slips : std::vector<std::string>();
+    const auto rule_in = [&](const fs::path& file) {
+      return place_of(root_, file, "\"own_tests\"");
+    };
+    if (has_points && slips.empty())
+      say(rule_in(open_file_),
+          "gives points for students' own tests, and no slip is there to catch. Name some:  "
+          "\"own_tests\": {\"slips\": [...]}  in " +
+              hidden_file_.string());
+    if (!slips.empty() && !has_points)
+      say(rule_in(hidden_file_),
+          "names slips for students' own tests, and there are no points for them. Give some:  "
+          "\"own_tests\": {\"points\": 5, \"share\": 0.75}  in " +
+              open_file_.string());
+    const fs::path folder = fs::path("solutions_private") / folder_ / "mutants";
+    std::vector<std::string> known;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(root_ / folder, ignored))
+      if (entry.path().extension() == ".slip" || entry.path().extension() == ".cpp")
+        known.push_back(entry.path().stem().string());
+    std::sort(known.begin(), known.end());
+    std::set<std::string> seen;
+    for (const std::string& slip : slips) {
+      const std::string place = place_of(root_, hidden_file_, '"' + slip + '"');
+      if (!seen.insert(slip).second)
+        say(place, "names the slip " + slip + " twice. Take out one of the two.");
+      else if (!std::binary_search(known.begin(), known.end(), slip))
+        say(place, "names the slip " + slip + ", and " + folder.string() +
+                       " has none of that name." + did_you_mean(slip, known));
+    }
   }
 
   const fs::path& root_;

@@ -98,6 +98,42 @@ TEST(CheckPoints, AnEntryOfTheOtherRubric) {
       << all;
 }
 
+// A rule for students' own tests stands in two files: points in one, slips to catch in the other.
+TEST(CheckPoints, ARuleForOwnTestsNamesSlipsThatAreThere) {
+  const std::string hidden = "solutions_private/a5_trial/rubric_hidden.json";
+  const NewTree tree;
+  tree.make_a5();
+  const auto faults = [&] {
+    std::string all;
+    for (const std::string& fault : extend::check_points(tree.root(), "a5_trial"))
+      all += fault + "\n";
+    return all;
+  };
+  const auto rule = [&](const std::string& file, const std::string& before,
+                        const std::string& after) {
+    tree.replace(file, "\"own_tests\": " + before, "\"own_tests\": " + after);
+  };
+  std::string slip;
+  for (const auto& entry :
+       fs::directory_iterator(tree.root() / "solutions_private/a5_trial/mutants"))
+    slip = '"' + entry.path().stem().string() + '"';
+  ASSERT_FALSE(slip.empty());
+
+  tree.replace(kRubric, "{", "{\"own_tests\": {\"points\": 5},");
+  EXPECT_NE(faults().find(std::string(kRubric) + ":1: gives points for students' own tests, and no "
+                                                 "slip is there to catch"),
+            std::string::npos)
+      << faults();
+  tree.replace(hidden, "{", "{\"own_tests\": {\"slips\": [" + slip + "]},");
+  EXPECT_EQ(faults(), "");
+  rule(hidden, "{\"slips\": [" + slip, "{\"slips\": [" + slip + "," + slip);
+  EXPECT_NE(faults().find("twice"), std::string::npos) << faults();
+  rule(hidden, "{\"slips\": [" + slip + "," + slip, "{\"slips\": [\"never_written\"");
+  EXPECT_NE(faults().find("names the slip never_written, and "), std::string::npos) << faults();
+  rule(kRubric, "{\"points\": 5}", "{\"points\": 0}");
+  EXPECT_NE(faults().find("there are no points for them"), std::string::npos) << faults();
+}
+
 TEST(CheckPoints, ARubricThatCannotBeRead) {
   const std::string said = fault_of_change(kRubric, "\"level\": \"basic\"", "\"level\": \"easy\"");
   EXPECT_EQ(said.find("assignments/a5_trial/rubric.json"), 0u) << said;
