@@ -106,10 +106,12 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
 
 // A page that plays run and reference, with the first difference.
 void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs,
-                const fs::path& folder, const Course& course, SceneMedia& media) {
+                const fs::path& folder, const MediaOptions& options, const Course& course,
+                SceneMedia& media) {
   report::PlayerOptions player;
   player.root = course.root;
-  player.three_file = kThree;  // one for all scenes
+  const bool is_shared = !options.three_file.empty();
+  player.three_file = is_shared ? options.three_file : fs::path(kThree);
   player.most_poses = kMostPoses;
   player.most_contacts = kMostContacts;
   std::vector<report::PlayedRun> played;
@@ -117,7 +119,7 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
     player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
   // also where an earlier program wrote one: it holds the scripts of these pages
-  report::write_three(folder / kThree, player);
+  if (!is_shared) report::write_three(folder / kThree, player);
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);
 }
@@ -144,17 +146,20 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
     media.attempted = theirs.attempted;
     media.functions.assign(theirs.functions.begin(), theirs.functions.end());
     if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
-    const Run ours =
-        reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};
+    const bool is_stub = !theirs.attempted && theirs.trajectory.frames.size() <= 1;
+    const Run ours = reference && !is_stub
+                         ? run(scene, laws_around(course, kind, reference, "reference", scene))
+                         : Run{};
     std::vector<render::LabelledRun> runs;
-    if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
+    if (!theirs.trajectory.frames.empty() && !is_stub)
+      runs.push_back({theirs.trajectory, "submission"});
     if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
     MediaOptions own = options;
     // without an implementation nothing moves: a picture is enough
     own.video = options.video && theirs.attempted;
     if (!runs.empty()) draw(scene, runs, folder, own, course, media);
     if (!runs.empty() && options.page && theirs.attempted)
-      write_page(scene, runs, folder, course, media);
+      write_page(scene, runs, folder, options, course, media);
     all.push_back(std::move(media));
   }
   return all;
