@@ -266,11 +266,41 @@ const baumgarte = {
 
 // ---- a4: the walk ----
 
-// Of `tumble run late_hit --html`: local virtual times of A, B and C [s], what is certain, cuts, and the impacts
-// that the bodies hold. Places follow from them: the balls are equal, and their impacts elastic.
-const kWalk = [
-  { times: [0, 0, 0], certain: 0, held: [], says: 'All three start at 0.' },
+// The moves of `tumble run late_hit --html`: [ball or null for all three, its new local virtual time, global virtual
+// time after it, what happens]. Places follow from them: the balls are equal, and their impacts elastic.
+const kHitAB = 0.8 / 1.05, kHitBC = 0.622071825, kHitAC = 1.079844674;
+const kMoves = [
+  [null, 0.2, 0.2, 'Each ball advances by its own step. No impact is known.'],
+  [null, 0.4, 0.4, 'Each advances as if nothing would hit it.'],
+  [null, 0.6, 0.6, 'Up to 0.6 s every pair has been searched: this is certain.'],
+  [null, 0.8, 0.6, 'All three are at 0.8 s. The checks of the pairs are due, and are safe up to 0.6 s only.'],
+  [0, kHitAB, 0.6, 'The check of A and B finds their impact at 0.762 s, in the past of both. A rolls back to it.'],
+  [1, kHitAB, 0.6, 'B rolls back, too, and the impulse is applied. C is not affected.'],
+  [1, kHitAB + 0.2, 0.6, 'B advances with its new velocity.'],
+  [0, kHitAB, 0.6, 'The check of B and C finds that C hit B at 0.622 s, before A did. The impact of A and B has never happened: an anti-message cancels it, and A discards it.'],
+  [1, kHitBC, 0.6, 'B rolls back to 0.622 s.'],
+  [2, kHitBC, kHitBC, 'C rolls back, too, and the impulse is applied. The check of A and B was safe up to 0.762 s on a motion that is undone: it moves to 0.622 s.'],
+  [0, kHitAB + 0.2, kHitBC, 'A goes on: B is no longer where A would have hit it.'],
+  [1, kHitBC + 0.2, kHitBC, 'B advances, downwards now.'],
+  [2, kHitBC + 0.2, kHitBC, 'C advances with what is left to it.'],
+  [1, kHitBC + 0.4, kHitBC, 'B is searched against both others and found free.'],
+  [2, kHitBC + 0.4, kHitBC + 0.2, 'The impact of B and C is earlier than global virtual time: it is committed.'],
+  [0, kHitAB + 0.4, kHitAB + 0.2, 'A advances.'],
+  [1, kHitBC + 0.6, kHitAB + 0.2, 'B advances.'],
+  [2, kHitBC + 0.6, kHitAB + 0.2, 'C advances.'],
+  [0, kHitAC, kHitAB + 0.2, 'The check of A and C finds their impact at 1.08 s. A rolls back to it.'],
+  [2, kHitAC, kHitBC + 0.4, 'C rolls back, too. B, which is ahead of both, is not affected.'],
+  [0, kHitAC + 0.2, kHitBC + 0.4, 'A advances, slower now.'],
+  [2, kHitAC + 0.2, kHitBC + 0.4, 'C advances.'],
+  [1, kHitBC + 0.8, kHitBC + 0.4, 'B advances.'],
+  [0, kHitAC + 0.4, kHitBC + 0.4, 'A is searched against both others.'],
+  [2, kHitAC + 0.4, 1.274828133, 'Global virtual time passes the second impact: it is committed, too, in the order of time. The impact at 0.762 s was executed, and never committed.'],
 ];
+const kWalk = [{ times: [0, 0, 0], from: [0, 0, 0], certain: 0, held: [], says: 'All three start at 0.' }];
+kMoves.forEach(([ball, to, certain, says], i) => {
+  const from = kWalk.at(-1).times, times = from.map((t, k) => ball === null || k === ball ? to : t);
+  kWalk.push({ times, from, certain, says, held: i < 4 ? [] : i < 8 ? [[kHitAB, 0, 1]] : [[kHitBC, 1, 2], [kHitAC, 0, 2]] });
+});
 
 const radius = 0.1;
 const kStart = [{ x: [-1, 0], v: [1.05, 0] }, { x: [0, 0], v: [0, 0] }, { x: [0.05, 1.5], v: [0, -2.1] }];
@@ -293,14 +323,14 @@ const walk = {
   title: 'Try it: the walk, move by move',
   about: 'Left the three balls, each at its own local virtual time. Right their times: dark is certain, light is ahead of that, a cut is a rollback.',
   label: 'Three balls and bars of their local virtual times',
-  controls: [{ id: 'move', label: 'move', min: 0, max: kWalk.length - 1, step: 1, value: 0, shown: i => `${i} of ${kWalk.length - 1}` }],
+  controls: [{ id: 'move', label: 'move', min: 0, max: kWalk.length - 1, step: 1, value: 5, shown: i => `${i} of ${kWalk.length - 1}` }],
   draw({ g, width, height, colour, values: { move } }) {
     const now = kWalk[move], names = ['A', 'B', 'C'], half = Math.min(width * 0.42, 300), scale = Math.min(half / 2.4, height / 2.3), centre = [half * 0.5, height * 0.62];
     const inks = [colour('bad'), colour('soft'), colour('warn')];
     names.forEach((name, i) => {
       const [x, y] = placed(i, now.times[i], now.held), p = [centre[0] + scale * x, centre[1] - scale * y];
       disc(g, p, scale * radius, inks[i], colour('ink'));
-      words(g, name, p[0] + scale * radius + 5, p[1], colour('ink'));
+      if (scale * radius > 8) words(g, name, p[0], p[1] + 1, colour('page'), 'center');
     });
     const left = half + 34, most = 1.6, wide = width - left - 58, at = t => left + wide * Math.min(t, most) / most, bar = Math.min(30, height / 7), gap = height / 4.6;
     names.forEach((name, i) => {
@@ -311,15 +341,15 @@ const walk = {
       g.fillRect(left, top, at(now.times[i]) - left, bar);
       g.globalAlpha = 1;
       g.fillRect(left, top, at(Math.min(now.certain, now.times[i])) - left, bar);
-      const cut = now.cuts?.[i];
-      if (cut !== undefined) {
+      if (now.from[i] > now.times[i]) {
         g.strokeStyle = colour('ink');
+        g.lineWidth = 1;
         g.setLineDash([3, 3]);
-        g.strokeRect(at(now.times[i]), top, at(cut) - at(now.times[i]), bar);
+        g.strokeRect(at(now.times[i]), top, at(now.from[i]) - at(now.times[i]), bar);
         g.setLineDash([]);
         line(g, [[at(now.times[i]), top - 5], [at(now.times[i]), top + bar + 5]], colour('ink'), 2.5);
       }
-      words(g, `${digits(now.times[i])} s`, at(Math.max(now.times[i], cut ?? 0)) + 6, top + bar / 2, colour('ink'));
+      words(g, `${digits(now.times[i])} s`, at(Math.max(now.times[i], now.from[i])) + 6, top + bar / 2, colour('ink'));
     });
     const bottom = 24 + 2 * gap + bar + 12;
     line(g, [[at(now.certain), 12], [at(now.certain), bottom]], colour('link'), 1.5, [5, 3]);
