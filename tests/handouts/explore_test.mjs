@@ -51,7 +51,6 @@ test('the numbers are those of the equations', async () => {
   // e = 1, m = 0.5 kg, r = 0.3 m: K = 2 + 1 + 12 * 0.09 = 4.08; j = 2 / 4.08; nothing is lost
   let words = await told(await open('a1_impulse'), 'impulse', 1, 0.5, 0.3, 0);
   expect(words.includes('= 4.08 per kg, so j = 0.49 N s') && words.includes('Lost: (1 - e) j |u| / 2 = 0 J'), words);
-  // ten steps of Euler grow by sqrt(1 + (2 pi / 10)^2) each: 5.26 m out, turned by 10 atan(0.628): 36.4 degrees short of the turn
   words = await told(await open('a2_integration'), 'order', 100);
   const [, euler, rk4] = /Half the step makes Euler's error ([\d.]+) times smaller, Runge-Kutta's ([\d.]+) times/.exec(words);
   expect(Math.abs(euler - 2) < 0.2 && Math.abs(rk4 - 16) < 0.1, words);   // orders 1 and 4
