@@ -2,20 +2,12 @@
 /// far, the run before it, verdicts. Everything happens in one thread, the one that calls serve().
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "framework/live/sitting.h"
 
 namespace tumble::live {
-
-/// What is left of a sitting.
-struct Left {
-  std::vector<std::filesystem::path> scenes;  // saved in the page, in their order
-  bool has_unsaved = false;                   // something was done by hand that is in none of them
-};
 
 /// Serves until Ctrl-C, SIGTERM or the end of the terminal.
 /// @param ready  called with the address of the page

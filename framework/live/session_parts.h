@@ -19,7 +19,6 @@
 #include "framework/live/mailbox.h"
 #include "framework/live/records.h"
 #include "framework/live/server.h"
-#include "framework/live/session.h"
 #include "framework/live/sitting.h"
 
 namespace tumble::live {

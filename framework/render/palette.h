@@ -15,8 +15,8 @@ struct IndexedImage {
 };
 
 /// The picture in its 256 best colours; a picture that has no more keeps them. Equal pixels get
-/// equal colours: nothing is dithered, so that two views that were equal stay equal. The same pixels
-/// give the same bytes, whatever the number of processors.
+/// equal colours: nothing is dithered, so that two views that were equal stay equal. The same
+/// pixels give the same bytes, whatever the number of processors.
 /// @return nothing where 256 colours show it badly
 /// Source: libimagequant (median cut after Heckbert, refined by k-means).
 std::optional<IndexedImage> indexed(const Image& image);

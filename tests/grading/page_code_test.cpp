@@ -66,7 +66,7 @@ TEST_F(RightLaw, ThatAStudentWasToHaveIsSaidToBeMissingWithoutItsLines) {
   EXPECT_TRUE(holds(ta, "a line of the solution"));
   EXPECT_TRUE(holds(student, "The right law is not beside it"));
   EXPECT_FALSE(holds(student, "a line of the solution"));
-  EXPECT_FALSE(holds(student, "bench-right"));
+  EXPECT_FALSE(holds(student, "id=\"bench-right\""));
 }
 
 TEST_F(RightLaw, ThatTheTreeDoesNotHaveIsSaidWhereStudentsWereToHaveIt) {

@@ -28,22 +28,26 @@ struct Run {
   Trajectory trajectory;
   std::string story;
   bool attempted = true;
+  bool is_answered = false;  // some function of the submission gave an answer
   std::set<std::string> functions;
 };
 
-// Notes the names of functions that are called.
+// Notes the names of functions that are called, and whether any gave an answer.
 class CalledFunctions : public modules::CallWatcher {
  public:
   const char* begin(const char* function) override {
+    ++calls_;
     if (function != last_) names.insert(last_ = function);
     return nullptr;
   }
   void end(const char*) override {}
-  void threw(const char*, const std::exception&) override {}
+  void threw(const char*, const std::exception&) override { ++throws_; }
+  bool is_answered() const { return calls_ > throws_; }
 
   std::set<std::string> names;
 
  private:
+  std::size_t calls_ = 0, throws_ = 0;
   const char* last_ = nullptr;
 };
 
@@ -83,6 +87,7 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
                                 "submission", scene);
   Run result = run(scene, laws);
   result.functions = called.names;
+  result.is_answered = called.is_answered();
   return result;
 }
 
@@ -146,7 +151,7 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
     media.attempted = theirs.attempted;
     media.functions.assign(theirs.functions.begin(), theirs.functions.end());
     if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
-    const bool is_stub = !theirs.attempted && theirs.trajectory.frames.size() <= 1;
+    const bool is_stub = !theirs.attempted && !theirs.is_answered;
     const Run ours = reference && !is_stub
                          ? run(scene, laws_around(course, kind, reference, "reference", scene))
                          : Run{};

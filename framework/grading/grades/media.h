@@ -41,9 +41,9 @@ struct SceneMedia {
 
 /// Runs each scene on the submission (in its sandbox) and on the reference (in this process;
 /// skipped if the tree has none) and writes SCENE.png, SCENE.mp4 and SCENE.html into `folder`. Of a
-/// scene that needs a stub from its beginning there is no picture: it would show the reference. A
-/// submission that fails in a scene loses only its half of that scene's picture. Laws that the
-/// submission's module does not implement come from the reference if the scene needs them, else
+/// scene in which only stubs were called there is no picture: nothing of the submission would be
+/// in it. A submission that fails in a scene loses only its half of that scene's picture. Laws that
+/// the submission's module does not implement come from the reference if the scene needs them, else
 /// from the library.
 /// @param submission  a shared object; never loaded into this process
 /// @param on_scene        called with each scene's title before it runs; may be empty
