@@ -23,6 +23,22 @@ local function link(element)
   return element
 end
 
+-- <!-- explore: NAME --> is where a page has the panel NAME of explore.js; paper has nothing there.
+local explores = false
+local function panel(element)
+  local name = element.format == 'html' and not latex and element.text:match '^<!%-%- explore: (%w+) %-%->'
+  if not name then return nil end
+  explores = true
+  return pandoc.RawBlock('html', '<div class="explore" data-panel="' .. name .. '"></div>')
+end
+local function scripts(document)
+  if not explores then return nil end
+  local file = assert(io.open(PANDOC_SCRIPT_FILE:match '^(.*/)' .. 'explore.js'))
+  table.insert(document.blocks, pandoc.RawBlock('html', '<script>\n' .. file:read 'a' .. '</script>'))
+  file:close()
+  return document
+end
+
 -- The first heading is the title; on paper it stays where it is, without a page's worth of white around it.
 local function title(document)
   for i, block in ipairs(document.blocks) do
@@ -70,7 +86,8 @@ return {
       root = meta.root and pandoc.utils.stringify(meta.root) or ''
       alone = meta.alone ~= nil
     end },
-  { RawInline = anchor, RawBlock = anchor, Link = link, Table = columns },
+  { RawInline = anchor, RawBlock = function(element) return panel(element) or anchor(element) end, Link = link, Table = columns },
   { Code = code },   -- after the columns, which count its letters
   { Pandoc = title },
+  { Pandoc = scripts },
 }

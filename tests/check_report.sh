@@ -29,7 +29,7 @@ for folder in "$root"/assignments/a[0-9]*_*/; do
   grep -q '<a ' "$demo/$assignment/index.html" || fault "$demo/$assignment/index.html lists no submission"
 done
 
-# Pictures and videos. A picture of one colour deflates to almost nothing.
+# Pictures and videos. A picture of one colour deflates to less than 1 kB, the barest scene to 20.
 scenes=0
 for scene in "$root"/assignments/*/scenes/*.json; do
   name=$(basename "$scene" .json)
@@ -38,7 +38,7 @@ for scene in "$root"/assignments/*/scenes/*.json; do
   assignment=${folder%%_*}
   media=$demo/$assignment/flawed/media
   picture=$media/$name.png video=$media/$name.mp4
-  [ "$(stat -c %s "$picture" 2>/dev/null || echo 0)" -gt 20000 ] || fault "$picture is missing or empty"
+  [ "$(stat -c %s "$picture" 2>/dev/null || echo 0)" -gt 8000 ] || fault "$picture is missing or empty"
   seconds=$(ffprobe -v error -show_entries format=duration -of csv=p=0 "$video" 2>/dev/null || echo 0)
   awk -v s="${seconds:-0}" 'BEGIN { exit !(s >= 1) }' || fault "$video is missing or shorter than a second"
   grep -q "/$name.png" "$demo/index.html" || fault "$demo/index.html does not show $name"

@@ -14,6 +14,7 @@
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/report/html.h"
+#include "framework/report/player.h"
 
 namespace tumble::cli {
 namespace {
@@ -23,6 +24,8 @@ using grading::Grade;
 
 constexpr const char* kPrivateFolder = "solutions_private";
 constexpr const char* kEngines = "engines";  // folder of the comparison
+// three.js once for all pages that play a run: the report is read as a whole
+constexpr const char* kThree = "three.js";
 
 struct DemoOptions {
   std::string out = "out/demo";
@@ -167,10 +170,12 @@ void demo(Context& context, const DemoOptions& options) {
                     "It is the instructor's command; a student starts with: ./tumble check a1");
   const fs::path out = fs::absolute(options.out);
   grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  report::write_three(out / kThree);
   std::vector<Graded> all;
   for (const modules::ModuleKind* kind : context.registry.all()) {
     grading::GradeOptions grade;
     grade.jobs = options.jobs;
+    grade.media_options.three_file = fs::path("../../..") / kThree;  // from aN/NAME/media
     // it shows the grader, and gives nobody a grade
     grade.accepted_sandbox = grading::traits_of(grading::chosen_sandbox()).name;
     grade.progress = [kind](const grading::GradeProgress& progress) {
@@ -182,6 +187,7 @@ void demo(Context& context, const DemoOptions& options) {
   }
   EnginesWords engines;
   engines.out = (out / kEngines).string();
+  engines.three_file = fs::path("../..") / kThree;           // from engines/SCENE
   engines.small = engines.no_videos = engines.quiet = true;  // tumble engines makes the whole page
   engines_of_all(context, engines);
   write_index(context, all, out);

@@ -119,7 +119,8 @@ std::vector<EngineChoice> choices_of_refinement(const EnginesWords& words) {
 /// The page that plays timewarp's run beside that of retroactive detection, with every change of
 /// the local virtual times.
 void write_players(const Context& context, const scene::Scene& scene,
-                   const std::vector<EngineRun>& runs, const fs::path& file) {
+                   const std::vector<EngineRun>& runs, const fs::path& three_file,
+                   const fs::path& file) {
   report::PlayerOptions options;
   options.root = context.root;
   std::vector<report::PlayedRun> played;
@@ -132,9 +133,8 @@ void write_players(const Context& context, const scene::Scene& scene,
     }
   if (played.empty()) return;
   // one for all scenes, in the report's folder
-  options.three_file = "../three.js";
-  const fs::path three = file.parent_path() / options.three_file;
-  report::write_three(three, options);
+  options.three_file = three_file.empty() ? fs::path("../three.js") : three_file;
+  if (three_file.empty()) report::write_three(file.parent_path() / options.three_file, options);
   report::write_player(file, scene, played, options);
 }
 
@@ -207,7 +207,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     const auto whole = in_part ? whole_run(context, scene, chosen, words) : std::nullopt;
     const EngineRun* best = whole && whole->run.frames.size() > 1 ? &*whole : run_to_show(runs);
     if (best == nullptr) return shown;
-    write_players(context, scene, runs, folder / "player.html");
+    write_players(context, scene, runs, words.three_file, folder / "player.html");
     shown.player = fs::path(which.name) / "player.html";
     render::PictureOptions picture;
     picture.width = kWidth;

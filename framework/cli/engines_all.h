@@ -2,6 +2,7 @@
 /// page.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct EnginesWords {
   bool small = false;  // a few scenes, smaller still
   bool json = false;   // on stdout, for machines
   bool quiet = false;  // nothing on stdout: used within a larger report
+  // of that report: its three.js, seen from a scene's folder; empty: the page has its own
+  std::filesystem::path three_file = {};
 };
 
 /// Runs them and writes words.out/index.html, with a folder beside it for each scene.

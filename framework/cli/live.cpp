@@ -140,7 +140,7 @@ void live_verb(Context& context, LiveWords& words) {
   sitting.saves = words.saves;
   sitting.again = again;
   sitting.handout = [&context](const std::string& name) { return handout_page(context, name); };
-  live::serve(sitting, [&](const std::string& address) {
+  const live::Left left = live::serve(sitting, [&](const std::string& address) {
     fmt::print("{}\n", address);
     std::fflush(stdout);
     fmt::print(stderr,
@@ -148,6 +148,10 @@ void live_verb(Context& context, LiveWords& words) {
                "scene anew.\n");
   });
   fmt::print(stderr, "\nended; nothing is left running\n");
+  for (const fs::path& kept : left.scenes) fmt::print(stderr, "kept: {}\n", kept.string());
+  if (left.has_unsaved)
+    fmt::print(stderr, "not kept: what was done by hand since {}; Save in the page keeps it\n",
+               left.scenes.empty() ? "the start" : "the last scene was saved");
 }
 
 }  // namespace

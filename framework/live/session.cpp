@@ -80,7 +80,7 @@ class StopSignals {
 
 }  // namespace
 
-void serve(const Sitting& sitting, const std::function<void(const std::string& address)>& ready) {
+Left serve(const Sitting& sitting, const std::function<void(const std::string& address)>& ready) {
   report::three_js();  // missing: said before anything is started
   const StopSignals stop;
   std::vector<std::filesystem::path> files;
@@ -91,6 +91,7 @@ void serve(const Sitting& sitting, const std::function<void(const std::string& a
   ready(server.address());
   session.run(stop.descriptor());
   session.close_pages();
+  return session.left();
 }
 
 }  // namespace tumble::live

@@ -12,6 +12,6 @@ namespace tumble::live {
 /// Serves until Ctrl-C, SIGTERM or the end of the terminal.
 /// @param ready  called with the address of the page
 /// @throws UserError where the port is taken, or a folder cannot be watched
-void serve(const Sitting& sitting, const std::function<void(const std::string& address)>& ready);
+Left serve(const Sitting& sitting, const std::function<void(const std::string& address)>& ready);
 
 }  // namespace tumble::live

@@ -44,7 +44,7 @@ struct Simulator {
 class Session {
  public:
   Session(const Sitting& sitting, SaveWatch& saves)
-      : sitting_(sitting), saves_(saves), recipe_(sitting.recipe) {
+      : sitting_(sitting), saves_(saves), recipe_(sitting.recipe), saved_recipe_(as_text(recipe_)) {
     wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   }
   ~Session() { ::close(wake_); }
@@ -55,6 +55,10 @@ class Session {
   /// @param stop  a descriptor that becomes readable when all is to end
   void run(int stop);
   void close_pages();
+  /// A scene that is made by code cannot be saved: what is done to it is never kept.
+  Left left() const {
+    return {scenes_, !recipe_.document.empty() && as_text(recipe_) != saved_recipe_};
+  }
 
  private:
   // From threads of the server.
@@ -97,6 +101,8 @@ class Session {
 
   std::vector<std::shared_ptr<Mailbox>> pages_;
   Recipe recipe_;
+  std::string saved_recipe_;                   // as it was when it was last saved, or at the start
+  std::vector<std::filesystem::path> scenes_;  // saved
   std::vector<std::string> pushes_of_former_;
   double speed_ = 1.0;
   bool is_paused_ = false;

@@ -82,6 +82,8 @@ void Session::save() {
   const std::string again =
       sitting_.again ? sitting_.again(file, recipe_.changes, head.value("modules", "")) : "";
   write_whole(file, saved_document(recipe_, current_.end_s(), again));
+  scenes_.push_back(file);
+  saved_recipe_ = as_text(recipe_);
   // The same code runs what stands in the file.
   Recipe written;
   written.document = tumble::text_of(file);

@@ -40,4 +40,10 @@ struct Sitting {
   std::function<std::string(const std::string& path)> handout;  // a page by its name; empty: none
 };
 
+/// What is left of a sitting.
+struct Left {
+  std::vector<std::filesystem::path> scenes;  // saved in the page, in their order
+  bool has_unsaved = false;                   // something was done by hand that is in none of them
+};
+
 }  // namespace tumble::live

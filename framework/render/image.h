@@ -29,8 +29,8 @@ void paste(const Image& part, int x, int y, Image& whole);
 /// Text chunks of the file: (keyword, text), e.g. {"Scene digest", "..."}.
 using ImageNotes = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes the file whole or not at all; the same pixels and notes give the same bytes (no date is
-/// written).
+/// Writes the file whole or not at all, in its 256 best colours where these show it (`palette.h`):
+/// less than half of the size. The same pixels and notes give the same bytes (no date is written).
 /// @throws UserError when the file cannot be written
 void write_png(const std::filesystem::path& file, const Image& image, const ImageNotes& notes = {});
 

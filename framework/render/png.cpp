@@ -9,6 +9,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/render/image.h"
+#include "framework/render/palette.h"
 
 namespace tumble::render {
 namespace {
@@ -21,9 +22,15 @@ void append(png_structp png, png_bytep data, png_size_t size) {
   static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
 }
 
+// What libpng is given: rows of pixels of three bytes, or of one where there are colours.
+struct Encoded {
+  int width, height;
+  std::vector<png_bytep> rows;
+  std::vector<png_color> colours;
+};
+
 // libpng reports errors by longjmp, so no object with a destructor is created after setjmp.
-bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_bytep>& rows,
-            std::string& bytes) {
+bool encode(Encoded& image, std::vector<png_text>& notes, std::string& bytes) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -34,11 +41,14 @@ bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_by
   png_set_compression_level(png, kCompressionLevel);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
   png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
-               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+               static_cast<png_uint_32>(image.height), 8,
+               image.colours.empty() ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_PALETTE,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (!image.colours.empty())
+    png_set_PLTE(png, info, image.colours.data(), static_cast<int>(image.colours.size()));
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_text(png, info, notes.data(), static_cast<int>(notes.size()));
-  png_set_rows(png, info, rows.data());
+  png_set_rows(png, info, image.rows.data());
   png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
   png_destroy_write_struct(&png, &info);
   return true;
@@ -67,11 +77,15 @@ void write_png(const std::filesystem::path& file, const Image& image, const Imag
     note.text = text.data();
     texts.push_back(note);
   }
-  std::vector<png_bytep> rows;
-  for (int y = 0; y < image.height; ++y) rows.push_back(const_cast<png_bytep>(image.pixel(0, y)));
+  Encoded encoded{image.width, image.height, {}, {}};
+  const auto few = indexed(image);
+  for (int y = 0; y < image.height; ++y)
+    encoded.rows.push_back(const_cast<png_bytep>(
+        few ? &few->pixels[static_cast<std::size_t>(y) * image.width] : image.pixel(0, y)));
+  for (std::size_t i = 0; few && i < few->colours.size(); i += 3)
+    encoded.colours.push_back({few->colours[i], few->colours[i + 1], few->colours[i + 2]});
   std::string bytes;
-  if (!encode(image, texts, rows, bytes))
-    throw UserError(file.string(), "cannot be encoded as PNG");
+  if (!encode(encoded, texts, bytes)) throw UserError(file.string(), "cannot be encoded as PNG");
   write_whole(file, bytes);
 }
 

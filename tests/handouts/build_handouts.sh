@@ -21,6 +21,11 @@ for handout in "$root"/handouts/*.md; do
   [ "$formulas" -ge 20 ] || fail "$page has $formulas formulas, expected 20 or more"
   figures=$(grep -c '^!\[' "$handout" || true) inlined=$({ grep -o 'src="data:image/png' "$page" || true; } | wc -l)
   [ "$figures" = "$inlined" ] || fail "$page holds $inlined of $figures figures"
+  for panel in $(sed -n 's/^<!-- explore: \([a-z]*\) -->$/\1/p' "$handout"); do
+    grep -q "<div class=\"explore\" data-panel=\"$panel\"></div>" "$page" || fail "$page has no place for the panel $panel"
+    grep -q "^const $panel = {" "$root/handouts/explore.js" || fail "$handout: explore.js has no panel $panel"
+  done
+  [ "$(grep -c '<div class="explore"' "$page")" = "$(grep -c '^<!-- explore: ' "$handout")" ] || fail "$page has other panels than $handout"
   grep -Eq '(^|> ?)##+ ' "$page" && fail "$page shows a heading as text: it wants an empty line before it"
   wide=$(awk '/^```/ { in_code = !in_code; next } in_code && length($0) > 122 { print FILENAME ":" NR }' "$handout")   # what a line of the PDF holds
   [ -z "$wide" ] || fail "code runs over the margin of the page: $wide"

@@ -47,7 +47,7 @@ class LiveSession : public ::testing::Test {
     sitting_.saves = folder_.path() / "saves";
     std::promise<std::string> address;
     thread_ = std::thread([this, &address] {
-      live::serve(sitting_, [&](const std::string& at) { address.set_value(at); });
+      left_ = live::serve(sitting_, [&](const std::string& at) { address.set_value(at); });
     });
     const std::string at = address.get_future().get();
     const std::size_t colon = at.rfind(':'), slash = at.find('/', colon);
@@ -113,6 +113,7 @@ class LiveSession : public ::testing::Test {
 
   PrivateFolder folder_;
   live::Sitting sitting_;
+  live::Left left_;
   std::thread thread_;
   std::string host_, path_, heard_;
   int stream_ = -1;
@@ -172,6 +173,28 @@ TEST_F(LiveSession, NonsenseFromThePageIsToldAndEndsNothing) {
     EXPECT_TRUE(hears("\"kind\":\"notice\"")) << text;
   }
   EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, SaysAtItsEndWhatIsKeptAndWhatIsNot) {
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "change", "changes": {"gravity_m_s2": [0, 0, -1]}})");
+  ASSERT_TRUE(hears("\"reason\":\"change\""));
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "save"})");
+  ASSERT_TRUE(hears("\"kind\":\"saved\""));
+  stop();
+  ASSERT_EQ(left_.scenes.size(), 1u);
+  EXPECT_TRUE(fs::exists(left_.scenes.front()));
+  EXPECT_FALSE(left_.has_unsaved);
+}
+
+TEST_F(LiveSession, WhatIsDoneAfterTheLastSaveIsNotKept) {
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "change", "changes": {"gravity_m_s2": [0, 0, -1]}})");
+  ASSERT_TRUE(hears("\"reason\":\"change\""));
+  stop();
+  EXPECT_TRUE(left_.scenes.empty());
+  EXPECT_TRUE(left_.has_unsaved);
 }
 
 TEST_F(LiveSession, EndsBySignalAndLeavesNoProcess) {

@@ -146,7 +146,7 @@ TEST_F(Pictures, EglAndOsmesaDrawTheSamePicture) {
 
 // The rasteriser reads its number of threads once per process: the test starts a process for each
 // number.
-TEST_F(Pictures, ThreadsOfTheRasteriserChangeNoByte) {
+TEST_F(Pictures, ThreadsChangeNoByte) {
   if (const char* file = std::getenv("TUMBLE_TEST_PICTURE")) {
     write_picture(file, falling_ball(), ball_at(2.0), 0.5, small());
     return;
@@ -155,9 +155,9 @@ TEST_F(Pictures, ThreadsOfTheRasteriserChangeNoByte) {
   std::set<std::string> pictures;
   for (const std::string threads : {"0", "1", "2"}) {
     const fs::path file = folder_ / (threads + ".png");
-    const std::string command =
-        "LP_NUM_THREADS=" + threads + " TUMBLE_TEST_PICTURE='" + file.string() + "' '" + self +
-        "' --gtest_filter=Pictures.ThreadsOfTheRasteriserChangeNoByte > /dev/null";
+    const std::string command = "LP_NUM_THREADS=" + threads + " OMP_NUM_THREADS=1" + threads +
+                                " TUMBLE_TEST_PICTURE='" + file.string() + "' '" + self +
+                                "' --gtest_filter=Pictures.ThreadsChangeNoByte > /dev/null";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
     pictures.insert(bytes_of(file));
   }

@@ -1,6 +1,6 @@
 // Graded pages in which code runs, in a browser. Usage: node bench_page_test.mjs ROOT BUILD
 // Exit 0: right; 1: wrong; 77: skipped, with the reason. Needs chromium, clang 14 for WebAssembly
-// and the reference of a1.
+// and the references of a1, a2 and a3.
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -36,19 +36,24 @@ const submissions = {
   crashes: changed('apply_impulse', 'return *static_cast<Velocity*>(nullptr == &body ? nullptr : reinterpret_cast<Velocity*>(0xfffffff0u));'),
   stub: readFileSync(join(root, 'assignments/a1_impulse/a1_impulse.cpp'), 'utf8'),
 };
-for (const [name, text] of Object.entries(submissions)) {
-  mkdirSync(join(folder, 'class', name), { recursive: true });
-  writeFileSync(join(folder, 'class', name, 'a1_impulse.cpp'), text);
+// Grades submissions, by name, of an assignment. @return the folder of their pages
+function graded(id, file, submissions) {
+  for (const [name, text] of Object.entries(submissions)) {
+    mkdirSync(join(folder, id, name), { recursive: true });
+    writeFileSync(join(folder, id, name, file), text);
+  }
+  const pages = join(folder, `out_${id}`);
+  try {
+    execFileSync(tumble, ['grade', id, join(folder, id), '--out', pages, '--no-media', '--code-in-pages', 'own'], { cwd: root, env: { ...process.env, TUMBLE_ROOT: root, TUMBLE_GRADER_KEY: join(folder, 'key') }, stdio: ['ignore', 'pipe', 'pipe'] });
+  } catch (error) { console.log(`WRONG: grade ${id} ended with ${error.status}: ${error.stderr}`); process.exit(1); }
+  return pages;
 }
-const out = join(folder, 'out');
-try {
-  execFileSync(tumble, ['grade', 'a1', join(folder, 'class'), '--out', out, '--no-media', '--code-in-pages', 'own'], { cwd: root, env: { ...process.env, TUMBLE_ROOT: root, TUMBLE_GRADER_KEY: join(folder, 'key') }, stdio: ['ignore', 'pipe', 'pipe'] });
-} catch (error) { console.log(`WRONG: grade ended with ${error.status}: ${error.stderr}`); process.exit(1); }
+const out = graded('a1', 'a1_impulse.cpp', submissions);
 
 const browser = new Browser();
 const text = id => `document.querySelector('${id}').textContent`;
-async function opened(name, page = 'index.html', size = {}) {
-  const tab = await browser.open(`file://${join(out, name, page)}#try`, size);
+async function opened(name, page = 'index.html', size = {}, pages = out) {
+  const tab = await browser.open(`file://${join(pages, name, page)}#try`, size);
   await tab.until('document.getElementById("bench").dataset.shown', `${name}/${page}: the first run`, 30);
   return tab;
 }
@@ -65,9 +70,10 @@ const said = tab => tab.value("[...document.querySelectorAll('#bench p, #bench t
 const tests = [];
 const test = (name, run) => tests.push({ name, run });
 
-test('the right law agrees with itself to 1e-12, in every experiment and for every end of a control', async () => {
-  const tab = await opened('right');
-  for (const i of [0, 1, 2]) {
+// @return how many experiments there were
+async function agreesWithItself(tab) {
+  const experiments = await tab.value("document.querySelectorAll('#bench-choose option').length");
+  for (let i = 0; i < experiments; ++i) {
     await after(tab, choose(i));
     for (const end of ['min', 'max']) {
       for (const id of await tab.value("[...document.querySelectorAll('.bench-controls input')].map(i => i.id)"))
@@ -78,6 +84,10 @@ test('the right law agrees with itself to 1e-12, in every experiment and for eve
     }
   }
   expect(tab.errors.length === 0, `errors of the page: ${tab.errors}`);
+  return experiments;
+}
+test('the right law agrees with itself to 1e-12, in every experiment and for every end of a control', async () => {
+  expect(await agreesWithItself(await opened('right')) === 3, 'a1 has three experiments');
 });
 
 test('a flawed law is named with both answers, and its motion is another', async () => {
@@ -141,6 +151,44 @@ test('at 400 pixels nothing scrolls sideways, light and dark', async () => {
 test('what the code adds to a page', async () => {
   const cost = (name, page) => { const html = readFileSync(join(out, name, page), 'utf8'), at = html.indexOf('<div id="bench">'); return { whole: html.length, code: html.slice(at).match(/<script[\s\S]*?<\/script>/g).join('').length }; };
   for (const page of ['index.html', 'student.html']) { const { whole, code } = cost('flawed', page); console.log(`  flawed/${page}: ${Math.round(whole / 1000)} kB, of these ${Math.round(code / 1000)} kB code and its data; own.wasm ${Math.round(statSync(join(out, 'flawed/media/own.wasm')).size / 1000)} kB`); expect(code < 150e3, `${code} bytes`); }
+});
+
+// ---- The other assignments that have experiments ----
+
+const source = (assignment, flawed) => readFileSync(join(root, 'solutions_private', assignment, flawed ? 'flawed_submission' : '', `${assignment}.cpp`), 'utf8');
+const both = assignment => ({ right: source(assignment, false), flawed: source(assignment, true) });
+
+test("a2: the right law agrees with itself, and the flawed one's order is not 4", async () => {
+  const pages = graded('a2', 'a2_integration.cpp', both('a2_integration'));
+  expect(await agreesWithItself(await opened('right', 'index.html', {}, pages)) === 2, 'a2 has two experiments');
+  const tab = await opened('flawed', 'student.html', {}, pages), words = await said(tab);
+  expect(/wrong \| order: log2 of the errors/.test(words), words);
+  if (pictures) await tab.picture(join(pictures, 'bench_a2.png'));
+});
+
+test('a3: the right law agrees with itself, and what is wrong with the flawed one is said by what must hold', async () => {
+  const pages = graded('a3', 'a3_constraints.cpp', both('a3_constraints'));
+  expect(await agreesWithItself(await opened('right', 'index.html', {}, pages)) === 5, 'a3 has five experiments');
+  const ta = await opened('flawed', 'index.html', {}, pages);
+  expect((await said(ta)).includes('The first call that differs is number 1: spring_force'), await said(ta));
+  if (pictures) await ta.picture(join(pictures, 'bench_a3_spring.png'));
+  await after(ta, choose(2));
+  if (pictures) await ta.picture(join(pictures, 'bench_a3_rods.png'));
+  const tab = await opened('flawed', 'student.html', {}, pages), wrong = [];
+  for (const i of [0, 1, 2, 3, 4]) {
+    await after(tab, choose(i));
+    wrong.push(...(await tab.value("[...document.querySelectorAll('#bench tbody tr')].filter(r => r.cells[0].textContent === 'wrong').map(r => r.cells[1].textContent)")));
+  }
+  // it forgets the length at rest, brakes in every direction, corrects without masses, and lets a rod grow
+  for (const part of ['0.1 m longer than at rest', 'where the ends move round each other', 'constraint_correction took away', 'length of a rod'])
+    expect(wrong.some(name => name.includes(part)), `"${part}" is not wrong; these are: ${wrong.join(' | ')}`);
+  const cost = readFileSync(join(pages, 'flawed/index.html'), 'utf8').match(/<script[\s\S]*?<\/script>/g).join('').length;
+  console.log(`  flawed/index.html of a3: ${Math.round(cost / 1000)} kB code and its data`);
+  for (const [width, dark] of [[400, false], [400, true]]) {
+    const small = await opened('flawed', 'index.html', { width, height: 900, dark }, pages);
+    expect(await small.value('document.documentElement.scrollWidth') <= width, 'the page of a3 scrolls sideways');
+    if (pictures) await small.picture(join(pictures, `bench_a3_400_${dark ? 'dark' : 'light'}.png`));
+  }
 });
 
 try {

@@ -384,16 +384,19 @@ EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignmen
 }
 
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
-                 const fs::path& folder, const std::string& machine_key, const std::string& script,
-                 const std::string& right) {
+                 const fs::path& folder, const std::string& machine_key, const PageLaws& laws) {
   write_whole(folder / "results.json", gradescope_json(grade));
   const std::string record = graded_from(grade, key);
   PageView view;
   if (grade.has_handout) view = {std::string("../") + kHandoutPage, kind.folder};
-  view.bench = bench_of(folder, script, right);
+  view.bench = bench_of(folder, laws.script, laws.right);
+  view.no_right_law = laws.why_no_right;
   submission_page(kind, grade, record, view).write(folder / "index.html");
   view.is_alone = true;
-  view.bench = bench_of(folder, script);
+  view.bench = bench_of(folder, laws.script);
+  view.no_right_law = laws.is_for_students && !laws.why_no_right.empty()
+                          ? "it could not be compiled for a page on the grader's machine"
+                          : "";
   submission_page(kind, for_student(grade), record, view).write(folder / "student.html");
   write_whole(folder / kRecord,
               record_json({grade, key, kind.id, digests_below(folder)}, machine_key));

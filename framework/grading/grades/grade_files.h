@@ -51,10 +51,9 @@ std::map<std::string, std::string> digests_below(const std::filesystem::path& fo
 
 /// Writes results.json, index.html and record.json of a grade into its folder, which already has
 /// its pictures.
-/// @param script  of the assignment's experiments; empty: its code does not run in its pages
-/// @param right   the right law's module, for the TA's page alone
+/// @param laws  without a script: its code does not run in its pages
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
                  const std::filesystem::path& folder, const std::string& machine_key,
-                 const std::string& script = "", const std::string& right = "");
+                 const PageLaws& laws = {});
 
 }  // namespace tumble::grading

@@ -57,8 +57,8 @@ std::string pictures_digest(const Course& course, const std::string& id,
   const std::string code = page_code_digest(course, id, options.page_code());
   if (!options.media) return options.page_code() == CodeInPages::kNone ? "" : code;
   const MediaOptions& m = options.media_options;
-  std::string text =
-      fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
+  std::string text = fmt::format("{} {} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz,
+                                 m.video, m.page, m.three_file.string());
   for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes)
     text += scene.filename().string() + digest_of_file(scene) + ' ';
   return digest(text + code + digest_of_file(built_module(course, id, "reference")));

@@ -267,6 +267,8 @@ class Batch {
   void grade_open_ones() {
     start_ = Clock::now();
     if (!open_.empty()) page_code_.emplace(course_, id_, options_.page_code());
+    if (page_code_ && !page_code_->laws().why_no_right.empty())
+      notice("the right law is in no page: " + page_code_->laws().why_no_right);
     report_progress("");
     const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
     run_in_processes(
@@ -329,8 +331,9 @@ class Batch {
       grade->change.clear();
       grade->changes.clear();
       if (earlier) note_changes(*earlier, key, *grade);
-      write_grade(kind_, *grade, key, made_of(work), key_.bytes, page_script(course_, id_),
-                  page_code_->right());
+      PageLaws laws = page_code_->laws();
+      laws.script = page_script(course_, id_);  // also for modules that an earlier run has made
+      write_grade(kind_, *grade, key, made_of(work), key_.bytes, laws);
     } catch (const std::exception& error) {
       write_whole(draft_of(work) / "fault.txt", error.what());
       throw;

@@ -247,6 +247,10 @@ static void add_bench(report::Page& page, const Grade& grade, const PageView& vi
   page.paragraph(
       "Change the numbers: every answer is computed here by this file's own functions, compiled "
       "for the page.");
+  if (!view.no_right_law.empty()) {
+    page.paragraph("The right law is not beside it:", Look::kWarning);
+    page.preformatted(plain_text(view.no_right_law));
+  }
   report::add_bench(page, view.bench);
 }
 

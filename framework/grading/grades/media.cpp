@@ -28,22 +28,26 @@ struct Run {
   Trajectory trajectory;
   std::string story;
   bool attempted = true;
+  bool is_answered = false;  // some function of the submission gave an answer
   std::set<std::string> functions;
 };
 
-// Notes the names of functions that are called.
+// Notes the names of functions that are called, and whether any gave an answer.
 class CalledFunctions : public modules::CallWatcher {
  public:
   const char* begin(const char* function) override {
+    ++calls_;
     if (function != last_) names.insert(last_ = function);
     return nullptr;
   }
   void end(const char*) override {}
-  void threw(const char*, const std::exception&) override {}
+  void threw(const char*, const std::exception&) override { ++throws_; }
+  bool is_answered() const { return calls_ > throws_; }
 
   std::set<std::string> names;
 
  private:
+  std::size_t calls_ = 0, throws_ = 0;
   const char* last_ = nullptr;
 };
 
@@ -83,6 +87,7 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
                                 "submission", scene);
   Run result = run(scene, laws);
   result.functions = called.names;
+  result.is_answered = called.is_answered();
   return result;
 }
 
@@ -106,10 +111,12 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
 
 // A page that plays run and reference, with the first difference.
 void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs,
-                const fs::path& folder, const Course& course, SceneMedia& media) {
+                const fs::path& folder, const MediaOptions& options, const Course& course,
+                SceneMedia& media) {
   report::PlayerOptions player;
   player.root = course.root;
-  player.three_file = kThree;  // one for all scenes
+  const bool is_shared = !options.three_file.empty();
+  player.three_file = is_shared ? options.three_file : fs::path(kThree);
   player.most_poses = kMostPoses;
   player.most_contacts = kMostContacts;
   std::vector<report::PlayedRun> played;
@@ -117,7 +124,7 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
     player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
   // also where an earlier program wrote one: it holds the scripts of these pages
-  report::write_three(folder / kThree, player);
+  if (!is_shared) report::write_three(folder / kThree, player);
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);
 }
@@ -144,17 +151,20 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
     media.attempted = theirs.attempted;
     media.functions.assign(theirs.functions.begin(), theirs.functions.end());
     if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
-    const Run ours =
-        reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};
+    const bool is_stub = !theirs.attempted && !theirs.is_answered;
+    const Run ours = reference && !is_stub
+                         ? run(scene, laws_around(course, kind, reference, "reference", scene))
+                         : Run{};
     std::vector<render::LabelledRun> runs;
-    if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
+    if (!theirs.trajectory.frames.empty() && !is_stub)
+      runs.push_back({theirs.trajectory, "submission"});
     if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
     MediaOptions own = options;
     // without an implementation nothing moves: a picture is enough
     own.video = options.video && theirs.attempted;
     if (!runs.empty()) draw(scene, runs, folder, own, course, media);
     if (!runs.empty() && options.page && theirs.attempted)
-      write_page(scene, runs, folder, course, media);
+      write_page(scene, runs, folder, options, course, media);
     all.push_back(std::move(media));
   }
   return all;

@@ -19,7 +19,11 @@ struct MediaOptions {
   // of all calls into the submission in one scene: right ones take seconds
   double wall_s = 60.0;
   bool video = true;  // false: only a picture
-  bool page = true;   // a page that plays the run: 0.4 MB per scene
+  bool page = true;   // a page that plays the run: 0.1 MB per scene
+  // The file with three.js and the player's scripts, seen from the folder of the pages; whoever
+  // names one writes it (report::write_three). Empty: one in each folder, which may then be handed
+  // on by itself.
+  std::filesystem::path three_file = {};
 };
 
 /// One scene, run by a submission.
@@ -36,9 +40,10 @@ struct SceneMedia {
 };
 
 /// Runs each scene on the submission (in its sandbox) and on the reference (in this process;
-/// skipped if the tree has none) and writes SCENE.png, SCENE.mp4 and SCENE.html into `folder`. A
-/// submission that fails in a scene loses only its half of that scene's picture. Laws that the
-/// submission's module does not implement come from the reference if the scene needs them, else
+/// skipped if the tree has none) and writes SCENE.png, SCENE.mp4 and SCENE.html into `folder`. Of a
+/// scene in which only stubs were called there is no picture: nothing of the submission would be
+/// in it. A submission that fails in a scene loses only its half of that scene's picture. Laws that
+/// the submission's module does not implement come from the reference if the scene needs them, else
 /// from the library.
 /// @param submission  a shared object; never loaded into this process
 /// @param on_scene        called with each scene's title before it runs; may be empty

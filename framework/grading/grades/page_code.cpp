@@ -54,12 +54,20 @@ std::string page_code_digest(const Course& course, const std::string& id, CodeIn
                             fmt::join(missing_page_packages(), " ")));
 }
 
-PageCode::PageCode(const Course& course, const std::string& id, CodeInPages which)
-    : which_(which), script_(page_script(course, id)) {
-  if (script_.empty() || which == CodeInPages::kNone) return;
+PageCode::PageCode(const Course& course, const std::string& id, CodeInPages which) {
+  laws_.script = page_script(course, id);
+  if (laws_.script.empty() || which == CodeInPages::kNone) return;
+  laws_.is_for_students = which == CodeInPages::kBoth;
   compiler_.emplace(course.root, course.build, id, course.registry->find(id).folder);
   const fs::path source = right_source(course, id);
-  if (compiler_->obstacle().empty() && fs::exists(source)) right_ = compiler_->compile(source).wasm;
+  if (!compiler_->obstacle().empty()) return;  // each page says it of its own module
+  if (!fs::exists(source)) {
+    if (laws_.is_for_students) laws_.why_no_right = "this tree has no right solution";
+    return;
+  }
+  const PageModule right = compiler_->compile(source);
+  laws_.right = right.wasm;
+  laws_.why_no_right = right.why_not;
 }
 
 std::string PageCode::add(const fs::path& source, const fs::path& folder) const {
@@ -68,7 +76,7 @@ std::string PageCode::add(const fs::path& source, const fs::path& folder) const 
   if (module.wasm.empty()) return module.why_not;
   fs::create_directories(folder / "media");
   write_whole(own_module(folder), module.wasm);
-  if (which_ == CodeInPages::kBoth && !right_.empty()) write_whole(right_module(folder), right_);
+  if (laws_.is_for_students && !laws_.right.empty()) write_whole(right_module(folder), laws_.right);
   return "";
 }
 

@@ -34,6 +34,16 @@ std::string page_script(const Course& course, const std::string& id);
 /// Everything that decides what pages carry, as one digest.
 std::string page_code_digest(const Course& course, const std::string& id, CodeInPages which);
 
+/// What pages carry beside a submission's own module.
+struct PageLaws {
+  std::string script = {};  // of the assignment's experiments; empty: no code runs in pages
+  std::string right = {};   // the right law's module; empty: there is none
+  // why there is none, for the grader's eyes: it may quote the solution; empty where there is one
+  // or none was asked for
+  std::string why_no_right = {};
+  bool is_for_students = false;  // the right law also in the student's page
+};
+
 /// Makes the modules of one grading.
 class PageCode {
  public:
@@ -44,14 +54,11 @@ class PageCode {
   /// @return why there is none; empty where there is one, or where none was asked for
   std::string add(const std::filesystem::path& source, const std::filesystem::path& folder) const;
 
-  const std::string& right() const { return right_; }
-  const std::string& script() const { return script_; }
+  const PageLaws& laws() const { return laws_; }
 
  private:
-  CodeInPages which_;
-  std::string script_;
+  PageLaws laws_;
   std::optional<PageCompiler> compiler_;
-  std::string right_;  // bytes
 };
 
 /// The bench of a submission's page.

@@ -16,8 +16,9 @@ struct PageView {
   // page of the handout, relative to this page, and its name in stories ("a1_impulse"); empty:
   // stories name it without a link
   std::string handout = {}, handout_name = {};
-  bool is_alone = false;     // there is no page of all submissions to go to
-  report::Bench bench = {};  // its code, in the page; without a module: none
+  bool is_alone = false;          // there is no page of all submissions to go to
+  report::Bench bench = {};       // its code, in the page; without a module: none
+  std::string no_right_law = {};  // why the right law is not beside it, where it was to be
 };
 
 /// A line of an x-ray (framework/grading/verdicts/xray.h): "r_a   (1, 0, -1) m   <- mark".

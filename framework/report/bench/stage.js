@@ -70,6 +70,19 @@ Object.assign(Bench.prototype, {
       }
     }
     g.setLineDash([]);
+    for (const line of result.frames[Math.min(Math.max(0, Math.round(this.t)), result.frames.length - 1)].lines) this.drawLine(g, view, size, line, edge);
+  },
+  // Of the bodies' colour, over them: none is thick enough to hide behind one. A force has a head where it acts.
+  drawLine(g, view, size, { kind, from, to }, colour) {
+    if (![...from, ...to].every(Number.isFinite) || norm(sub(to, from)) < 1e-6) return;
+    const [a, b] = [from, to].map(p => this.project(view, size, p));
+    if (kind === 'force') return this.arrow(g, b, a, colour);
+    g.lineWidth = kind === 'rod' ? 3 : 1.5;
+    const along = [b[0] - a[0], b[1] - a[1]], length = Math.hypot(...along), turns = kind === 'spring' && length > 1 ? 12 : 0;
+    const aside = [-along[1] / length, along[0] / length].map(n => n * 0.02 * size.focal / Math.max(0.05, (a[2] + b[2]) / 2));
+    const points = [a];
+    for (let i = 0; i < turns; ++i) points.push([0, 1].map(n => a[n] + along[n] * (0.1 + 0.8 * (i + 0.5) / turns) + (i % 2 === 0 ? 1 : -1) * aside[n]));
+    this.line(g, [...points, b]);
   },
   // The faces that look at the eye; lighter from above.
   drawBox(g, view, size, body, face) {

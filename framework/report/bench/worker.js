@@ -13,7 +13,7 @@ class Recorder {
     const writer = new Writer();
     write(writer);
     const value = this.law.ask(name, writer, read, functions);
-    if (this.calls.length < 20000) this.calls.push({ name, t: this.t, answer: [value].flat(9).map(x => typeof x === 'object' && x !== null ? Object.values(x) : x).flat(9).map(Number) });
+    if (this.calls.length < 50000) this.calls.push({ name, t: this.t, answer: [value].flat(9).map(x => typeof x === 'object' && x !== null ? Object.values(x) : x).flat(9).map(Number) });
     return value;
   }
   // The same where every number of the answer has to be one.
@@ -22,9 +22,10 @@ class Recorder {
     if ([value].flat(9).some(x => !Number.isFinite(x))) throw new Ended('wrong', name, 'its answer is not a finite number');
     return value;
   }
-  frame(bodies) {
+  // @param lines  what else is drawn: {kind: 'rod', 'spring' or 'force', from, to}
+  frame(bodies, lines = []) {
     if (this.bodies.length === 0) this.bodies = bodies.map(({ name, shape }) => ({ name, shape }));
-    this.frames.push({ t: this.t, poses: bodies.flatMap(body => [...body.x, ...body.q]) });
+    this.frames.push({ t: this.t, poses: bodies.flatMap(body => [...body.x, ...body.q]), lines });
   }
   // @param wanted  what it has to be, within `tolerance`; null: for information
   fact(name, value, unit, wanted = null, tolerance = 0) { this.facts.push({ name, value, unit, wanted, tolerance }); }
