@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "framework/dynamics/contact_cone.h"
+#include "framework/dynamics/contact_equations.h"
 
 namespace tumble::contacts {
 namespace {
@@ -20,12 +21,6 @@ constexpr double kTie = 1e-9;
 /// in a stack of N); the rounding of the linear equations grows with 1 / delta. So it is lessened
 /// where steps are slow and the equations were solved well, and raised where they were not.
 constexpr double kFirstFade = 1e-8, kLeastFade = 1e-11, kMostFade = 1e-4;
-
-/// dp = f - D dv: how one contact's impulse answers.
-struct Response {
-  Vector3d f;
-  Matrix3d d;
-};
 
 /// The answer of a contact that sticks, whatever it carries.
 Response sticking_response(const ContactBlock& c, const Vector3d& v, double fade) {
@@ -60,112 +55,31 @@ Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& 
   return response;
 }
 
-/// The linear equations of one Newton step:   dp + D G (G^T dp) = f   for all contacts and rows at
-/// once.
-class StepEquations {
- public:
-  /// @param held  contacts that stick, where the others are open, whatever Coulomb's law has them
-  /// do; null: the law. False where the matrix fails.
-  bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now,
-               const std::vector<bool>* held = nullptr);
-  /// The change of all impulses, refined until what is left of the equations is small beside
-  /// `violation`. True if it got so far.
-  bool solve(const BodyMatrix& matrix, double violation, Impulses& change);
-
- private:
-  void add_solution(const BodyMatrix& matrix, Impulses& change);
-  double renew_rest(const Impulses& change);
-
-  const System* system_ = nullptr;
-  double fade_ = 0;
-  std::vector<Response> responses_;
-  std::vector<double> row_pushes_;  // f of the rows; their D is 1 / (fade give)
-  std::vector<Vector3d> rest_;      // what the equations still lack
-  std::vector<double> row_rest_;
-  std::vector<Vector6d> x_;
-};
-
-bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matrix,
-                            const Impulses& now, const std::vector<bool>* held) {
-  system_ = &system;
-  fade_ = fade;
-  responses_.assign(system.contacts.size(), Response{Vector3d::Zero(), Matrix3d::Zero()});
-  row_pushes_.assign(system.rows.size(), 0.0);
-  matrix.set_identity();
-  for (std::size_t i = 0; i < responses_.size(); ++i) {
+/// The answers of all contacts by Coulomb's law.
+std::vector<Response> law_responses(const System& system, const Impulses& now, double fade) {
+  std::vector<Response> responses(system.contacts.size(),
+                                  Response{Vector3d::Zero(), Matrix3d::Zero()});
+  for (std::size_t i = 0; i < responses.size(); ++i) {
     const ContactBlock& c = system.contacts[i];
-    if (!(c.inverse_effective_mass > 0)) continue;
-    const Vector3d v = contact_velocity(c, now.y);
-    if (held && !(*held)[i]) continue;
-    responses_[i] = held ? sticking_response(c, v, fade)
-                         : law_response(c, now.contacts[i], v, c.inverse_effective_mass, fade,
-                                        kTie * system.speed / c.inverse_effective_mass);
-    if (responses_[i].d(0, 0) != 0) matrix.add(c, responses_[i].d);
+    if (c.inverse_effective_mass > 0)
+      responses[i] =
+          law_response(c, now.contacts[i], contact_velocity(c, now.y), c.inverse_effective_mass,
+                       fade, kTie * system.speed / c.inverse_effective_mass);
   }
-  for (std::size_t i = 0; i < row_pushes_.size(); ++i) {
-    const RowBlock& row = system.rows[i];
-    if (!(row.inverse_effective_mass > 0)) continue;
-    row_pushes_[i] = -row_velocity(row, now.y) / (fade * row.inverse_effective_mass);
-    matrix.add(row, 1 / (fade * row.inverse_effective_mass));
-  }
-  return matrix.factorise();
+  return responses;
 }
 
-/// change += rest - D G H^-1 G^T rest.
-void StepEquations::add_solution(const BodyMatrix& matrix, Impulses& change) {
-  const System& system = *system_;
-  x_.assign(system.root_inverse_mass.size(), Vector6d::Zero());
-  for (std::size_t i = 0; i < rest_.size(); ++i) push(system.contacts[i], rest_[i], x_);
-  for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], row_rest_[i], x_);
-  matrix.solve(x_);
-  for (std::size_t i = 0; i < rest_.size(); ++i)
-    change.contacts[i] += rest_[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
-  for (std::size_t i = 0; i < row_rest_.size(); ++i)
-    if (system.rows[i].inverse_effective_mass > 0)
-      change.rows[i] += row_rest_[i] - velocity_change(system.rows[i], x_) /
-                                           (fade_ * system.rows[i].inverse_effective_mass);
-}
-
-/// rest := f - dp - D G G^T dp; returns its largest part as a velocity.
-double StepEquations::renew_rest(const Impulses& change) {
-  const System& system = *system_;
-  double largest = 0;
-  x_.assign(system.root_inverse_mass.size(), Vector6d::Zero());
-  for (std::size_t i = 0; i < rest_.size(); ++i) push(system.contacts[i], change.contacts[i], x_);
-  for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], change.rows[i], x_);
-  for (std::size_t i = 0; i < rest_.size(); ++i) {
-    rest_[i] = responses_[i].f - change.contacts[i] -
-               responses_[i].d * velocity_change(system.contacts[i], x_);
-    largest =
-        std::max(largest, fade_ * system.contacts[i].inverse_effective_mass * rest_[i].norm());
+/// Those of contacts that stick, where the others are open, whatever Coulomb's law has them do.
+std::vector<Response> held_responses(const System& system, const Impulses& now, double fade,
+                                     const std::vector<bool>& held) {
+  std::vector<Response> responses(system.contacts.size(),
+                                  Response{Vector3d::Zero(), Matrix3d::Zero()});
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    const ContactBlock& c = system.contacts[i];
+    if (held[i] && c.inverse_effective_mass > 0)
+      responses[i] = sticking_response(c, contact_velocity(c, now.y), fade);
   }
-  for (std::size_t i = 0; i < row_rest_.size(); ++i) {
-    if (!(system.rows[i].inverse_effective_mass > 0)) continue;
-    const double stiffness = 1 / (fade_ * system.rows[i].inverse_effective_mass);
-    row_rest_[i] =
-        row_pushes_[i] - change.rows[i] - stiffness * velocity_change(system.rows[i], x_);
-    largest = std::max(largest, std::abs(row_rest_[i]) / stiffness);
-  }
-  return largest;
-}
-
-bool StepEquations::solve(const BodyMatrix& matrix, double violation, Impulses& change) {
-  constexpr int kMostPasses = 4;
-  constexpr double kSmall = 1e-3;
-  change.contacts.assign(responses_.size(), Vector3d::Zero());
-  change.rows.assign(row_pushes_.size(), 0.0);
-  rest_.resize(responses_.size());
-  for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] = responses_[i].f;
-  row_rest_ = row_pushes_;
-  double before = std::numeric_limits<double>::infinity();
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    add_solution(matrix, change);
-    const double left = renew_rest(change);
-    if (left <= kSmall * violation) return true;
-    if (!(left < 0.5 * before)) return false;
-    before = left;
-  }
-  return false;
+  return responses;
 }
 
 /// impulses + share * change, back into the law's set.
@@ -205,7 +119,8 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
         largest = std::max(largest, std::abs(row_velocity(row, trial.impulses.y)));
     if (goal.accepts(trial.impulses, largest)) return true;
     if (!(largest < 0.5 * before) ||
-        !equations.prepare(goal.system, kFade, matrix, trial.impulses, &held))
+        !equations.prepare(goal.system, kFade, matrix, trial.impulses,
+                           held_responses(goal.system, trial.impulses, kFade, held)))
       return false;
     before = largest;
     ++trial.factorisations;
@@ -276,7 +191,9 @@ void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& prog
   for (int i = 0, poor = 0; i < most_steps && poor < kMostPoorSteps; ++i) {
     const bool was_accepted = progress.accepted;
     const Violation before = progress.violation;
-    if (!equations.prepare(goal.system, fade, matrix, progress.impulses)) return;
+    if (!equations.prepare(goal.system, fade, matrix, progress.impulses,
+                           law_responses(goal.system, progress.impulses, fade)))
+      return;
     const bool solved = equations.solve(matrix, before.largest, change);
     ++progress.factorisations;
     double share = 1, best_share = 1;

@@ -1,13 +1,15 @@
 /// Newton's methods on all contacts at once, for what Gauss-Seidel does slowly. Internal to
 /// dynamics.
 ///
-/// Three, which take turns, and before them `stick`:
+/// Four, which take turns, and before them `stick`:
 /// - `finish`: semismooth Newton on Coulomb's law itself, p = P(p - v / r) for all contacts, r =
 ///   inverse effective mass. Near the answer its error squares at each step; far from it, it may
 ///   wander, so a step that does not lessen the violation ends it. With the modes found (open,
 ///   stick, slide) the equations of redundant contacts are singular; a compliance delta r keeps
 ///   them regular and fades as the steps repeat (a proximal method), so that nothing of it stays in
 ///   the answer.
+/// - `sharpen`: the same law with rounded edges (C.9), made sharp step by step. A few dozen
+///   factorisations find modes that sweeps and `finish` do not; it may end in a fold of its path.
 /// - `soften`: with De Saxce's shift g_i = mu |v_t,i| held, the law is convex: p in the friction
 ///   cone K, v + g n in its dual. With a compliance eps its velocities minimise
 ///     1/2 |y|^2 + sum eps_i / 2 |Pi_K(p_i - (v_i(y) + g_i n) / eps_i)|^2                     (C.6)
@@ -19,8 +21,9 @@
 ///   path of answers. Where sliding contacts jam each other the fixed point on g does not settle;
 ///   this has none.
 /// Why these: all need one matrix of 6 rows a body, however many contacts a body has; the first
-/// gives the last digits, the second cannot get lost, the third gets through jams; no strictly
-/// feasible point is needed (a wedge has none), unlike by an interior point method.
+/// gives the last digits, the second is quick, the third cannot get lost, the fourth gets through
+/// jams; no strictly feasible point is needed (a wedge has none), unlike by an interior point
+/// method.
 /// Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991; F. Cadoux, PhD thesis,
 /// Grenoble 2009; A. Castro, F. Permenter, X. Han, IEEE Trans. Robotics 39, 2023 (C.6 and its line
 /// search); G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998.
@@ -59,6 +62,17 @@ void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& prog
 /// Contacts held in all directions, those that would have to pull open: a structure that stands.
 /// True, and `progress` is that, if none leaves its cone; otherwise it is as it was.
 bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress);
+
+/// How fast `sharpen` goes.
+struct Sharpening {
+  double first = 0;    // the first tau, over the problem's speed
+  double down = 0;     // tau over the one before
+  int most_steps = 0;  // of Newton's method
+};
+
+/// Steps of Newton's method on the rounded law from the impulses; the best that was met, by the
+/// sharp law, is kept.
+void sharpen(const Goal& goal, const Sharpening& pace, BodyMatrix& matrix, Progress& progress);
 
 /// One problem (C.6) solved, impulses and shift renewed from it. False, and nothing changed:
 /// Newton's method did not reach its minimum.
