@@ -36,6 +36,7 @@ void add_poke(CLI::App& app, Context& context);
 void add_regrade(CLI::App& app, Context& context);
 void add_release(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
+void add_sample(CLI::App& app, Context& context);
 void add_scenes(CLI::App& app, Context& context);
 void add_truths(CLI::App& app, Context& context);
 

@@ -10,6 +10,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_watch(app, context);
   add_start(app, context);
   add_scenes(app, context);
+  add_sample(app, context);
   add_run(app, context);
   add_poke(app, context);
   add_live(app, context);

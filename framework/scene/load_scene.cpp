@@ -8,6 +8,7 @@
 #include "framework/scene/check_scene.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
+#include "framework/scene/load_sampling.h"
 #include "framework/scene/read_entry.h"
 #include "framework/scene/read_json.h"
 #include "framework/scene/scene_schema.h"
@@ -140,6 +141,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
 
   check_scene(scene, [&](const std::string& pointer, const std::string& problem,
                          const std::string& remedy) { document.refuse(pointer, problem, remedy); });
+  read_sampling(document, scene);  // refuses what is impossible
   return scene;
 }
 

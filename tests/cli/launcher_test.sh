@@ -10,6 +10,7 @@ mkdir -p "$tree/framework/cli" "$tree/assignments"
 cp "$root/tumble" "$tree/"
 cp -r "$root/framework/cli/help" "$root/framework/cli/needs.txt" "$tree/framework/cli/"
 for folder in "$root"/assignments/a*/; do mkdir -p "$tree/assignments/$(basename "$folder")"; done
+ids=$(cd "$root/assignments" && echo a*/ | grep -o 'a[0-9]*_' | tr -d _ | sort -V | xargs)
 fail() { echo "launcher_test: $*" >&2; exit 1; }
 
 # said CODE WORDS...: runs the launcher, expects the exit code, keeps what it printed in $out and $err.
@@ -64,7 +65,7 @@ fi
 # What is built for which words: a target says its name.
 asked() { # VERB WORDS...: prints the targets that the launcher asked for, in their order
   { printf 'rule say\n  command = echo $out >>$$TUMBLE_BUILD/asked\n'
-    for target in tumble tumble_check tumble_inspect tumble_pages sandbox_init submission_sdk $(for i in 1 2 3 4; do echo check_a${i}_ready check_a${i}_sandboxed worker_a$i judge_a$i a${i}_reference; done); do echo "build $target: say"; done
+    for target in tumble tumble_check tumble_inspect tumble_pages sandbox_init submission_sdk $(for id in $ids; do echo check_${id}_ready check_${id}_sandboxed worker_$id judge_$id ${id}_reference; done); do echo "build $target: say"; done
   } >"$TUMBLE_BUILD/build.ninja"
   rm -f "$TUMBLE_BUILD"/asked "$TUMBLE_BUILD"/.ninja_*
   for program in tumble tumble_check tumble_inspect tumble_pages; do printf '#!/bin/sh\n' >"$TUMBLE_BUILD/bin/$program" && chmod +x "$TUMBLE_BUILD/bin/$program"; done
@@ -76,7 +77,7 @@ asked check a2 'Rk4*' && [ "$asked" = "check_a2_ready tumble_check" ] || fail "c
 asked watch a1 my/file.cpp && [ "$asked" = "check_a1_ready check_a1_sandboxed tumble_check" ] || fail "watch of a file builds $asked"
 asked inspect box && [ "$asked" = "tumble_inspect" ] || fail "inspect builds $asked"
 asked handouts && [ "$asked" = "tumble_pages" ] || fail "handouts, without solutions, builds $asked"
-asked run pong_1 && [ "$asked" = "sandbox_init submission_sdk tumble worker_a1 worker_a2 worker_a3 worker_a4" ] || fail "run builds $asked"
+asked run pong_1 && [ "$asked" = "sandbox_init submission_sdk tumble $(for id in $ids; do echo worker_$id; done | sort | xargs)" ] || fail "run builds $asked"
 mkdir -p "$tree/solutions_private/a1_impulse" "$tree/solutions_private/a2_integration"
 asked audit a2 && [ "$asked" = "a1_reference a2_reference judge_a2 sandbox_init submission_sdk tumble worker_a1 worker_a2" ] || fail "audit a2 builds $asked"
 echo "the launcher answers without building, and builds with a word"

@@ -24,7 +24,7 @@ const fs::path kRoot = TUMBLE_SOURCE_DIR;
 // Top to bottom: a folder includes only what stands above it (or itself).
 const std::vector<std::string> kFolders = {
     "core",    "geometry", "scene",  "dynamics", "collision", "trajectory", "effects", "modules",
-    "engines", "render",   "report", "live",     "grading",   "extend",     "cli"};
+    "engines", "sampling", "render", "report",   "live",      "grading",    "extend",  "cli"};
 
 // Rooms of two folders, in the same order. A file that lies beside the rooms is their entry: it may
 // include all of them.

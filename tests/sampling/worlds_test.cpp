@@ -1,0 +1,167 @@
+// From the numbers of a chain to worlds: what is set, what the prior draws, what is violated, and
+// what a scene file may not say.
+#include "framework/sampling/worlds.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/sampling/overlay.h"
+#include "framework/scene/load_sampling.h"
+#include "framework/scene/load_scene.h"
+
+namespace tumble::sampling {
+namespace {
+
+SampledScene thrown_ball(const std::string& perturbed, const std::string& asked) {
+  const std::string text =
+      R"({"title": "a ball", "duration_s": 1, "bodies": [
+  {"name": "ball", "shape": {"sphere": {"radius_m": 0.1}}, "mass_kg": 1, "velocity_m_s": [1, 2, 3]},
+  {"name": "die", "shape": {"box": {"size_m": [1, 1, 1]}}, "mass_kg": 1, "position_m": [5, 0, 0]},
+  {"name": "slab", "shape": {"box": {"size_m": [1, 1, 1]}}, "immovable": true, "position_m": [0, 0, -5]}],
+  "sampling": {"perturbed": [)" +
+      perturbed + R"(], "asked": [)" + asked + "]}}\n";
+  const scene::Scene scene = scene::parse_scene(text, "thrown_ball.json");
+  return {scene, scene::parse_sampling(text, scene).value()};
+}
+
+const std::string kPlace =
+    R"({"body": "ball", "place": {"low_m": [1, null, null], "high_m": [2, 4, null], "softness_m": 0.5}})";
+const std::string kLean =
+    R"({"body": "die", "lean": {"axis_body": [0, 0, -2], "most_deg": 30, "softness_deg": 15}})";
+const std::string kSpeed =
+    R"({"body": "ball", "what": "velocity_y_m_s", "normal": {"mean": 2, "deviation": 0.5}})";
+
+TEST(World, HasTheNumbersOfItsPoint) {
+  const SampledScene scene = thrown_ball(
+      kSpeed + R"(, {"body": "slab", "what": "turn_y_rad", "uniform": {"low": -1, "high": 1}},
+      {"body": "slab", "what": "restitution", "normal": {"mean": 0.5, "deviation": 0.1}},
+      {"body": "die", "what": "position_x_m", "normal": {"mean": 5, "deviation": 0.1}},
+      {"body": "die", "what": "angular_velocity_z_rad_s", "normal": {"mean": 0, "deviation": 1}})",
+      kPlace);
+  VectorXd x(5);
+  x << 2.5, 0.25, 0.75, 5.5, 7;
+  const scene::Scene world = world_of(scene, x);
+  EXPECT_EQ(world.bodies[0].velocity_m_s, Vector3d(1, 2.5, 3));
+  // A turn by 0.25 about y takes z to (sin, 0, cos).
+  const Vector3d up = world.bodies[2].world_from_body * Vector3d::UnitZ();
+  EXPECT_NEAR((up - Vector3d(std::sin(0.25), 0, std::cos(0.25))).norm(), 0, 1e-15);
+  EXPECT_EQ(world.bodies[2].restitution, 0.75);
+  EXPECT_EQ(world.bodies[1].position_m, Vector3d(5.5, 0, 0));
+  EXPECT_EQ(world.bodies[1].omega_world_rad_s, Vector3d(0, 0, 7));
+  // What is not named stays.
+  EXPECT_EQ(world.bodies[0].position_m, scene.scene.bodies[0].position_m);
+}
+
+TEST(World, OfThePriorIsDrawnByIt) {
+  const SampledScene scene = thrown_ball(kSpeed + R"(, {"body": "slab", "what": "restitution",
+      "normal": {"mean": 0.9, "deviation": 0.2, "low": 0.8}})",
+                                         kPlace);
+  const std::vector<Prior> priors = priors_of(scene);
+  EXPECT_EQ(priors[1].low, 0.8);
+  EXPECT_EQ(priors[1].high, 1.0);  // of a restitution
+  Random random(1);
+  constexpr int kDraws = 4000;
+  double mean = 0, square = 0;
+  int below = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const VectorXd x = drawn_from_prior(priors, random);
+    mean += x[0] / kDraws;
+    square += (x[0] - 2) * (x[0] - 2) / kDraws;
+    ASSERT_GE(x[1], 0.8);
+    ASSERT_LE(x[1], 1.0);
+    below += x[1] < 0.9 ? 1 : 0;
+  }
+  // Errors of means of 4000: 0.5 / 63 = 0.008 and 0.25 sqrt(2) / 63 = 0.0056; four times these.
+  EXPECT_NEAR(mean, 2, 0.032);
+  EXPECT_NEAR(square, 0.25, 0.023);
+  // Symmetric about 0.9: half, with an error of 32.
+  EXPECT_NEAR(below, kDraws / 2, 128);
+}
+
+Frame frame_with(const Vector3d& ball, const Quaterniond& die) {
+  Frame frame{};
+  frame.poses = {{ball, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()},
+                 {Vector3d(5, 0, 0), die, Vector3d::Zero(), Vector3d::Zero()},
+                 {Vector3d(0, 0, -5), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()}};
+  return frame;
+}
+
+TEST(Violation, IsTheDistanceFromWhatIsAskedInItsSoftness) {
+  const Quaterniond upright = Quaterniond::Identity(),
+                    over(Eigen::AngleAxisd(M_PI, Vector3d::UnitX())),
+                    nearly(Eigen::AngleAxisd(M_PI - M_PI / 4, Vector3d::UnitX()));
+  const SampledScene place = thrown_ball(kSpeed, kPlace), lean = thrown_ball(kSpeed, kLean),
+                     both = thrown_ball(kSpeed, kPlace + ", " + kLean);
+  EXPECT_EQ(violation_of(place, frame_with({1.5, -9, 7}, upright)), 0);
+  // 3 m short in x and 4 m too far in y: 5 m, of 0.5 m.
+  EXPECT_NEAR(violation_of(place, frame_with({-2, 8, 0}, upright)), 10, 1e-13);
+  // The axis is the body's -z: it points up where the die is turned over.
+  EXPECT_EQ(violation_of(lean, frame_with({0, 0, 0}, over)), 0);
+  EXPECT_NEAR(violation_of(lean, frame_with({0, 0, 0}, nearly)), 15.0 / 15, 1e-12);
+  EXPECT_NEAR(violation_of(lean, frame_with({0, 0, 0}, upright)), 150.0 / 15, 1e-12);
+  EXPECT_NEAR(violation_of(both, frame_with({-2, 8, 0}, nearly)), std::hypot(10, 1), 1e-12);
+}
+
+TEST(Overlay, HoldsWhatMovesOnceForEachRun) {
+  const SampledScene scene = thrown_ball(kSpeed, kPlace);
+  Trajectory first;
+  first.frames = {frame_with({1, 0, 0}, Quaterniond::Identity())};
+  Trajectory second = first;
+  second.frames[0].poses[0].com_world = Vector3d(2, 0, 0);
+  const Overlay overlay =
+      overlay_of(scene.scene, {{first, Vector3d(1, 0, 0)}, {second, Vector3d(0, 1, 0)}});
+  ASSERT_EQ(overlay.scene.bodies.size(), 5u);
+  ASSERT_EQ(overlay.run.frames[0].poses.size(), 5u);
+  EXPECT_EQ(overlay.scene.bodies[3].name, "ball 2");
+  EXPECT_EQ(overlay.run.frames[0].poses[0].com_world, Vector3d(1, 0, 0));
+  EXPECT_EQ(overlay.run.frames[0].poses[3].com_world, Vector3d(2, 0, 0));
+}
+
+// ---- What a file may not say ----
+
+std::string refusal(const std::string& perturbed, const std::string& asked) {
+  try {
+    thrown_ball(perturbed, asked);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+void expect_refused(const std::string& told, const std::string& words) {
+  EXPECT_NE(told.find(words), std::string::npos) << told;
+}
+
+TEST(SamplingEntry, IsRefusedWithItsPlace) {
+  expect_refused(
+      refusal(R"({"body": "bal", "what": "friction", "uniform": {"low": 0, "high": 1}})", kPlace),
+      "/sampling/perturbed/0/body");
+  expect_refused(
+      refusal(
+          R"({"body": "slab", "what": "velocity_x_m_s", "normal": {"mean": 0, "deviation": 1}})",
+          kPlace),
+      "immovable and has no velocity");
+  expect_refused(
+      refusal(R"({"body": "ball", "what": "restitution", "uniform": {"low": 0.5, "high": 1.5}})",
+              kPlace),
+      "outside its range");
+  expect_refused(
+      refusal(R"({"body": "ball", "what": "friction", "uniform": {"low": 2, "high": 1}})", kPlace),
+      "not below its upper one");
+  expect_refused(refusal(R"({"body": "ball", "what": "friction"})", kPlace), "neither");
+  expect_refused(
+      refusal(R"({"body": "ball", "what": "colour", "uniform": {"low": 0, "high": 1}})", kPlace),
+      "/sampling/perturbed/0/what");
+  expect_refused(
+      refusal(
+          R"({"body": "ball", "what": "velocity_x_m_s", "proposal": "multiply", "normal": {"mean": 0, "deviation": 1}})",
+          kPlace),
+      "must be positive");
+  expect_refused(refusal(kSpeed, R"({"body": "ball"})"), "neither");
+  expect_refused(refusal(kSpeed, R"({"body": "cube", "place": {"softness_m": 1}})"),
+                 "/sampling/asked/0/body");
+}
+
+}  // namespace
+}  // namespace tumble::sampling
