@@ -133,6 +133,84 @@ TEST(Structures, CardTentStandsFromHalfTheTangent) {
   }
 }
 
+/// A house of cards that begins to fall: tents of thin cards side by side on each level, one fewer
+/// on the next, each level but the top under a plank; its bodies move by `speed` [m/s, rad/s].
+ContactProblem house_of_cards(int levels, double friction, double speed, Random& random) {
+  constexpr double kThick = 0.01, kPlank = 0.01, kMass = 0.1;
+  const double a = 0.4, foot = std::sin(a), high = std::cos(a), apart = 2 * foot + 0.06;
+  ContactProblem problem;
+  problem.bodies.push_back(fixed_body());
+  int below = 0;
+  double floor = 0;
+  const auto edge = [&](int body_a, int body_b, const Vector3d& middle, const Vector3d& normal) {
+    for (const double y : {-0.5, 0.5})
+      problem.contacts.push_back(
+          contact_at(body_a, body_b, middle + Vector3d(0, y, 0), normal, friction));
+  };
+  for (int level = 0; level < levels; ++level) {
+    const int tents = levels - level;
+    std::vector<int> cards;
+    for (int k = 0; k < tents; ++k) {
+      const double x = (k - 0.5 * (tents - 1)) * apart;
+      for (const double side : {-1.0, 1.0}) {
+        const int card = static_cast<int>(problem.bodies.size());
+        cards.push_back(card);
+        problem.bodies.push_back(
+            box_body(kMass, {kThick, 1, 1}, Vector3d(x + side * 0.5 * foot, 0, floor + 0.5 * high),
+                     Eigen::AngleAxisd(-side * a, Vector3d::UnitY()).toRotationMatrix()));
+        edge(card, below, Vector3d(x + side * foot, 0, floor), Vector3d::UnitZ());
+      }
+      edge(cards[cards.size() - 2], cards.back(), Vector3d(x, 0, floor + high), -Vector3d::UnitX());
+    }
+    if (tents == 1) break;
+    const int plank = static_cast<int>(problem.bodies.size());
+    const double half = 0.5 * tents * apart;
+    problem.bodies.push_back(
+        box_body(0.2 * half, {2 * half, 1, kPlank}, Vector3d(0, 0, floor + high + 0.5 * kPlank)));
+    for (std::size_t i = 0; i < cards.size(); ++i)
+      edge(
+          plank, cards[i],
+          Vector3d(((static_cast<int>(i) / 2) - 0.5 * (tents - 1)) * apart + (i % 2 ? 0.01 : -0.01),
+                   0, floor + high),
+          Vector3d::UnitZ());
+    below = plank;
+    floor += high + kPlank;
+  }
+  for (PushedBody& body : problem.bodies)
+    if (body.inverse_mass > 0) {
+      body.velocity_world = random_vector(random, speed);
+      body.omega_world = random_vector(random, speed);
+    }
+  let_fall(problem);
+  return problem;
+}
+
+// Loads that many cards share in many ways: sweeps stall, Newton's method from there wanders. The
+// rounded law made sharp solves these five within 49 to 67 factorisations; the last resort, which
+// they would come to without it, takes 850 to 2,800 for each.
+TEST(Structures, HousesOfCardsAreSolvedBeforeTheLastResort) {
+  constexpr int kFew = 300, kLeast = 4;  // one may go astray by another rounding
+  struct House {
+    int levels;
+    double friction, speed;
+    int seed;
+  };
+  ContactOptions options;
+  options.tolerance = 1e-8;  // what engines ask of an island that moves
+  int quick = 0;
+  for (const House& h : {House{4, 0.18, 0.01, 6}, House{4, 0.2, 0.01, 8}, House{5, 0.18, 0.01, 5},
+                         House{5, 0.18, 0.03, 4}, House{5, 0.18, 0.03, 9}}) {
+    Random random(h.seed);
+    const ContactProblem house = house_of_cards(h.levels, h.friction, h.speed, random);
+    const ContactSolution solution = solve_contacts(house, options);
+    EXPECT_TRUE(solution.converged) << h.seed << ": " << solution.residual;
+    // the referee divides by other masses than the solver: a hundred times its tolerance
+    EXPECT_LE(judge(house, solution).worst(), 1e-6 * kFall) << h.seed;
+    if (solution.factorisations <= kFew) ++quick;
+  }
+  EXPECT_GE(quick, kLeast);
+}
+
 Constraint hold(int body, int axis) {  // velocity along the axis stays what the target says
   Constraint constraint;
   constraint.body_a = body;
