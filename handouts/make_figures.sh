@@ -17,6 +17,8 @@ done
 # A plot of a page: its own folder, since a page has several.
 pages=$(mktemp -d)
 trap 'rm -rf "$pages"' EXIT
+./tumble sample ball_into_bin --modules a1=reference,a2=reference,a5=reference --out "$pages"
+cp "$pages/ball_into_bin/worlds.png" "$folder/worlds_of_the_ball.png"
 # Drawings (handouts/drawings), twice as large as they stand on a page.
 build=${TUMBLE_BUILD:-build}
 cmake --build "$build" --target draw_handouts >&2

@@ -31,7 +31,7 @@ namespace tumble::a5 {
 // ---- What is believed, and what is asked --------------------------------------------------------
 
 /// Logarithm of the density of a world's numbers before anything is asked of it.
-///   ln p(x) = sum over i of ln p_i(x_i),                                                     (A5.1)
+///   ln p(x) = sum over i of ln p_i(x_i),                                                    (A5.1)
 ///       normal:   ln p_i = -1/2 ((x_i - mean) / deviation)^2,      uniform:  ln p_i = 0
 /// up to a constant that does not depend on x: what normalises p_i may be added or left out.
 /// @param priors  one for each number; the numbers are independent
@@ -45,7 +45,7 @@ double log_prior(const std::vector<Prior>& priors, const VectorXd& x);
 
 /// Logarithm of the density that the chain samples: the prior, times how well the world does what
 /// is asked of it.
-///   ln pi = ln p - 1/2 (violation / softness)^2                                              (A5.2)
+///   ln pi = ln p - 1/2 (violation / softness)^2                                             (A5.2)
 ///   softness 0 (a hard constraint):  ln pi = ln p where violation == 0, otherwise -infinity
 /// @param log_prior  ln p of the world; may be -infinity
 /// @param violation  >= 0: how far the end of the run is from what is asked; 0: it is done. NaN:
@@ -60,7 +60,7 @@ double log_target(double log_prior, double violation, double softness);
 
 /// The numbers that are proposed after x. All of them change at once.
 ///   kAdd:       x'_i = x_i + f s_i z_i
-///   kMultiply:  x'_i = x_i exp(f s_i z_i)                                                    (A5.3)
+///   kMultiply:  x'_i = x_i exp(f s_i z_i)                                                   (A5.3)
 ///   f = wide_factor where choice < wide_share (a wide step), otherwise 1
 /// @param proposal  s_i: moves[i].size;  wide_share, wide_factor
 /// @param x         (n); a number that is multiplied is not 0
@@ -71,7 +71,7 @@ double log_target(double log_prior, double violation, double softness);
 VectorXd propose(const Proposal& proposal, const VectorXd& x, const Draws& draws);
 
 /// Logarithm of the density with which `propose` leads from one place to another.
-///   q(to | from) = (1 - w) q_1(to | from) + w q_f(to | from),   w = wide_share               (A5.4)
+///   q(to | from) = (1 - w) q_1(to | from) + w q_f(to | from),   w = wide_share              (A5.4)
 ///   q_f = product over i of   g((to_i - from_i) / (f s_i)) / (f s_i)                   kAdd
 ///                             g(ln(to_i / from_i) / (f s_i)) / (f s_i |to_i|)          kMultiply
 ///   g(z) = exp(-z^2 / 2) / sqrt(2 pi)
@@ -87,7 +87,7 @@ VectorXd propose(const Proposal& proposal, const VectorXd& x, const Draws& draws
 double log_proposal(const Proposal& proposal, const VectorXd& from, const VectorXd& to);
 
 /// Logarithm of the probability with which a proposal is accepted.
-///   ln a = min(0,  ln pi(x') - ln pi(x) + ln q(x | x') - ln q(x' | x))                       (A5.5)
+///   ln a = min(0,  ln pi(x') - ln pi(x) + ln q(x | x') - ln q(x' | x))                      (A5.5)
 /// In this order:  -infinity where pi(x') is 0 or not known (-infinity, NaN), or where no way leads
 /// back (log_back is -infinity);  0 where pi(x) is 0: a chain that began at an impossible place
 /// leaves it;  otherwise (A5.5).
@@ -102,7 +102,7 @@ double log_acceptance(double log_target_from, double log_target_to, double log_f
                       double log_back);
 
 /// One step of the chain: a proposal, which is accepted or not.
-///   x <- x' where u < a, otherwise x once more                                               (A5.6)
+///   x <- x' where u < a, otherwise x once more                                              (A5.6)
 /// @param log_target  ln pi. Call it exactly once, at the proposal: each call is a simulation
 /// @param proposal    as for propose
 /// @param state       x and its log_target, which is not computed again
@@ -117,7 +117,7 @@ ChainState metropolis_step(const LogDensity& log_target, const Proposal& proposa
 // ---- How far the answers can be trusted ---------------------------------------------------------
 
 /// Correlation of a chain with itself, t steps later.
-///   c_t = 1/n sum from i = 1 to n - t of (x_i - m) (x_(i+t) - m),   rho_t = c_t / c_0        (A5.7)
+///   c_t = 1/n sum from i = 1 to n - t of (x_i - m) (x_(i+t) - m),   rho_t = c_t / c_0       (A5.7)
 /// m is the mean of the whole chain. The divisor is n at every lag, although the sum has n - t
 /// terms: so late lags, of which little is known, weigh little.
 /// @param chain     (n), n >= 2
@@ -131,7 +131,7 @@ VectorXd autocorrelation(const VectorXd& chain, int most_lag);
 /// Number of independent samples that would give the mean with the same error. Each chain is cut
 /// into halves first (of an odd number the middle one is left out): M halves of N, S = M N.
 ///   W = mean of the halves' variances (divisor N - 1),   B/N = variance of their means (M - 1)
-///   var_plus = (N - 1)/N W + B/N                                                             (A5.8)
+///   var_plus = (N - 1)/N W + B/N                                                            (A5.8)
 ///   rho_t = 1 - (W - N/(N - 1) mean of the halves' c_t) / var_plus,   c_t of (A5.7)
 ///   P_k = rho_2k + rho_(2k+1);  k = 0, 1, ... while P_k > 0 and 2k + 1 < N;
 ///       then P_k <- min(P_k, P_(k-1))
@@ -144,7 +144,7 @@ double effective_sample_size(const std::vector<VectorXd>& chains);
 
 /// Whether chains have found the same distribution: near 1 where they have, above 1.01 where not.
 /// Halves, W and var_plus as in (A5.8), but of scores z instead of the numbers themselves:
-///   z = normal_quantile((r - 3/8) / (S + 1/4))                                               (A5.9)
+///   z = normal_quantile((r - 3/8) / (S + 1/4))                                              (A5.9)
 /// r is the rank of a number among all S numbers of all halves, from 1; equal numbers share the
 /// mean of their ranks.
 ///   R(numbers) = sqrt(var_plus / W) of their z
@@ -159,7 +159,7 @@ double split_r_hat(const std::vector<VectorXd>& chains);
 
 /// The mean of what chains have sampled, with its Monte Carlo error.
 ///   mean, deviation (divisor S - 1): of all numbers of all chains
-///   standard_error = deviation / sqrt(effective_samples)                                    (A5.10)
+///   standard_error = deviation / sqrt(effective_samples)                                   (A5.10)
 /// @param chains  as for effective_sample_size
 /// @return effective_samples by (A5.8);  NaN, and so the error, where it is not known. An error of
 ///         0 would claim too much

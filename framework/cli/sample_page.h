@@ -1,4 +1,4 @@
-/// The page of `tumble sample`: worlds laid over each other, traces, answers, error against CPU time.
+/// The page of `tumble sample`: worlds in one picture, answers, error against CPU time, traces.
 #pragma once
 
 #include <filesystem>

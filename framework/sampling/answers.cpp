@@ -40,8 +40,8 @@ Estimate estimate_of(const Sampling& by, const std::string& name, const std::vec
   for (const Chain& chain : chains)
     for (Eigen::Index i = 0; i < samples; ++i)
       if (is_done(chain, i)) squares += (chain.x(i, number) - mean) * (chain.x(i, number) - mean);
-  // mean = (mean of h x) / (mean of h) with h = 1 where it is done; its error to first order is that
-  // of the mean of h (x - mean) / (mean of h).
+  // mean = (mean of h x) / (mean of h) with h = 1 where it is done; its error to first order is
+  // that of the mean of h (x - mean) / (mean of h).
   const Answer linear =
       by.monte_carlo_answer(parts_of(chains, samples, [&](const Chain& chain, Eigen::Index i) {
         return is_done(chain, i) ? (chain.x(i, number) - mean) / share : 0.0;

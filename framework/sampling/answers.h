@@ -8,8 +8,8 @@
 
 namespace tumble::sampling {
 
-/// The mean of one number among the worlds that do what is asked, with its Monte Carlo error: a ratio
-/// of two means of the chains, whose error is that of its linear part.
+/// The mean of one number among the worlds that do what is asked, with its Monte Carlo error: a
+/// ratio of two means of the chains, whose error is that of its linear part.
 struct Estimate {
   std::string name;
   Answer answer;          // of the number; effective_samples of the linear part

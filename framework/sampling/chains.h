@@ -30,7 +30,7 @@ struct Chain {
   int accepted = 0;     // of the kept steps
   int simulations = 0;  // all of its runs; a world outside the prior is not run
   int broken = 0;       // runs that did not reach their end
-  // CPU time after each kept step, from the chain's start [s]; of this run, and compared with nothing
+  // CPU time after each kept step, from the chain's start [s]; compared with nothing
   VectorXd cpu_s;
 };
 

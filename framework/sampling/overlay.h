@@ -17,8 +17,8 @@ struct OverlaidRun {
   Vector3d color;  // linear RGB in [0, 1], of what moves
 };
 
-/// @param runs  of worlds of the scene, at least one, with frames at the same times; the first one's
-///   bodies keep their names, those of others get a number
+/// @param runs  of worlds of the scene, at least one, with frames at the same times; the first
+///   one's bodies keep their names, those of others get a number
 Overlay overlay_of(const scene::Scene& scene, const std::vector<OverlaidRun>& runs);
 
 }  // namespace tumble::sampling

@@ -30,8 +30,8 @@ VectorXd drawn_from_prior(const std::vector<Prior>& priors, Random& random);
 /// @pre one number for each entry, inside its bounds
 scene::Scene world_of(const SampledScene& sampled, const VectorXd& x);
 
-/// How far a last frame is from what is asked: the root of the sum of squares of what each condition
-/// lacks, in multiples of its softness [-]; 0 where all are met.
+/// How far a last frame is from what is asked: the root of the sum of squares of what each
+/// condition lacks, in multiples of its softness [-]; 0 where all are met.
 double violation_of(const SampledScene& sampled, const Frame& last);
 
 /// A world's run to its end.

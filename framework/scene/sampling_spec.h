@@ -1,6 +1,6 @@
 /// In what worlds of a scene may differ, and what is asked of their end: plain data of the scene
-/// file's entry "sampling". A run of the scene knows nothing of it; framework/sampling makes worlds of
-/// it.
+/// file's entry "sampling". A run of the scene knows nothing of it; framework/sampling makes
+/// worlds of it.
 #pragma once
 
 #include <limits>

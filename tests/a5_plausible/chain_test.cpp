@@ -213,11 +213,11 @@ TEST(MetropolisStep, PaysForAnAsymmetricProposal) {
 }
 
 TEST(MetropolisStep, KeepsItsDistribution) {
-  // 1500 chains begin with exact draws of ln pi = -x. After 4 steps they are still exact draws,
+  // 400 chains begin with exact draws of ln pi = -x. After 3 steps they are still exact draws,
   // independent of each other: counts in 10 equally probable cells have a chi-square of 9 degrees
-  // of freedom, which exceeds 33.7 once in 10,000 seeds. Without Hastings' correction it is above
-  // 300.
-  constexpr int kChains = 1500, kCells = 10, kSteps = 4;
+  // of freedom, which exceeds 33.7 once in 10,000 seeds. Without Hastings' correction it is far
+  // above.
+  constexpr int kChains = 400, kCells = 10, kSteps = 3;
   const Proposal proposal{{multiply(0.8)}, 0.2, 3.0};
   Random random(11);
   std::vector<int> counts(kCells, 0);
@@ -243,8 +243,8 @@ TEST(MetropolisStep, KeepsItsDistribution) {
   const double found = chi_square(counts, std::vector<double>(kCells, kChains / double{kCells}));
   expect_true(
       found < 33.7, "chi-square below 33.7 (9 degrees of freedom)", show(found),
-      {.scene = "1500 chains that begin with exact draws of an exponential density",
-       .steps = "4 steps each, numbers multiplied by exp(0.8 z), wide steps with share 0.2",
+      {.scene = "400 chains that begin with exact draws of an exponential density",
+       .steps = "3 steps each, numbers multiplied by exp(0.8 z), wide steps with share 0.2",
        .slip = acceptance_slip("a step must not change the distribution that it samples: Hastings' "
                                "correction, or ln pi of a place where the chain is not"),
        .handout = equation(6)});

@@ -1,5 +1,6 @@
-// Right, and written otherwise than the reference: plain loops and vectors of doubles, all constants
-// of the densities included, products of shares by the larger exponent, lags summed one by one.
+// Right, and written otherwise than the reference: plain loops and vectors of doubles, all
+// constants of the densities included, shares added by the larger exponent, lags summed one by
+// one.
 #include "assignments/a5_plausible/a5_plausible.h"
 
 #include <algorithm>

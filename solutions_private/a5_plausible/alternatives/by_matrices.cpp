@@ -1,5 +1,5 @@
-// Right, and written otherwise than the reference: arrays of Eigen for whole vectors of numbers, and
-// chains as the columns of a matrix.
+// Right, and written otherwise than the reference: arrays of Eigen for whole vectors of numbers,
+// and chains as the columns of a matrix.
 #include "assignments/a5_plausible/a5_plausible.h"
 
 #include <algorithm>

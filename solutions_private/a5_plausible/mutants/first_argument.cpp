@@ -1,4 +1,4 @@
-// mutant: first_argument - every function returns its first argument, or the first number that it is given
+// mutant: first_argument - every function returns its first argument
 // caught-by: no number counts
 #include "assignments/a5_plausible/a5_plausible.h"
 

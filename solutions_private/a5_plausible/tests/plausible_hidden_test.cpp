@@ -46,20 +46,20 @@ TEST(HiddenLogProposal, IntegratesToOne) {
                      "shares",
                  .handout = equation(4)};
   };
-  expect_answer(share_between({{add(0.7)}, 0.3, 4.0}, 2, -30, 34, 1500), 1, 1e-6, "",
+  expect_answer(share_between({{add(0.7)}, 0.3, 4.0}, 2, -30, 34, 300), 1, 1e-6, "",
                 story("size 0.7, wide steps of 4 times that with share 0.3: over all places"));
-  expect_answer(share_between({{multiply(0.25)}, 0.4, 2.0}, 2, 0.0, 40, 4000), 1, 1e-6, "",
+  expect_answer(share_between({{multiply(0.25)}, 0.4, 2.0}, 2, 0.0, 40, 800), 1, 1e-6, "",
                 story("multiplied by exp(0.25 z), wide 2 times that with share 0.4"));
 }
 
 TEST(HiddenLogProposal, IsTheDensityOfPropose) {
-  // 3000 proposals fall into 8 cells as their density says: 7 degrees of freedom, 29.9 once in
+  // 1000 proposals fall into 8 cells as their density says: 7 degrees of freedom, 29.9 once in
   // 10,000 seeds.
   const Proposal proposal{{multiply(0.4)}, 0.35, 3.0};
   const std::vector<double> bounds = {0.0, 0.6, 1.0, 1.4, 1.8, 2.2, 2.8, 4.5, 1e9};
   Random random(22);
   std::vector<int> counts(8, 0);
-  constexpr int kDraws = 3000;
+  constexpr int kDraws = 1000;
   for (int i = 0; i < kDraws; ++i) {
     const double to = at_place(student().propose(proposal, vector({2}), draws_of(random, 1)));
     for (std::size_t cell = 0; cell < 8; ++cell)
@@ -68,14 +68,14 @@ TEST(HiddenLogProposal, IsTheDensityOfPropose) {
   std::vector<double> expected;
   double rest = 1.0;
   for (std::size_t cell = 0; cell < 7; ++cell) {
-    const double share = share_between(proposal, 2, bounds[cell], bounds[cell + 1], 200);
+    const double share = share_between(proposal, 2, bounds[cell], bounds[cell + 1], 60);
     expected.push_back(kDraws * share);
     rest -= share;
   }
   expected.push_back(kDraws * rest);
   const double found = chi_square(counts, expected);
   expect_true(found < 29.9, "chi-square below 29.9 (7 degrees of freedom)", show(found),
-              {.scene = "3000 proposals from x = 2, counted, against what log_proposal says",
+              {.scene = "1000 proposals from x = 2, counted, against what log_proposal says",
                .slip = "propose and log_proposal are not about the same proposal",
                .handout = equation(4)});
 }
@@ -115,7 +115,7 @@ TEST(HiddenMetropolisStep, KeepsACutOffDistributionOfTwoNumbers) {
   const Proposal proposal{{add(0.4), multiply(0.3)}, 0.3, 3.0};
   const auto cumulative = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
   const double low = cumulative(-0.5), high = cumulative(1);
-  constexpr int kChains = 1200, kCells = 5, kSteps = 4;
+  constexpr int kChains = 400, kCells = 5, kSteps = 3;
   Random random(24);
   std::vector<int> first(kCells, 0), second(kCells, 0);
   for (int i = 0; i < kChains; ++i) {
@@ -138,8 +138,8 @@ TEST(HiddenMetropolisStep, KeepsACutOffDistributionOfTwoNumbers) {
   for (const auto& [how, chi] : found)
     expect_true(
         chi < 23.5, "chi-square below 23.5 (4 degrees of freedom)", show(chi),
-        {.scene = std::string("1200 chains of two numbers with bounds; the one that is ") + how,
-         .steps = "4 steps each from exact draws",
+        {.scene = std::string("400 chains of two numbers with bounds; the one that is ") + how,
+         .steps = "3 steps each from exact draws",
          .slip = acceptance_slip("a proposal outside the bounds leaves the chain where it "
                                  "is, once more"),
          .handout = equation(6)});
@@ -251,8 +251,8 @@ TEST(HiddenSplitRHat, KnowsNoOrderAndNoDirection) {
 }
 
 TEST(HiddenMonteCarloAnswer, IsAsWrongAsItSaysAtTwoErrors) {
-  // 95.45 in 100 of 200 experiments: 191 with a deviation of 3, and of S_eff 15 %.
-  constexpr int kExperiments = 200;
+  // 95.45 in 100: of 100 experiments with a deviation of 2, and S_eff is known to 15 %.
+  constexpr int kExperiments = 100;
   int within = 0;
   for (int i = 0; i < kExperiments; ++i) {
     const Answer answer =
@@ -260,7 +260,7 @@ TEST(HiddenMonteCarloAnswer, IsAsWrongAsItSaysAtTwoErrors) {
     within += std::abs(answer.mean) <= 2 * answer.standard_error ? 1 : 0;
   }
   expect_answer(
-      within, 0.9545 * kExperiments, 12, "of 200 experiments",
+      within, 0.9545 * kExperiments, 8, "of 100 experiments",
       {.scene = "3 chains of 200 steps with correlation 0.5^t, whose mean is 0: how often "
                 "the answer is within two standard errors",
        .slip = "deviation / sqrt(S_eff)",
