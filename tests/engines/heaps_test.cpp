@@ -50,8 +50,8 @@ TEST(Heaps, AWaveOfDominoesFallsInAboutTheStepsThatTheSceneAsksFor) {
   const Trajectory result = run(scene, reference_laws());
   EXPECT_EQ(result.stopped_by, "");
   EXPECT_GT(result.counters.counts.at("large_island_steps"), 0u);
-  // impact by impact it is 5 and more
-  EXPECT_LT(result.counters.counts.at("steps"), 2.0 * scene.duration_s / scene.step_s);
+  // impact by impact it is 5 and more; in steps about 2, some more or fewer as they happen to meet
+  EXPECT_LT(result.counters.counts.at("steps"), 2.5 * scene.duration_s / scene.step_s);
   ASSERT_EQ(result.counters.notices.size(), 1u);  // and says so
   EXPECT_NE(result.counters.notices[0].find("\"plastic_impacts\": \"located\""), std::string::npos)
       << result.counters.notices[0];
