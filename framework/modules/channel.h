@@ -71,14 +71,14 @@ class Channel {
   std::uint64_t draw();
 
   int read_fd_, write_fd_;
-  int reads_to_sleep_ = 0, pause_ = 0;  // on a busy machine: how many reads do without polling
-  std::uint64_t question_ = 0;          // number of the judge's latest message
+  std::uint64_t question_ = 0;  // number of the judge's latest message
   End side_;
   std::array<std::uint64_t, 32> lots_{};  // drawn ahead: one system call for many questions
   std::size_t lots_left_ = 0;
   Extension extension_;
   std::array<std::uint8_t, 1 << 14> ahead_;  // received but not consumed: from at_ to end_
   std::size_t at_ = 0, end_ = 0;
+  int reads_to_sleep_ = 0, pause_ = 0;  // on a busy machine: how many reads do without polling
 };
 
 }  // namespace tumble::modules

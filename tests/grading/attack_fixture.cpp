@@ -30,7 +30,7 @@ WorkerOptions options_for(const fs::path& object) {
   options.call_own_s = 1.5;
   options.session_own_s = 6.0;
   options.callback_budget = 1000;
-  options.memory_bytes = 512ull << 20;
+  options.memory_bytes = 256ull << 20;
   return options;
 }
 
