@@ -13,8 +13,7 @@ function(absent_effect_program name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)   # files of another folder: how they are grouped there is not known here
   target_link_options(${name} PRIVATE -Wl,--allow-multiple-definition)   # the library's files come in groups, with copies of these; the first counts
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
-  target_compile_definitions(${name} PRIVATE TUMBLE_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  target_link_libraries(${name} PRIVATE tumble::assignments tumble::engines tumble::test_laws fmt::fmt)
+  target_link_libraries(${name} PRIVATE tumble::assignments tumble::engines tumble::test_laws tumble::test_places fmt::fmt)
   add_dependencies(${name} a1_reference a2_reference a3_reference)
   add_dependencies(bench_absent_effects ${name})
 endfunction()

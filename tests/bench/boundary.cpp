@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "framework/grading/worker/worker_connection.h"
 #include "tests/modules/waist.h"
 
@@ -70,7 +71,7 @@ int main() {
   using namespace tumble;
   grading::WorkerOptions options;
   options.id = "waist";
-  options.module = TUMBLE_BINARY_DIR "/modules/waist_right.so";
+  options.module = tumble::test::binary_dir() + "/modules/waist_right.so";
   options.session_own_s = 60.0;
   options.call_own_s = 60.0;
   for (const auto& [sandboxed, busy] :

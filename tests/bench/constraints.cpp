@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/places.h"
 #include "framework/core/cpu_time.h"
 #include "framework/engines/run.h"
 #include "framework/scene/load_scene.h"
@@ -21,7 +22,7 @@ constexpr int kRuns = 3;        // the fastest counts
 constexpr double kShort = 2.0;  // s: longer runs are not repeated
 
 scene::Scene scene_of_a3(const std::string& name) {
-  return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+  return scene::load_scene(std::filesystem::path(test::source_dir()) /
                            "assignments/a3_constraints/scenes" / (name + ".json"));
 }
 

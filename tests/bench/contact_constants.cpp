@@ -21,6 +21,7 @@
 #include <boost/pfr/core.hpp>
 #include <fmt/format.h>
 
+#include "tests/support/places.h"
 #include "framework/core/cpu_time.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/judging/judge.h"
@@ -110,7 +111,7 @@ std::optional<Looked> look(const Usual& usual) {
 
 /// The names of the struct's members, in order, from its header.
 std::vector<std::string> names_of_constants() {
-  std::ifstream in(fs::path(TUMBLE_SOURCE_DIR) / "framework/engines/contact/contact_constants.h");
+  std::ifstream in(fs::path(test::source_dir()) / "framework/engines/contact/contact_constants.h");
   static const std::regex member(R"(^  [\w:]+ (\w+) = [^;]+;$)");
   std::vector<std::string> names;
   std::smatch match;
@@ -134,7 +135,7 @@ void scale(engines::ContactConstants& constants, std::size_t which, double facto
 std::vector<Usual> usual_runs() {
   std::vector<fs::path> files;
   for (const char* folder : {"assignments/a3_constraints/scenes", "tests/engines/broken_scenes"})
-    for (const auto& entry : fs::directory_iterator(fs::path(TUMBLE_SOURCE_DIR) / folder))
+    for (const auto& entry : fs::directory_iterator(fs::path(test::source_dir()) / folder))
       if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<Usual> usual;

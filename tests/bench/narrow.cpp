@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "framework/collision/contact_patch.h"
 #include "framework/collision/first_impact.h"
 #include "framework/collision/manifold_points.h"
@@ -212,7 +213,7 @@ auto let_down(double gap, double spread, bool upright) {
 }
 
 Shape model(const std::string& name) {
-  return load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid;
+  return load_solid(test::source_dir() + "/models/" + name + ".3ds").solid;
 }
 
 /// A slab whose top is a bowl of `cells` x `cells` squares, of two triangles each.

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 
@@ -16,9 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 ProgramOutcome check(const std::vector<std::string>& more) {
-  ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-  std::vector<std::string> words = {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check",
-                                    "a1"};
+  ::setenv("TUMBLE_ROOT", test::source_dir().c_str(), 1);
+  std::vector<std::string> words = {test::binary_dir() + "/bin/tumble_check", "check", "a1"};
   words.insert(words.end(), more.begin(), more.end());
   return run_program(words, Output::kCaptured, 100.0);
 }
@@ -72,14 +72,14 @@ TEST(Check, AnErrorInsideEigenBeginsWithTheStudentsLine) {
 
 // The student's file of this tree; the tests below add their lines to it.
 std::string stub() {
-  std::ifstream in(TUMBLE_SOURCE_DIR "/assignments/a1_impulse/a1_impulse.cpp");
+  std::ifstream in(test::source_dir() + "/assignments/a1_impulse/a1_impulse.cpp");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 // An untouched file: every test is not attempted. Always so in a tree with the reference; in a
 // released tree a student's unfinished file is no failure of this test.
 bool untouched() {
-  if (fs::exists(TUMBLE_SOURCE_DIR "/solutions_private")) return true;
+  if (fs::exists(test::source_dir() + "/solutions_private")) return true;
   static const bool is = check({File(stub()).path.string()}).code == 4;
   return is;
 }
@@ -115,8 +115,9 @@ TEST(Check, AnotherFileRunsInTheSandbox) {
   SKIP_UNLESS_UNTOUCHED();
   std::string text = stub();
   const std::string first = "throw NotImplemented(\"intersect_ray_triangle\"";
-  text.insert(text.find(first), "if (std::FILE* seen = std::fopen(\"" TUMBLE_SOURCE_DIR
-                                "/README.md\", \"r\")) { std::fclose(seen); std::abort(); }\n  ");
+  text.insert(text.find(first),
+              "if (std::FILE* seen = std::fopen(\"" + test::source_dir() +
+                  "/README.md\", \"r\")) { std::fclose(seen); std::abort(); }\n  ");
   const File file("#include <cstdio>\n#include <cstdlib>\n" + text);
   const ProgramOutcome outcome = check({file.path.string()});
   expect_said(outcome, 4, {"not attempted"});
@@ -158,8 +159,8 @@ TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
 
 TEST(Check, AMissingFileAndAnUnknownAssignmentAreReportedWithTheRemedy) {
   EXPECT_EQ(check({"/nowhere/mine.cpp"}).code, 2);
-  const ProgramOutcome outcome = run_program(
-      {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check", "a99"}, Output::kCaptured);
+  const ProgramOutcome outcome =
+      run_program({test::binary_dir() + "/bin/tumble_check", "check", "a99"}, Output::kCaptured);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.printed.find("Known: a1"), std::string::npos) << outcome.printed;
 }

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <set>
 
+#include "tests/support/places.h"
 #include "framework/core/random.h"
 #include "tests/cli/busy_loops.h"
 #include "tests/cli/grading_fixture.h"
@@ -54,7 +55,7 @@ TEST_F(Grading, AnyNumberOfJobsGivesTheSameBytes) {
 class OneScene : public OtherRubric {
  protected:
   OneScene() {
-    fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "models", course / "models");
+    fs::create_directory_symlink(fs::path(test::source_dir()) / "models", course / "models");
     const fs::path scenes = course / "assignments/a1_impulse/scenes";
     std::vector<fs::path> others;
     for (const auto& entry : fs::directory_iterator(scenes))

@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/places.h"
+
 #include <gtest/gtest.h>
 
 namespace tumble::testing {
@@ -37,11 +39,11 @@ class CommandLine : public ::testing::Test {
 
   Said type(const std::string& words) const {
     const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
-    const int status = std::system(("cd '" + folder_.string() +
-                                    "' && TUMBLE_ROOT='" TUMBLE_SOURCE_DIR "' '" TUMBLE_BINARY_DIR
-                                    "/bin/tumble' " +
-                                    words + " >'" + out.string() + "' 2>'" + err.string() + "'")
-                                       .c_str());
+    const int status =
+        std::system(("cd '" + folder_.string() + "' && TUMBLE_ROOT='" + test::source_dir() + "' '" +
+                     test::binary_dir() + "/bin/tumble' " + words + " >'" + out.string() + "' 2>'" +
+                     err.string() + "'")
+                        .c_str());
     Said said{WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(out), contents_of(err)};
     fs::remove(out);
     fs::remove(err);

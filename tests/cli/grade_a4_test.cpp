@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 
@@ -18,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSolutions = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a4_timewarp";
+const fs::path kSolutions = fs::path(test::source_dir()) / "solutions_private/a4_timewarp";
 
 class GradingOfTimewarp : public ::testing::Test {
  protected:
-  GradingOfTimewarp() { ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1); }
+  GradingOfTimewarp() { ::setenv("TUMBLE_ROOT", test::source_dir().c_str(), 1); }
   ProgramOutcome type(std::vector<std::string> words) const {
-    words.insert(words.begin(), std::string(TUMBLE_BINARY_DIR) + "/bin/tumble");
+    words.insert(words.begin(), test::binary_dir() + "/bin/tumble");
     return run_program(words, Output::kCaptured, 200.0);
   }
   PrivateFolder scratch_;

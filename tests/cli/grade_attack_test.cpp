@@ -9,6 +9,7 @@
 #include <sys/file.h>
 #include <sys/wait.h>
 
+#include "tests/support/places.h"
 #include "tests/cli/grading_fixture.h"
 
 namespace tumble::grading {
@@ -282,8 +283,8 @@ TEST_F(GradeAttack, ABuildThatTakesTheProgramsAwayDisturbsNoGrading) {
   const fs::path build = root / "build";
   fs::create_directories(build / "bin");
   for (const char* program : {"judge_a1", "worker_a1", "sandbox_init", "tumble"})
-    fs::copy_file(fs::path(TUMBLE_BINARY_DIR) / "bin" / program, build / "bin" / program);
-  fs::create_directory_symlink(fs::path(TUMBLE_BINARY_DIR) / "submission_sdk",
+    fs::copy_file(fs::path(test::binary_dir()) / "bin" / program, build / "bin" / program);
+  fs::create_directory_symlink(fs::path(test::binary_dir()) / "submission_sdk",
                                build / "submission_sdk");
   put("alice/a1_impulse.cpp", text_of(kStub));
   put("bob/a1_impulse.cpp", text_of(kStub) + "// bob\n");

@@ -1,5 +1,6 @@
 // A submission's result does not depend on the load of the machine; but the time that it sleeps
 // counts.
+#include "tests/support/places.h"
 #include "tests/cli/busy_loops.h"
 #include "tests/cli/grading_fixture.h"
 
@@ -9,7 +10,8 @@ namespace {
 TEST_F(Grading, BusyLoopsBesideItChangeNoByte) {
   id = "a2";
   put("reference/a2_integration.cpp",
-      text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a2_integration/a2_integration.cpp"));
+      text_of(fs::path(test::source_dir()) /
+              "solutions_private/a2_integration/a2_integration.cpp"));
   EXPECT_EQ(grade("calm").code, 0);
   const BusyLoops loops(4);
   const ProgramOutcome busy = grade("busy");

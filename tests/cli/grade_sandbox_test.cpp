@@ -2,6 +2,7 @@
 // refused, and all give the same verdicts. And what tumble doctor says of a machine.
 #include <regex>
 
+#include "tests/support/places.h"
 #include "framework/grading/sandbox/landlock.h"
 #include "tests/cli/grading_fixture.h"
 
@@ -107,7 +108,7 @@ TEST_F(GradeSandbox, DoctorsExitCodeIsItsVerdict) {
 }
 
 TEST_F(GradeSandbox, DoctorFindsTheStrongestThatAContainerPermits) {
-  const std::string launcher = (fs::path(TUMBLE_BINARY_DIR) / "bin/like_docker").string();
+  const std::string launcher = (fs::path(test::binary_dir()) / "bin/like_docker").string();
   const auto docker = nlohmann::json::parse(doctor({launcher}).printed);
   EXPECT_EQ(docker["sandbox"]["kind"], "landlock");
   EXPECT_EQ(docker["sandboxes"][0]["works"], false);

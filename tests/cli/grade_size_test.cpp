@@ -1,5 +1,6 @@
 // A vector of the wrong size fails the tests of its own function only: the judge survives and
 // reports the right size.
+#include "tests/support/places.h"
 #include "tests/cli/grading_fixture.h"
 
 namespace tumble::grading {
@@ -8,7 +9,7 @@ namespace {
 class GradeSizes : public Grading {
  protected:
   static fs::path solution(const std::string& folder) {
-    return fs::path(TUMBLE_SOURCE_DIR) / "solutions_private" / folder / (folder + ".cpp");
+    return fs::path(test::source_dir()) / "solutions_private" / folder / (folder + ".cpp");
   }
   // The text with `does` as the first statement of the function's definition.
   static std::string with_slip(std::string text, const std::string& head, const std::string& does) {

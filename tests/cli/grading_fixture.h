@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 
@@ -21,10 +22,11 @@ namespace tumble::grading {
 
 namespace fs = std::filesystem;
 
-inline const fs::path kProgram = fs::path(TUMBLE_BINARY_DIR) / "bin/tumble";
-inline const fs::path kStub = fs::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/a1_impulse.cpp";
+inline const fs::path kProgram = fs::path(test::binary_dir()) / "bin/tumble";
+inline const fs::path kStub =
+    fs::path(test::source_dir()) / "assignments/a1_impulse/a1_impulse.cpp";
 inline const fs::path kReference =
-    fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a1_impulse/a1_impulse.cpp";
+    fs::path(test::source_dir()) / "solutions_private/a1_impulse/a1_impulse.cpp";
 
 inline std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -46,7 +48,7 @@ inline bool says(const ProgramOutcome& outcome, const std::string& words) {
 class Grading : public ::testing::Test {
  protected:
   Grading() {
-    ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
+    ::setenv("TUMBLE_ROOT", test::source_dir().c_str(), 1);
     ::setenv("TUMBLE_GRADER_KEY", (root / "grader.key").c_str(), 1);
   }
   void put(const std::string& file, const std::string& text) const {
@@ -95,15 +97,15 @@ class OtherRubric : public Grading {
  protected:
   OtherRubric() {
     fs::create_directories(course);
-    fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "assignments", course / "assignments",
+    fs::copy(fs::path(test::source_dir()) / "assignments", course / "assignments",
              fs::copy_options::recursive);
-    fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "framework", course / "framework");
+    fs::create_directory_symlink(fs::path(test::source_dir()) / "framework", course / "framework");
     fs::create_directories(course / "tests");
-    fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / "tests/truths",
+    fs::create_directory_symlink(fs::path(test::source_dir()) / "tests/truths",
                                  course / "tests/truths");
     const fs::path hidden = "solutions_private/a1_impulse/rubric_hidden.json";
     fs::create_directories((course / hidden).parent_path());
-    fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / hidden, course / hidden);
+    fs::copy_file(fs::path(test::source_dir()) / hidden, course / hidden);
     ::setenv("TUMBLE_ROOT", course.c_str(), 1);
   }
   fs::path rubric() const { return course / "assignments/a1_impulse/rubric.json"; }

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "tests/support/places.h"
 #include "tests/cli/command_line.h"
 
 namespace tumble::testing {
@@ -22,8 +23,9 @@ class Terminal {
     child_ = ::forkpty(&screen_, nullptr, nullptr, nullptr);
     if (child_ != 0) return;
     if (::chdir(folder.c_str()) != 0) ::_exit(126);
-    ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-    ::execl("/bin/sh", "sh", "-c", ("exec '" TUMBLE_BINARY_DIR "/bin/tumble' " + words).c_str(),
+    ::setenv("TUMBLE_ROOT", test::source_dir().c_str(), 1);
+    ::execl("/bin/sh", "sh", "-c",
+            ("exec '" + test::binary_dir() + "/bin/tumble' " + words).c_str(),
             static_cast<char*>(nullptr));
     ::_exit(127);
   }

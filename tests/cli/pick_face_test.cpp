@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/cli/pick_face.h"
 #include "framework/geometry/ray_tree.h"
 #include "framework/scene/build_shape.h"
@@ -55,7 +56,7 @@ void count_calls(Asked& asked) {
 std::optional<PickedFace> ask_every_face(const scene::Scene& scene, const Ray& ray) {
   const scene::BodySpec& body = scene.bodies.front();
   const TriangleMesh surface =
-      surface_of(scene::build_solids(scene, TUMBLE_SOURCE_DIR).front().shape);
+      surface_of(scene::build_solids(scene, test::source_dir()).front().shape);
   std::optional<PickedFace> nearest;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t face = 0; face < surface.faces.size(); ++face) {
@@ -91,14 +92,14 @@ TEST_P(PickFace, IsTheFaceThatALoopOverAllFacesFinds) {
   constexpr int kRays = 60;
   const scene::Scene scene = scene_of(GetParam());
   const double radius =
-      bounding_radius(scene::build_solids(scene, TUMBLE_SOURCE_DIR).front().shape);
+      bounding_radius(scene::build_solids(scene, test::source_dir()).front().shape);
   std::mt19937 random(1);
   int hits = 0;
   for (int i = 0; i < kRays; ++i) {
     const Ray ray = aimed(scene, radius, random);
     Asked asked;
     count_calls(asked);
-    const auto picked = pick_face(scene, asked.laws, ray, TUMBLE_SOURCE_DIR),
+    const auto picked = pick_face(scene, asked.laws, ray, test::source_dir()),
                expected = ask_every_face(scene, ray);
     ASSERT_EQ(picked.has_value(), expected.has_value()) << "ray " << i;
     if (!picked) continue;
@@ -128,8 +129,8 @@ TEST(PickFaceOfAnotherOpinion, IsWhatTheLawSays) {
   };
   Asked seeing;
   count_calls(seeing);
-  const auto behind = pick_face(scene, laws, ray, TUMBLE_SOURCE_DIR),
-             front = pick_face(scene, seeing.laws, ray, TUMBLE_SOURCE_DIR);
+  const auto behind = pick_face(scene, laws, ray, test::source_dir()),
+             front = pick_face(scene, seeing.laws, ray, test::source_dir());
   ASSERT_TRUE(behind && front);
   EXPECT_GT(behind->distance, front->distance);
   EXPECT_NE(behind->face, front->face);

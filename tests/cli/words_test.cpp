@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "tests/cli/command_line.h"
 
@@ -74,7 +75,7 @@ TEST_F(CommandLine, ScenesListsEverySceneOfTheTreeOnce) {
     EXPECT_FALSE(scene.at("title").get<std::string>().empty()) << scene;
   }
   for (const auto& entry :
-       fs::recursive_directory_iterator(fs::path(TUMBLE_SOURCE_DIR) / "assignments"))
+       fs::recursive_directory_iterator(fs::path(test::source_dir()) / "assignments"))
     if (entry.path().parent_path().filename() == "scenes" && entry.path().extension() == ".json") {
       files.insert(entry.path().stem());
       EXPECT_TRUE(names.contains(entry.path().stem())) << entry.path();
@@ -240,7 +241,7 @@ TEST_F(CommandLine, TruthsOfAFolderWithAnOddFileNameItAndCompareTheOthers) {
   fs::create_directory(folder_ / "some");
   std::ofstream(folder_ / "some" / "a_notes.json") << "{\"remarks\": []}\n";
   std::ofstream(folder_ / "some" / "b_cut.json") << "{\"id\": \"x";
-  fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / "tests/truths/bouncing_ball__e0.5.json",
+  fs::copy_file(fs::path(test::source_dir()) / "tests/truths/bouncing_ball__e0.5.json",
                 folder_ / "some" / "c_ball.json");
   const Said said = type("truths some");
   EXPECT_EQ(said.code, 2) << said.out;
@@ -320,9 +321,9 @@ TEST_F(CommandLine, APokeGivesMomentumForceTimesTime) {
 
 // The pixel of the first example in README and handout.
 TEST_F(CommandLine, ThePixelOfTheReadmeHitsTheBox) {
-  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/README.md"),
+  EXPECT_TRUE(holds(contents_of(test::source_dir() + "/README.md"),
                     "poke poked_box --pixel 200,250 --force 0,40,0"));
-  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/handouts/a1_impulse.md"),
+  EXPECT_TRUE(holds(contents_of(test::source_dir() + "/handouts/a1_impulse.md"),
                     "poke poked_box --pixel 200,250 --force 0,40,0"));
   const Said said =
       type("poke poked_box --modules reference --pixel 200,250 --force 0,40,0 --duration-s 0.2");
@@ -411,7 +412,7 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
 // modules are used where the tree has them.
 TEST_F(CommandLine, ASchedulerIsTriedOnScenesOfOtherAssignments) {
   for (const char* id : {"a3", "a4"})
-    if (!std::ifstream(std::string(TUMBLE_BINARY_DIR "/modules/") + id + "_reference.so"))
+    if (!std::ifstream(std::string(test::binary_dir() + "/modules/") + id + "_reference.so"))
       GTEST_SKIP() << "this tree has no " << id << " but the student's";
   const Said said =
       type("run dominoes_row --n 2 --duration-s 0.1 --engine tw --modules a4=reference");
@@ -453,7 +454,7 @@ TEST_F(CommandLine, AnAuditOfAnUnknownSlipIsAnsweredWithTheNearest) {
 
 TEST_F(CommandLine, AModelThatIsNotClosedIsRefusedInTheLoadersWords) {
   for (const std::string verb : {"run", "explain"}) {
-    const Said said = type(verb + " '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'");
+    const Said said = type(verb + " '" + test::source_dir() + "/models/broken/missing_face.3ds'");
     EXPECT_EQ(said.code, 2) << verb;
     EXPECT_TRUE(holds(said.err, "open edge")) << said.err;
     EXPECT_FALSE(holds(said.err, "JSON")) << said.err;
@@ -471,8 +472,9 @@ TEST_F(CommandLine, InspectSaysHowToSeeAModelMove) {
   const Said said = type("inspect t_handle --scale 0.5");
   EXPECT_TRUE(holds(said.out, "tumble run") && holds(said.out, "t_handle.3ds --scale 0.5"))
       << said.out;
-  EXPECT_FALSE(holds(type("inspect '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'").out,
-                     "tumble run"));
+  EXPECT_FALSE(
+      holds(type("inspect '" + test::source_dir() + "/models/broken/missing_face.3ds'").out,
+            "tumble run"));
 }
 
 // A number would be compared as metres whatever its label.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/collision/first_impact.h"
 #include "framework/collision/manifold_points.h"
 #include "framework/collision/sweep.h"
@@ -46,7 +47,7 @@ TriangleMesh scaled(TriangleMesh mesh, double scale) {
 }
 
 Shape model(const std::string& name) {
-  return load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid;
+  return load_solid(test::source_dir() + "/models/" + name + ".3ds").solid;
 }
 
 struct Convex {

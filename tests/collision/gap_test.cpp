@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/collision/gap.h"
 #include "framework/geometry/solid.h"
 
@@ -118,8 +119,7 @@ struct Solid {
 };
 
 Solid model(const std::string& name) {
-  const MeshSolid solid =
-      load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid;
+  const MeshSolid solid = load_solid(test::source_dir() + "/models/" + name + ".3ds").solid;
   return {name, solid.mesh_body, CollisionShape(solid)};
 }
 

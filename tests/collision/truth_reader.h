@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/places.h"
 #include "framework/core/math.h"
 
 namespace tumble::testing {
@@ -16,7 +17,7 @@ namespace tumble::testing {
 inline nlohmann::json read_truth(const std::string& id) {
   std::string name = id;
   name.replace(name.find('/'), 1, "__");
-  std::ifstream file(std::string(TUMBLE_SOURCE_DIR) + "/tests/truths/" + name + ".json");
+  std::ifstream file(test::source_dir() + "/tests/truths/" + name + ".json");
   if (!file) throw std::runtime_error("no reference value " + id);
   return nlohmann::json::parse(file);
 }

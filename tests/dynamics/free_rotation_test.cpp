@@ -1,4 +1,5 @@
 // Exact free rotation: against truths computed elsewhere, and against the laws that it must keep.
+#include "tests/support/places.h"
 #include "framework/dynamics/free_rotation.h"
 
 #include <filesystem>
@@ -17,7 +18,8 @@ Quaterniond quaternion(const nlohmann::json& value) {
 
 std::vector<std::string> free_tops() {
   std::vector<std::string> ids;
-  for (const auto& entry : std::filesystem::directory_iterator(TUMBLE_SOURCE_DIR "/tests/truths")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_dir() + "/tests/truths")) {
     std::string name = entry.path().stem();
     if (!name.starts_with("free_top_")) continue;
     ids.push_back(name.replace(name.find("__"), 2, "/"));

@@ -1,4 +1,5 @@
 // How much of a solid lies under a plane, against closed forms and against itself.
+#include "tests/support/places.h"
 #include "framework/effects/water/submerged.h"
 
 #include <cmath>
@@ -27,7 +28,7 @@ Floatable model(const char* file) {
   spec.name = file;
   spec.shape = scene::ModelSpec{file, "", 1.0};
   spec.mass_kg = 1.0;
-  return Floatable(scene::build_solid(spec, {}, TUMBLE_SOURCE_DIR).shape);
+  return Floatable(scene::build_solid(spec, {}, test::source_dir()).shape);
 }
 
 TEST(Submerged, BallIsTheSphericalCap) {

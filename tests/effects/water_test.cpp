@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/invariants.h"
@@ -139,7 +140,7 @@ TEST(Water, ForceAndTorqueAreTheSlopeOfTheEnergy) {
   gear.shape = scene::ModelSpec{"gear.3ds", "", 0.3};
   gear.world_from_body = Quaterniond(0.8, 0.3, -0.4, 0.33).normalized();
   scene::Scene scene = in_water({gear}, 1.0);
-  scene.file = TUMBLE_SOURCE_DIR "/assignments/a1_impulse/scenes/none.json";
+  scene.file = test::source_dir() + "/assignments/a1_impulse/scenes/none.json";
   const World world = build_world(scene);
   const auto energy = [&](const Vector3d& moved, const Vector3d& turned) {
     RigidBodyState state = world.bodies[0].state;

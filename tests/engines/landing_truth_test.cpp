@@ -1,6 +1,7 @@
 // A scene with a first contact has a reference solution.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/effects/spring/spring.h"
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/truths/memory_scene.h"
@@ -15,7 +16,7 @@ namespace {
 /// differ by 1e-3 m permanently.
 TEST(Truth, OfALandingLastsToTheEndAndThreeRunsAgreeOnIt) {
   const scene::Scene scene =
-      scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a3_constraints/scenes/drop_a_box.json");
+      scene::load_scene(test::source_dir() + "/assignments/a3_constraints/scenes/drop_a_box.json");
   std::string why;
   const auto reference = engines::try_reference(scene, reference_laws(), {}, why);
   ASSERT_TRUE(reference) << why;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
 #include "framework/effects/gravity/gravity.h"
@@ -25,7 +26,7 @@ struct Modules {
   Modules() {
     modules::Registry registry;
     register_assignments(registry);
-    const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
+    const std::filesystem::path built = std::filesystem::path(test::binary_dir()) / "modules";
     a2 = *std::static_pointer_cast<const a2::Module>(
         modules::load_module(registry.find("a2"), built / "a2_reference.so"));
     a3 = *std::static_pointer_cast<const a3::Module>(

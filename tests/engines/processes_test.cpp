@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/events/flight_world.h"
@@ -30,7 +31,7 @@ Trajectory run_with(const std::string& engine, const scene::Scene& scene,
 }
 
 scene::Scene course_scene(const std::string& name, double duration) {
-  scene::Scene scene = scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+  scene::Scene scene = scene::load_scene(std::filesystem::path(test::source_dir()) /
                                          "assignments/a3_constraints/scenes" / (name + ".json"));
   scene.duration_s = std::min(scene.duration_s, duration);
   return scene;

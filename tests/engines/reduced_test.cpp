@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "assignments/a1_impulse/a1_binding.h"
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
@@ -25,7 +26,7 @@ using scene::Coordinates;
 Laws laws() {
   modules::Registry registry;
   register_assignments(registry);
-  const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
+  const std::filesystem::path built = std::filesystem::path(test::binary_dir()) / "modules";
   Laws laws = library_laws();
   a1::bind(*std::static_pointer_cast<const a1::Module>(
                modules::load_module(registry.find("a1"), built / "a1_reference.so")),
@@ -40,7 +41,7 @@ Laws laws() {
 }
 
 scene::Scene of_course(const std::string& name, double duration) {
-  scene::Scene scene = scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+  scene::Scene scene = scene::load_scene(std::filesystem::path(test::source_dir()) /
                                          "assignments/a3_constraints/scenes" / (name + ".json"));
   scene.duration_s = duration;
   return scene;

@@ -1,6 +1,7 @@
 /// The laws of all reference modules, as in a run of the course's scenes.
 #pragma once
 
+#include "tests/support/places.h"
 #include "assignments/a1_impulse/a1_binding.h"
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
@@ -13,7 +14,7 @@ namespace tumble::testing {
 inline Laws reference_laws() {
   modules::Registry registry;
   register_assignments(registry);
-  const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
+  const std::filesystem::path built = std::filesystem::path(test::binary_dir()) / "modules";
   const auto load = [&](const char* id, const char* file) {
     return modules::load_module(registry.find(id), built / file);
   };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/random.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/drag/drag.h"
@@ -30,7 +31,7 @@ const Vector3d kGravity(0, 0, -9.81);
 const std::vector<std::string> kEngines = {"rd", "ca", "ordered", "tw"};
 
 scene::Scene broken_scene(const std::string& name) {
-  return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+  return scene::load_scene(std::filesystem::path(test::source_dir()) /
                            "tests/engines/broken_scenes" / (name + ".json"));
 }
 

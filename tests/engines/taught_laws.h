@@ -1,6 +1,7 @@
 /// Laws of the teaching timewarp's tests: decisions by the reference's module.
 #pragma once
 
+#include "tests/support/places.h"
 #include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/modules/load.h"
 #include "framework/modules/registry.h"
@@ -13,7 +14,7 @@ inline Laws taught_laws() {
   modules::Registry registry;
   register_assignments(registry);
   Laws laws = test_laws();
-  const auto file = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
+  const auto file = std::filesystem::path(test::binary_dir()) / "modules" / "a4_reference.so";
   a4::bind(
       *std::static_pointer_cast<const a4::Module>(modules::load_module(registry.find("a4"), file)),
       laws);

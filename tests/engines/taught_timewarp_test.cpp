@@ -2,6 +2,7 @@
 // stops with a message and never crashes.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/engines/run.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_process_scenes.h"
@@ -194,7 +195,8 @@ TEST(TaughtTimewarp, StopsWhereAnAntiMessageIsMissing) {
   laws.scheduling.plan_rollback = [](const std::vector<Effect>&,
                                      const std::vector<Rollback>& first) { return first; };
   const Trajectory run = run_taught(
-      scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a4_timewarp/scenes/late_hit.json"), laws);
+      scene::load_scene(test::source_dir() + "/assignments/a4_timewarp/scenes/late_hit.json"),
+      laws);
   EXPECT_NE(run.stopped_by.find("anti-message"), std::string::npos)
       << "stopped by: " << run.stopped_by;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/places.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
 
@@ -24,7 +25,7 @@ class RandomNumbers {
 scene::BodySpec model(const std::string& name, const std::string& file, double extent_m,
                       const Vector3d& position) {
   scene::BodySpec body = ball(name, 1.0, 1.0, position, Vector3d::Zero());
-  body.shape = scene::ModelSpec{std::string(TUMBLE_SOURCE_DIR) + "/models/" + file, "", extent_m};
+  body.shape = scene::ModelSpec{test::source_dir() + "/models/" + file, "", extent_m};
   return body;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/extend/new_assignment.h"
@@ -26,10 +27,10 @@ class NewTree {
  public:
   NewTree() {
     fs::create_directories(root() / "framework/extend");
-    fs::copy(fs::path(TUMBLE_SOURCE_DIR) / "framework/extend/templates",
+    fs::copy(fs::path(test::source_dir()) / "framework/extend/templates",
              root() / "framework/extend/templates", fs::copy_options::recursive);
     // what is written is formatted where clang-format is there: as in a whole tree
-    fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / ".clang-format", root() / ".clang-format");
+    fs::copy_file(fs::path(test::source_dir()) / ".clang-format", root() / ".clang-format");
     for (const char* room : {"assignments", "solutions_private", "tests/effects", "handouts",
                              "framework/effects/water"})
       fs::create_directories(root() / room);

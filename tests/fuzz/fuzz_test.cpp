@@ -5,6 +5,7 @@
 #include <fstream>
 #include <set>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "tests/fuzz/draw_scene.h"
 #include "tests/fuzz/run_scene_file.h"
@@ -58,7 +59,7 @@ TEST(Fuzz, ContactsThatGainedEnergyGainNoneNow) {
   for (const char* name :
        {"slab_on_small_balls", "light_balls_under_a_heavy_one", "rocking_boxes"}) {
     const PrivateFolder folder;
-    const std::filesystem::path file = std::filesystem::path(TUMBLE_SOURCE_DIR) /
+    const std::filesystem::path file = std::filesystem::path(test::source_dir()) /
                                        "tests/engines/broken_scenes" /
                                        (std::string(name) + ".json");
     const Verdict verdict = run_scene_file(file, {"", "rd", folder.path()});

@@ -2,6 +2,7 @@
 // body's name.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/scene/build_shape.h"
 
@@ -18,10 +19,10 @@ scene::BodySpec body_of(const std::string& file, const std::string& object = "",
 }
 
 const std::filesystem::path kScene =
-    std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/scenes/any.json";
+    std::filesystem::path(test::source_dir()) / "assignments/a1_impulse/scenes/any.json";
 
 TEST(ModelBody, CubeHasTheMassAndInertiaOfACube) {
-  const scene::Solid solid = scene::build_solid(body_of("box.3ds"), kScene, TUMBLE_SOURCE_DIR);
+  const scene::Solid solid = scene::build_solid(body_of("box.3ds"), kScene, test::source_dir());
   EXPECT_NEAR(solid.mass_kg, 500.0, 1e-10);
   EXPECT_LE((solid.inertia_body_kg_m2 - Matrix3d(Matrix3d::Identity() * 500.0 / 6.0))
                 .cwiseAbs()
@@ -31,7 +32,7 @@ TEST(ModelBody, CubeHasTheMassAndInertiaOfACube) {
 }
 
 TEST(ModelBody, MassScalesWithTheThirdPower) {
-  EXPECT_NEAR(scene::build_solid(body_of("box.3ds", "", 0.5), kScene, TUMBLE_SOURCE_DIR).mass_kg,
+  EXPECT_NEAR(scene::build_solid(body_of("box.3ds", "", 0.5), kScene, test::source_dir()).mass_kg,
               62.5, 1e-10);
 }
 
@@ -39,7 +40,7 @@ TEST(ModelBody, GivenMassOverridesTheDensity) {
   scene::BodySpec body = body_of("l_shape.3ds");
   body.density_kg_m3.reset();
   body.mass_kg = 6.0;
-  const scene::Solid solid = scene::build_solid(body, kScene, TUMBLE_SOURCE_DIR);
+  const scene::Solid solid = scene::build_solid(body, kScene, test::source_dir());
   EXPECT_EQ(solid.mass_kg, 6.0);
   // Three unit cubes of 2 kg each, by the parallel axis theorem: centres at (1/2, 1/2), (3/2, 1/2),
   // (1/2, 3/2), their mean (5/6, 5/6).
@@ -53,7 +54,7 @@ TEST(ModelBody, ModelIsFoundFromTheScenesFolderWithoutTheProjectsRoot) {
 
 TEST(ModelBody, ObjectIsChosenByName) {
   EXPECT_NEAR(
-      scene::build_solid(body_of("two_objects.3ds", "box"), kScene, TUMBLE_SOURCE_DIR).mass_kg,
+      scene::build_solid(body_of("two_objects.3ds", "box"), kScene, test::source_dir()).mass_kg,
       500.0, 1e-10);
 }
 
@@ -62,7 +63,7 @@ TEST(ModelBody, RefusalNamesTheBodyTheFileAndTheRemedy) {
                                     {"broken/lampshade.3ds", "lampshade"},
                                     {"two_objects.3ds", "holds 2 objects"}}) {
     try {
-      scene::build_solid(body_of(file), kScene, TUMBLE_SOURCE_DIR);
+      scene::build_solid(body_of(file), kScene, test::source_dir());
       ADD_FAILURE() << file << " was accepted";
     } catch (const UserError& error) {
       const std::string said = error.what();

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
@@ -17,7 +18,7 @@
 namespace tumble::testing {
 namespace {
 
-const std::filesystem::path kModels = std::filesystem::path(TUMBLE_SOURCE_DIR) / "models";
+const std::filesystem::path kModels = std::filesystem::path(test::source_dir()) / "models";
 
 std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/solid.h"
@@ -17,7 +18,7 @@ std::filesystem::path real(const std::string& file) {
   const char* folder = std::getenv("TUMBLE_REAL_MODELS");
   return (folder != nullptr
               ? std::filesystem::path(folder)
-              : std::filesystem::path(TUMBLE_SOURCE_DIR).parent_path() / "shared/models_real") /
+              : std::filesystem::path(test::source_dir()).parent_path() / "shared/models_real") /
          file;
 }
 

@@ -1,3 +1,4 @@
+#include "tests/support/places.h"
 #include "tests/grading/attack_fixture.h"
 
 #include <sys/prctl.h>
@@ -39,7 +40,7 @@ WorkerOptions options_for(const fs::path& object) {
 Compiled compile_source(const std::string& text, const fs::path& object,
                         const CompileLimits& limits) {
   CompileJob job;
-  job.root = TUMBLE_SOURCE_DIR;
+  job.root = test::source_dir();
   job.header = "tests/modules/waist.h";
   job.source = scratch() / "waist.cpp";
   job.object = object;
@@ -56,7 +57,7 @@ fs::path attack_object(const std::string& file, const std::string& defines) {
   object = scratch() / ("attack" + std::to_string(built.size()) + ".so");
   const Compiled compiled = compile_source(
       defines + "\n#line 1\n" +
-          text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/attacks/calls" / file),
+          text_of(fs::path(test::source_dir()) / "solutions_private/attacks/calls" / file),
       object);
   EXPECT_EQ(compiled.outcome, Compiled::Outcome::kBuilt) << compiled.said;
   return object;

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "tests/support/places.h"
 #include "framework/grading/course/slip.h"
 #include "framework/grading/grades/causes_file.h"
 #include "framework/grading/verdicts/rubric.h"
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = TUMBLE_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 
 class CausesFile : public ::testing::TestWithParam<std::string> {
  protected:

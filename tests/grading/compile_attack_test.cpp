@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "tests/support/places.h"
 #include "framework/grading/sandbox/protection.h"
 #include "tests/grading/attack_fixture.h"
 
@@ -58,7 +59,7 @@ TEST_F(CompileAttack, MissingFunctionsAreNamed) {
 TEST_F(CompileAttack, PrivateFilesCannotBeIncluded) {
   if (chosen_sandbox() == SandboxKind::kBare)
     GTEST_SKIP() << "bare does not protect the compiler: so it is not official";
-  const std::string root = TUMBLE_SOURCE_DIR;
+  const std::string root = test::source_dir();
   for (const std::string& path :
        {root + "/solutions_private/a1_impulse/a1_impulse.cpp",
         std::string("solutions_private/a1_impulse/a1_impulse.cpp"),
@@ -77,7 +78,7 @@ TEST_F(CompileAttack, PrivateFilesCannotBeIncluded) {
 TEST_F(CompileAttack, PrivateFilesCannotBeSeenOrEmbedded) {
   if (chosen_sandbox() == SandboxKind::kBare)
     GTEST_SKIP() << "bare does not protect the compiler: so it is not official";
-  const std::string root = TUMBLE_SOURCE_DIR;
+  const std::string root = test::source_dir();
   // Landlock refuses to open a file and does not hide it: then the file is refused by name.
   const Compiled seen =
       compile("#if __has_include(\"" + root +
@@ -96,9 +97,9 @@ TEST_F(CompileAttack, PrivateFilesCannotBeSeenOrEmbedded) {
 TEST_F(CompileAttack, LinkAsASourceIsRefused) {
   const fs::path link =
       fs::temp_directory_path() / ("tumble-link-" + std::to_string(::getpid()) + ".cpp");
-  fs::create_symlink(fs::path(TUMBLE_SOURCE_DIR) / "tests/modules/waist.cpp", link);
+  fs::create_symlink(fs::path(test::source_dir()) / "tests/modules/waist.cpp", link);
   const Compiled compiled =
-      compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", link, object_, {}, "waist"});
+      compile_submission({test::source_dir(), "tests/modules/waist.h", link, object_, {}, "waist"});
   fs::remove(link);
   EXPECT_EQ(compiled.outcome, Outcome::kRefused);
   EXPECT_NE(compiled.said.find("is a link"), std::string::npos) << compiled.said;
@@ -106,10 +107,10 @@ TEST_F(CompileAttack, LinkAsASourceIsRefused) {
 
 TEST_F(CompileAttack, SourcesThatAreNotFilesAreRefused) {
   for (const char* path : {"/dev/zero", "/tmp", "/nowhere.cpp"})
-    EXPECT_EQ(
-        compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", path, object_, {}, "waist"})
-            .outcome,
-        Outcome::kRefused)
+    EXPECT_EQ(compile_submission(
+                  {test::source_dir(), "tests/modules/waist.h", path, object_, {}, "waist"})
+                  .outcome,
+              Outcome::kRefused)
         << path;
 }
 
@@ -118,7 +119,7 @@ TEST_F(CompileAttack, NamesThatLookLikeOptionsAreTreatedAsNames) {
     const fs::path file = fs::temp_directory_path() / name;
     std::ofstream(file) << kModule;
     const Compiled compiled = compile_submission(
-        {TUMBLE_SOURCE_DIR, "tests/modules/waist.h", file, object_, {}, "waist"});
+        {test::source_dir(), "tests/modules/waist.h", file, object_, {}, "waist"});
     fs::remove(file);
     EXPECT_EQ(compiled.outcome, Outcome::kBuilt) << name << ": " << compiled.said;
   }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
@@ -112,7 +113,7 @@ TEST_F(CompilerWords, LinesOfAMegabyteDoNoHarm) {
 TEST_F(CompilerWords, TheStudentsOwnCompilationUsesThePrecompiledHeader) {
   const fs::path file = write("a1_impulse.cpp", "int answer() { return 42; }\n");
   std::vector<std::string> words =
-      own_compilation(TUMBLE_SOURCE_DIR, TUMBLE_BINARY_DIR, file, folder_.path() / "a1.so");
+      own_compilation(test::source_dir(), test::binary_dir(), file, folder_.path() / "a1.so");
   words.push_back("-Winvalid-pch");
   const ProgramOutcome outcome = run_program(words, Output::kCaptured);
   EXPECT_EQ(outcome.code, 0) << outcome.printed;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/build_submission.h"
 #include "framework/grading/grades/cost_section.h"
@@ -19,12 +20,13 @@ class CostInAReport : public ::testing::Test {
  protected:
   CostInAReport() {
     register_assignments(registry_);
-    course_ = {TUMBLE_SOURCE_DIR, TUMBLE_BINARY_DIR, &registry_, "test"};
+    course_ = {test::source_dir(), test::binary_dir(), &registry_, "test"};
   }
 
   /// The stub with one of its functions replaced.
   CostSection of_stub(const std::string& function = "", const std::string& body = "") const {
-    std::ifstream in(fs::path(TUMBLE_SOURCE_DIR) / "assignments/a2_integration/a2_integration.cpp");
+    std::ifstream in(fs::path(test::source_dir()) /
+                     "assignments/a2_integration/a2_integration.cpp");
     std::string text{std::istreambuf_iterator<char>(in), {}};
     if (!function.empty()) {
       const auto begin = text.find("VectorXd " + function + "("), end = text.find("\n}\n", begin);
@@ -72,11 +74,12 @@ TEST_F(CostInAReport, ModuleThatHangsLosesOnlyItsCurveAndTakesLittleTime) {
 }
 
 TEST_F(CostInAReport, StubOfASchedulerIsReportedAndNotJudged) {
-  if (!fs::exists(fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so"))
+  if (!fs::exists(fs::path(test::binary_dir()) / "modules" / "a4_reference.so"))
     GTEST_SKIP() << "measured beside the reference, which this tree does not have";
   const fs::path stub = folder_ / "a4.so";
   const BuiltSubmission built = build_submission(
-      course_, "a4", fs::path(TUMBLE_SOURCE_DIR) / "assignments/a4_timewarp/a4_timewarp.cpp", stub);
+      course_, "a4", fs::path(test::source_dir()) / "assignments/a4_timewarp/a4_timewarp.cpp",
+      stub);
   ASSERT_EQ(built.outcome, BuiltSubmission::Outcome::kBuilt) << built.said;
   const CostSection section = measure_cost(course_, "a4", stub);
   ASSERT_EQ(section.lines.size(), 1u);
@@ -86,7 +89,7 @@ TEST_F(CostInAReport, StubOfASchedulerIsReportedAndNotJudged) {
 }
 
 TEST_F(CostInAReport, SchedulerIsMeasuredByWorkPerCommittedEvent) {
-  const fs::path reference = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
+  const fs::path reference = fs::path(test::binary_dir()) / "modules" / "a4_reference.so";
   if (!fs::exists(reference))
     GTEST_SKIP() << "measured beside the reference, which this tree does not have";
   const CostSection section = measure_cost(course_, "a4", reference);
@@ -109,7 +112,7 @@ TEST_F(CostInAReport, SchedulerIsMeasuredByWorkPerCommittedEvent) {
 }
 
 TEST_F(CostInAReport, LawsOfImpactAreMeasuredAsAWhole) {
-  const fs::path modules = fs::path(TUMBLE_BINARY_DIR) / "modules",
+  const fs::path modules = fs::path(test::binary_dir()) / "modules",
                  reference = modules / "a1_reference.so";
   if (!fs::exists(reference))
     GTEST_SKIP() << "measured beside the reference, which this tree does not have";

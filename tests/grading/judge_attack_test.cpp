@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/places.h"
 #include "framework/grading/verdicts/verdict.h"
 #include "tests/grading/attack_fixture.h"
 
@@ -28,7 +29,7 @@ class JudgeAttack : public Attack {
 
   // Results of the assignment's starter file with `evil` before it.
   std::vector<TestResult> judged(const std::string& evil) {
-    const fs::path root = TUMBLE_SOURCE_DIR,
+    const fs::path root = test::source_dir(),
                    starter = root / "assignments/a1_impulse/a1_impulse.cpp";
     std::ifstream in(starter);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -52,7 +53,7 @@ class JudgeAttack : public Attack {
                        [&](const TestResult& r) { return r.verdict == verdict; });
   }
 
-  const fs::path judge_ = fs::path(TUMBLE_BINARY_DIR) / "bin/judge_a1";
+  const fs::path judge_ = fs::path(test::binary_dir()) / "bin/judge_a1";
   fs::path folder_;
   int code_ = -1;
 };

@@ -1,6 +1,7 @@
 // A right law that does not compile for a page: what is said of it, and to whom.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/page_code.h"
@@ -19,7 +20,7 @@ class RightLaw : public ::testing::Test {
     register_assignments(registry_);
     fs::create_directories(root() / "solutions_private/a1_impulse");
     for (const char* room : {"assignments", "framework"})
-      fs::create_directory_symlink(fs::path(TUMBLE_SOURCE_DIR) / room, root() / room);
+      fs::create_directory_symlink(fs::path(test::source_dir()) / room, root() / room);
     write_whole(root() / "solutions_private" / file_, text_of(stub()) + kNotForPages);
   }
   void SetUp() override {
@@ -28,8 +29,8 @@ class RightLaw : public ::testing::Test {
   }
   fs::path root() const { return folder_.path(); }
   // It stands in for what a student handed in.
-  fs::path stub() const { return fs::path(TUMBLE_SOURCE_DIR) / "assignments" / file_; }
-  Course course() const { return {root(), TUMBLE_BINARY_DIR, &registry_, ""}; }
+  fs::path stub() const { return fs::path(test::source_dir()) / "assignments" / file_; }
+  Course course() const { return {root(), test::binary_dir(), &registry_, ""}; }
 
   // The pages of a submission, the TA's first.
   std::pair<std::string, std::string> pages(CodeInPages which) const {

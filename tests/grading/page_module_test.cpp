@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "tests/support/places.h"
 #include "assignments/a1_impulse/a1_impulse.h"
 #include "framework/core/files.h"
 #include "framework/grading/compiler/page_module.h"
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = TUMBLE_SOURCE_DIR, kBuild = TUMBLE_BINARY_DIR;
+const fs::path kRoot = test::source_dir(), kBuild = test::binary_dir();
 
 const PageCompiler& a1_compiler() {
   static const PageCompiler compiler(kRoot, kBuild, "a1", "a1_impulse");

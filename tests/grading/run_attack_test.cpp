@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tests/support/places.h"
 #include "framework/core/files.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/worker/crash_place.h"
@@ -80,7 +81,7 @@ TEST_F(RunAttack, ACrashHasItsLine) {
   if (traits_of(chosen_sandbox()).links_worker)
     GTEST_SKIP() << "a worker and its submission are one program here: frames are not told apart";
   const std::string source =
-      text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/attacks/calls/in_call.cpp");
+      text_of(fs::path(test::source_dir()) / "solutions_private/attacks/calls/in_call.cpp");
   const auto line_of = [&](const char* words) {
     return "waist.cpp:" +
            std::to_string(1 + std::count(source.begin(),
@@ -205,7 +206,7 @@ TEST_F(RunAttack, ThreadsAndChildrenDieWithTheWorker) {
 }
 
 TEST_F(RunAttack, NothingOfTheProjectIsVisible) {
-  const std::string source = TUMBLE_SOURCE_DIR, build = TUMBLE_BINARY_DIR;
+  const std::string source = test::source_dir(), build = test::binary_dir();
   for (const std::string& path :
        {source, source + "/solutions_private", source + "/assignments/a1_impulse/a1_impulse.cpp",
         build, build + "/modules/waist_right.so", std::string("/etc/passwd"), std::string("/root"),

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/slip.h"
@@ -263,7 +264,7 @@ TEST_F(SlipFile, CompilerErrorsAreToldInPlacesOfTheSlipAndItsBase) {
 // A solution that was mended, and a slip that it left behind, are seen here rather than in the next
 // audit.
 TEST(SlipsOfTheTree, FitTheirBases) {
-  const fs::path solutions = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private";
+  const fs::path solutions = fs::path(test::source_dir()) / "solutions_private";
   if (!fs::exists(solutions)) GTEST_SKIP() << "the solutions are not here";
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(solutions)) {

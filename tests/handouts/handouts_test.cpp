@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/math.h"
 #include "framework/grading/verdicts/rubric.h"
 #include "framework/scene/sized_scenes.h"
@@ -24,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = TUMBLE_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 const fs::path kPrivate = kRoot / "solutions_private";  // absent from what students get
 
 std::string contents_of(const fs::path& file) {

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
+
 #include <gtest/gtest.h>
 
 namespace tumble::testing {
@@ -19,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = TUMBLE_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 
 // Top to bottom: a folder includes only what stands above it (or itself).
 const std::vector<std::string> kFolders = {

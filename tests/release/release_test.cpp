@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = TUMBLE_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 const fs::path kPrivate = kRoot / "solutions_private";
 
 std::string contents_of(const fs::path& file) {
@@ -47,7 +49,7 @@ class Release : public ::testing::Test {
 
   static int run(const std::string& words) {
     const std::string command =
-        "TUMBLE_ROOT='" + kRoot.string() + "' '" TUMBLE_BINARY_DIR "/bin/tumble' " + words;
+        "TUMBLE_ROOT='" + kRoot.string() + "' '" + test::binary_dir() + "/bin/tumble' " + words;
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

@@ -23,6 +23,7 @@ is_shared() {
   [ "$(words_of "$(grep -F -- " -o $object " "$TUMBLE_SHARED/commands")")" = "$(as_main "$(words_of "$command")")" ] || return 1
   awk -v object="$object:" '$1 == object { found = 1; next } found && /^ / { print $1; next } found { exit }' "$TUMBLE_SHARED/deps" >"$TUMBLE_SHARED/read.$$"
   [ -s "$TUMBLE_SHARED/read.$$" ] || return 1
+  local same=$'\n'$(<"$TUMBLE_SHARED/same")$'\n'   # asked without another process: an object reads a hundred files
   while read -r file; do
     case $file in
       /usr/*) ;;
@@ -30,10 +31,10 @@ is_shared() {
         file=${file#"$TUMBLE_MAIN_BUILD/"}
         [ -f "$file" ] || return 1
         case $file in *.gch) continue ;; esac   # shared by this script as well, or no object that uses it is
-        [ "$(as_main "$(cat "$file")")" = "$(cat "$TUMBLE_MAIN_BUILD/$file")" ] || return 1 ;;
+        [ "$(as_main "$(<"$file")")" = "$(<"$TUMBLE_MAIN_BUILD/$file")" ] || return 1 ;;
       *) file=${file#"$TUMBLE_MAIN/"}
-         grep -qxF -- "$file" "$TUMBLE_SHARED/same" || return 1
-         case $file in assignments/*) cmp -s "$file" "$TUMBLE_MAIN/$file" || return 1 ;; esac ;;   # a student may have worked on it since
+         case $same in *$'\n'"$file"$'\n'*) ;; *) return 1 ;; esac
+         case $file in assignments/*) cmp -s "$TUMBLE_RELEASED/$file" "$TUMBLE_MAIN/$file" || return 1 ;; esac ;;   # a student may have worked on it since
     esac
   done <"$TUMBLE_SHARED/read.$$"
 }
@@ -46,7 +47,8 @@ done
 if is_shared "$object" "$*" "$@"; then
   cp "$TUMBLE_MAIN_BUILD/$object" "$object"
   { printf '%s:' "$object"
-    sed "s#^$TUMBLE_MAIN_BUILD/#$TUMBLE_RELEASED/build/#; s#^$TUMBLE_MAIN/#$TUMBLE_RELEASED/#; s/^/ \\\\\n  /" "$TUMBLE_SHARED/read.$$"
+    # the build's folder may lie in the main tree, and the released one in the build's: each path is turned once
+    sed -e "s#^$TUMBLE_MAIN_BUILD/#$TUMBLE_RELEASED/build/#" -e t -e "s#^$TUMBLE_MAIN/#$TUMBLE_RELEASED/#" "$TUMBLE_SHARED/read.$$" | sed 's/^/ \\\n  /'
     printf '\n'; } >"$depfile"
   rm -f "$TUMBLE_SHARED/read.$$"
   echo "shared $object" >>"$TUMBLE_SHARED/log"

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/grading/verdicts/rubric.h"
 
 namespace tumble::testing {
@@ -18,13 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-const fs::path kRoot = TUMBLE_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 const fs::path kPrivate = kRoot / "solutions_private";  // absent from what students get
 
 /// Tests that a judge of this build is linked with, "Suite.Name" a line. A judge holds no student's
 /// file: it is there whatever stands in one.
 Names tests_of(const std::string& program) {
-  const std::string command = "'" TUMBLE_BINARY_DIR "/bin/" + program + "' --list";
+  const std::string command = "'" + test::binary_dir() + "/bin/" + program + "' --list";
   const auto close = [](FILE* pipe) { ::pclose(pipe); };
   const std::unique_ptr<FILE, decltype(close)> pipe(::popen(command.c_str(), "r"), close);
   Names names;

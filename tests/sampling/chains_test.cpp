@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
 #include "framework/modules/registry.h"
@@ -23,13 +24,13 @@ Sampling reference() {
   modules::Registry registry;
   register_assignments(registry);
   const modules::ModuleKind& kind = registry.find("a5");
-  const fs::path file = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a5_reference.so";
+  const fs::path file = fs::path(test::binary_dir()) / "modules" / "a5_reference.so";
   return kind.note<Sampler>().functions(modules::load_module(kind, file));
 }
 
 SampledScene ball_into_bin() {
   const scene::Scene scene = scene::load_scene(
-      fs::path(TUMBLE_SOURCE_DIR) / "assignments/a5_plausible/scenes/ball_into_bin.json");
+      fs::path(test::source_dir()) / "assignments/a5_plausible/scenes/ball_into_bin.json");
   return {scene, scene::load_sampling(scene).value()};
 }
 

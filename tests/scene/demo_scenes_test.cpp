@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "assignments/a3_constraints/a3_binding.h"
 #include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/effects/point_force/point_force.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> demo_scenes() {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(TUMBLE_SOURCE_DIR "/assignments"))
+  for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/assignments"))
     if (entry.path().extension() == ".json" && entry.path().parent_path().filename() == "scenes")
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -41,7 +42,7 @@ Laws right_laws() {
   Laws laws = test_laws();
   const auto load = [&](const std::string& id) {
     return modules::load_module(registry.find(id),
-                                fs::path(TUMBLE_BINARY_DIR) / "modules" / (id + "_reference.so"));
+                                fs::path(test::binary_dir()) / "modules" / (id + "_reference.so"));
   };
   a3::bind(*std::static_pointer_cast<const a3::Module>(load("a3")), laws);
   a4::bind(*std::static_pointer_cast<const a4::Module>(load("a4")), laws);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/effects/drag/drag.h"
 #include "framework/effects/joint/joint.h"
@@ -69,7 +70,7 @@ TEST(Links, AVertexOfAModelIsTakenByItsNumber) {
   const std::string bodies =
       R"("bodies": [{ "name": "pawn", "shape": { "model": { "file": "chess_pawn.3ds",
         "metres_per_unit": 0.1 } }, "density_kg_m3": 700 }])";
-  const std::string file = TUMBLE_SOURCE_DIR "/models/s.json";
+  const std::string file = test::source_dir() + "/models/s.json";
   const auto scene_at = [&](const std::string& vertex) {
     return parse_scene(R"({ "title": "t", "duration_s": 1, )" + bodies +
                            R"(, "springs": [{ "a": { "body": "pawn", )" + vertex +

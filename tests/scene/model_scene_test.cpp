@@ -1,5 +1,6 @@
 // A scene made of a .3ds file: the picture shows all of it, sizes follow the model, an open surface
 // is refused with the loader's message.
+#include "tests/support/places.h"
 #include "framework/scene/model_scene.h"
 
 #include <cmath>
@@ -16,7 +17,7 @@ namespace tumble::testing {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kModels = TUMBLE_SOURCE_DIR "/models";
+const fs::path kModels = test::source_dir() + "/models";
 
 /// The largest angle between the camera's axis and a point of a body's bounding ball, over half the
 /// field of view. Up to 1 is in the picture.

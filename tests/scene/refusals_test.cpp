@@ -2,6 +2,7 @@
 // found and the remedy.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/scene/build_shape.h"
 #include "framework/scene/load_scene.h"
@@ -21,7 +22,7 @@ std::string scene_with(const std::string& body, const std::string& more = "") {
 std::string refusal(const std::string& text) {
   try {
     const Scene scene = parse_scene(text, "s.json");
-    build_solids(scene, TUMBLE_SOURCE_DIR);
+    build_solids(scene, test::source_dir());
   } catch (const UserError& error) {
     return error.what();
   }

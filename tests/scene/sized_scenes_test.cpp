@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/geometry/solid.h"
 #include "framework/scene/sized_scenes.h"
@@ -110,7 +111,7 @@ TEST(SizedScenes, AreTheSameEachTime) {
 // The scene places the block of ground by its centre of mass, which is a number in the code.
 TEST(SizedScenes, PlaceTheMountainWhereItsModelIs) {
   const SolidModel mountain =
-      load_solid(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models/mountainside.3ds");
+      load_solid(std::filesystem::path(test::source_dir()) / "models/mountainside.3ds");
   const scene::Scene scene = scene::make_sized_scene("avalanche", 3);
   const auto piece =
       std::find_if(scene.bodies.begin(), scene.bodies.end(),

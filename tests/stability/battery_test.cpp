@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/cli/battery.h"
 #include "framework/cli/read_truth.h"
 #include "framework/modules/load.h"
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 truths::Case truth(const std::string& id) {
   std::string name = id;
   name.replace(name.find('/'), 1, "__");
-  return cli::read_truth(fs::path(TUMBLE_SOURCE_DIR) / "tests" / "truths" / (name + ".json"));
+  return cli::read_truth(fs::path(test::source_dir()) / "tests" / "truths" / (name + ".json"));
 }
 
 // The reference's laws where this tree has it; else the library's integration only, and what needs
@@ -27,7 +28,7 @@ battery::Given available_laws() {
   register_assignments(registry);
   battery::Given given{library_laws(), false, truth};
   for (const modules::ModuleKind* kind : registry.all()) {
-    const fs::path file = fs::path(TUMBLE_BINARY_DIR) / "modules" / (kind->id + "_reference.so");
+    const fs::path file = fs::path(test::binary_dir()) / "modules" / (kind->id + "_reference.so");
     if (!fs::exists(file)) continue;
     given.modules[kind->id] = modules::load_module(*kind, file);
     kind->bind(given.modules[kind->id], given.laws);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
 #include "tests/truths/truths.h"
@@ -17,7 +18,7 @@ TEST(TruthFiles, EveryOneIsKnownAndRight) {
   const Reference reference;
   int right = 0, skipped = 0;
   for (const auto& file :
-       cli::find_truths(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths")) {
+       cli::find_truths(std::filesystem::path(test::source_dir()) / "tests/truths")) {
     const auto lines = reference.compare(cli::read_truth(file));
     if (lines.empty()) {
       ++skipped;
@@ -99,7 +100,7 @@ TEST(TruthFiles, AStubIsNotAttempted) {
 
 /// The message for a logistic case in which one piece of its text is replaced.
 std::string complaint(const std::string& from, const std::string& to) {
-  std::ifstream source(std::filesystem::path(TUMBLE_SOURCE_DIR) /
+  std::ifstream source(std::filesystem::path(test::source_dir()) /
                        "tests/truths/logistic__lecture_to_T2.json");
   std::string text(std::istreambuf_iterator<char>(source), {});
   text.replace(text.find(from), from.size(), to);

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "tests/support/places.h"
 #include "assignments/a1_impulse/a1_binding.h"
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
@@ -22,7 +23,7 @@ struct Reference {
 
   Reference() {
     register_assignments(registry);
-    const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
+    const std::filesystem::path built = std::filesystem::path(test::binary_dir()) / "modules";
     a1 = *std::static_pointer_cast<const a1::Module>(
         modules::load_module(registry.find("a1"), built / "a1_reference.so"));
     a2 = *std::static_pointer_cast<const a2::Module>(
@@ -58,7 +59,7 @@ struct Reference {
 };
 
 inline truths::Case truth_named(const std::string& name) {
-  return cli::read_truth(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths" /
+  return cli::read_truth(std::filesystem::path(test::source_dir()) / "tests/truths" /
                          (name + ".json"));
 }
 

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "assignments/a2_integration/a2_integration.h"
 
 namespace tumble::a2 {
@@ -36,7 +37,7 @@ std::string row(const std::vector<std::string>& cells) {
 
 /// Rows of the table in the handout, without its head.
 std::string printed(const std::string& name) {
-  std::ifstream in(TUMBLE_SOURCE_DIR "/handouts/a2_integration.md");
+  std::ifstream in(test::source_dir() + "/handouts/a2_integration.md");
   std::string line, rows;
   while (std::getline(in, line) && line != "<!-- numbers: " + name + " -->") {
   }

@@ -1,3 +1,4 @@
+#include "tests/support/places.h"
 #include "tests/bench/peers/judge.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 truths::Case truth_named(const std::string& name) {
-  return cli::read_truth(std::string(TUMBLE_SOURCE_DIR) + "/tests/truths/" + name + ".json");
+  return cli::read_truth(test::source_dir() + "/tests/truths/" + name + ".json");
 }
 
 std::vector<RigidBodyState> states_of(const World& world, const std::vector<BodyPose>& poses) {
