@@ -115,7 +115,7 @@ std::vector<std::string> other_counts(const std::vector<Stage>& stages, const Tr
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
-    digits.insert(static_cast<std::size_t>(at), " ");
+    digits.insert(static_cast<std::size_t>(at), 1, ' ');
   return digits;
 }
 

@@ -34,7 +34,7 @@ std::string scene_of_assignment(const Context& context, std::string& word) {
       word = kind->note<live::Showcase>().scene;
       if (!word.empty()) return kind->id;
       const auto scenes =
-          grading::scenes_of({context.root, context.build, &context.registry}, kind->id);
+          grading::scenes_of({context.root, context.build, &context.registry, ""}, kind->id);
       if (scenes.empty())
         throw UserError(kind->id, "has no scene",
                         "Name a scene of another assignment, or write one: tumble new scene NAME "

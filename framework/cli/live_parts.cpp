@@ -253,7 +253,8 @@ void simulate_for_page(Context& context, const RunWords& words) {
 void judge_for_page(Context& context, const RunWords& words, const std::string& id) {
   const modules::ModuleName& name = modules::find_name(assignment_names(), id);
   const ModuleWords modules = parse_module_words(words.modules, context.registry);
-  CheckWords check{id, {}, {}, {}};
+  CheckWords check;
+  check.id = id;
   const auto word = modules.contains(id) ? modules.find(id) : modules.find("");
   if (word != modules.end() && word->second.ends_with(".cpp")) check.file = word->second;
   const fs::path file = checked_file(context, check);

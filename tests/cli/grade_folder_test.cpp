@@ -198,7 +198,7 @@ TEST_F(Output, FilesPutAmongOursAreForeign) {
 }
 
 TEST_F(Output, AManifestThatLeadsElsewhereIsRefusedAndNothingIsTouched) {
-  for (const std::string& name : {"x/../../victim", "..", ".", "", "/victim", "a/b"}) {
+  for (const std::string name : {"x/../../victim", "..", ".", "", "/victim", "a/b"}) {
     fs::remove_all(root() / "out");
     write_whole(root() / "victim/thesis.txt", "years of work");
     fs::create_directories(root() / "out/.making-x");
@@ -333,8 +333,8 @@ TEST_F(Record, WithAnyFieldChangedIsNotTrusted) {
     write_whole(place() / "record.json", forged.dump());
     EXPECT_FALSE(read(key).record) << field;
   }
-  for (const std::string text : {std::string(), std::string("{"), std::string("[]"),
-                                 std::string("{\"mac\": 1}"), whole.substr(0, whole.size() / 2)}) {
+  for (const std::string& text : {std::string(), std::string("{"), std::string("[]"),
+                                  std::string("{\"mac\": 1}"), whole.substr(0, whole.size() / 2)}) {
     write_whole(place() / "record.json", text);
     EXPECT_FALSE(read(key).record) << text;
   }

@@ -170,10 +170,11 @@ TEST(Methods, BearSlopesOfAnySize) {
     return VectorXd::Constant(1, -6e25 + 0.0 * y[0]);
   };
   for (const Method& method : methods())
-    if (method.controlled)
+    if (method.controlled) {
       EXPECT_NEAR(step_of(method, 1e-9)(weight, 0.0, VectorXd::Zero(1), 0.01)[0] / -6e23, 1.0,
                   1e-12)
           << method.name;
+    }
 }
 
 // A time limit that is hit within a trial is no trial too long; nor is a module whose process has

@@ -80,14 +80,16 @@ TEST(Dome, ABallThatSlidesLeavesWhereTheForceEndsAndStrikesNothingOnItsWay) {
       // grows as t^3, shows: the angle goes by v h / R = 2.5 rad/s h in each, its cosine by 0.75 of
       // that.
       EXPECT_LT(error, 5.0 * step) << engine << " at " << step;
-      if (!std::isnan(before))
+      if (!std::isnan(before)) {
         EXPECT_LT(error, 0.6 * before) << engine << " at " << step << ": first order at least";
+      }
       before = error;
       EXPECT_LT(energy_change(run), 2.0 * step * step) << engine << " at " << step;
       // which takes back what the path between the ends of steps dips; frames of the others within
       // a step do not yet
-      if (engine == "rd")
+      if (engine == "rd") {
         for (const Frame& frame : run.frames) ASSERT_GE(frame.smallest_gap, 0.0) << engine;
+      }
     }
   }
 }

@@ -198,9 +198,10 @@ TEST(RunWatch, RodsThatComeApartAreNeverKeptSilent) {
       const scene::Scene scene = light_above_heavy(ratio, seed);
       for (const std::string& engine : {std::string("rd"), std::string("ca")}) {
         const Trajectory run = run_by(engine, scene);
-        if (worst_rod(scene, run) > 1e-2)
+        if (worst_rod(scene, run) > 1e-2) {
           EXPECT_TRUE(!run.stopped_by.empty() || has_fault(run, "link_open"))
               << engine << ' ' << ratio << ' ' << seed << said(run);
+        }
       }
     }
 }

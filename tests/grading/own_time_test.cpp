@@ -27,8 +27,7 @@ pid_t child_that(void (*does)()) {
   ::_exit(0);
 }
 void spin() {
-  for (volatile unsigned i = 0;; i = i + 1) {
-  }
+  for (volatile unsigned i = 0;;) i = i + 1;
 }
 void sleep_on() {
   for (;;) ::pause();

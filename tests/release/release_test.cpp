@@ -218,7 +218,9 @@ TEST_F(Release, TheReadmesCommandsAreKnown) {
     const std::string verb = (*it)[1], what = (*it)[2];
     EXPECT_TRUE(verb == "test" || fs::exists(folder_ / "framework/cli/help" / (verb + ".txt")))
         << verb;
-    if (what.find('/') != std::string::npos) EXPECT_TRUE(fs::exists(folder_ / what)) << what;
+    if (what.find('/') != std::string::npos) {
+      EXPECT_TRUE(fs::exists(folder_ / what)) << what;
+    }
   }
   EXPECT_GT(count, 15);
 }

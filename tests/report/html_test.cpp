@@ -106,7 +106,9 @@ TEST(Page, AThumbnailIsAPictureThatLeads) {
 // A plot is wider than a phone, and scrolls there: by the keyboard, too.
 TEST(Page, AWidePlotTakesTheKeyboardAndASmallOneFits) {
   Page page("T");
-  page.plot(Plot{.title = "wide"});
+  Plot wide;
+  wide.title = "wide";
+  page.plot(wide);
   StackedBars bars{.title = "small", .axis = {"n"}, .parts = {"one"}, .rows = {{"a", {1.0}}}};
   bars.is_small = true;
   page.plot(bars);

@@ -181,7 +181,7 @@ TEST(Plot, LongCurvesHaveAFewMarksWhereColoursRepeat) {
 }
 
 TEST(Plot, NamesCurvesThatCoverEachOther) {
-  Plot plot{.title = "t", .x = {"n"}, .y = {"time", "s", Scale::kLog}};
+  Plot plot{.title = "t", .x = {"n"}, .y = {"time", "s", Scale::kLog}, .curves = {}, .limits = {}};
   plot.curves = {{"A", {1, 2, 3}, {1, 10, 100}},
                  {"B", {1, 2, 3}, {1.001, 10, 100}},  // a thousandth of two decades: 0.1 units
                  {"C", {1, 2, 3}, {1, 11, 100}},      // 4 % of a decade: 6 units

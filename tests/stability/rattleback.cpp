@@ -18,6 +18,8 @@
 #include <cmath>
 #include <numbers>
 
+// GCC 12 sees uninitialized members where a stepper is copied before its first step.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>

@@ -40,8 +40,8 @@ void append_utf8(std::uint32_t code, std::string& text) {
   put(0x80 | (code & 63));
 }
 
-// In double quotes YAML has escapes: \xHH, \uHHHH, \UHHHHHHHH, and letters, of which \" and \\
-// occur in names.
+// In double quotes YAML has escapes: \xHH, \uHHHH, \UHHHHHHHH, and letters, of which two occur in
+// names: \" and \\.
 std::string without_escapes(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -167,16 +167,14 @@ class Keeper {
     if (child_ <= 0) return;
     ::kill(child_, SIGKILL);
     body_->kill_rest();
-    constexpr useconds_t kPauseUs = 100;
+    // A process becomes this one's child only when its parent has ended, which a wait shows.
     for (;;) {
       int status = 0;
       rusage usage{};
-      const pid_t gone = ::wait4(-1, &status, WNOHANG, &usage);
+      const pid_t gone = ::wait4(-1, &status, 0, &usage);
       if (gone == child_) child_status_ = status, child_usage_ = usage;
       if (gone < 0 && errno != EINTR) return;
-      if (gone != 0) continue;
       for (const pid_t child : children_of(::getpid())) ::kill(child, SIGKILL);
-      ::usleep(kPauseUs);
     }
   }
 

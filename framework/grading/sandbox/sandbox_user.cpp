@@ -16,6 +16,8 @@
 #include <string>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/grading/sandbox/sandbox_user.h"
@@ -74,7 +76,7 @@ SandboxUser SandboxUser::lease_between(uid_t first, uid_t end) {
   ::mkdir(kLockFolder, 0700);
   for (uid_t uid = first; uid < end; ++uid) {
     if (::getpwuid(uid) != nullptr) continue;
-    const std::string file = std::string(kLockFolder) + "/uid-" + std::to_string(uid);
+    const std::string file = fmt::format("{}/uid-{}", kLockFolder, uid);
     const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (lock < 0)
       throw UserError(
@@ -102,8 +104,7 @@ Stage::Stage(const SandboxUser* user) {
   static const bool swept = (sweep_stages_of_the_dead(), true);
   (void)swept;
   // Not the user's TMPDIR, which may be in a folder that another uid cannot enter.
-  std::string name =
-      std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
+  std::string name = fmt::format("{}/{}{}-XXXXXX", kStageFolder, kStageName, ::getpid());
   if (::mkdtemp(name.data()) == nullptr)
     throw UserError(kStageFolder, "no folder can be created in it");
   path_ = name;
