@@ -146,6 +146,24 @@ TEST(Check, AnEndlessLoopIsKnownWithinSeconds) {
   EXPECT_LT(took_s, 20.0);
 }
 
+// What the module's header brings is there for own tests, too, whether or not the fixtures use it.
+TEST(Check, OwnTestsMayCallWhateverTheModulesHeaderDeclares) {
+  SKIP_UNLESS_UNTOUCHED();
+  const File file(stub());
+  const fs::path tests = file.path.parent_path() / "tests.cpp";
+  write_whole(tests, R"(#include "tests/a1_impulse/a1_fixtures.h"
+using namespace tumble;
+TEST(Mine, ABodyIsNoWall) {
+  EXPECT_GT(finite_inertia(2, Matrix3d::Identity()).inverse_mass, infinite_inertia().inverse_mass);
+}
+TEST(Mine, AForceAtTheCentreTurnsNothing) {
+  a1_testing::a1_module().wrench_of_point_force({4, 5, 6}, {1, 2, 3}, {1, 2, 3});
+}
+)");
+  expect_said(check({file.path.string(), "--my-tests", tests.string()}), 4,
+              {"Mine.ABodyIsNoWall", "Mine.AForceAtTheCentreTurnsNothing", "not attempted"});
+}
+
 TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
   SKIP_UNLESS_UNTOUCHED();
   const File file(stub());

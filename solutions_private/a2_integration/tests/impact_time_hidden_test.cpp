@@ -45,6 +45,20 @@ void expect_conventions(const Finder& find) {
                    "overlap from the start is not an impact: there is no open side");
   expect_impact(find(line(0), 1e-6, low), line(0), low, 0.0, 0.0,
                 "a gap of exactly 0 at t_low is an impact there", 10);
+  // Whatever it does later: t_low is tested first.
+  Looks opening_looks, returning_looks;
+  Approach opening = line(0), returning = line(0);
+  opening.scene = "gap = t in [0, 2] s";
+  opening.gap = [](double t) { return t; };
+  opening.gap_rate = [](double) { return 1.0; };
+  returning.scene = "gap = t (1 - t) in [0, 2] s";
+  returning.gap = [](double t) { return t * (1 - t); };
+  returning.gap_rate = [](double t) { return 1 - 2 * t; };
+  expect_impact(find(opening, 1e-6, opening_looks), opening, opening_looks, 0.0, 0.0,
+                "a gap of exactly 0 at t_low is an impact there, though it opens afterwards", 10);
+  expect_impact(find(returning, 1e-6, returning_looks), returning, returning_looks, 0.0, 0.0,
+                "a gap of exactly 0 at t_low is an impact there, and not where it closes again",
+                10);
   expect_impact(find(line(2), 1e-6, high), line(2), high, 0.0, 0.0,
                 "a gap of exactly 0 at t_high is an impact there, where no other was seen", 10);
 }
