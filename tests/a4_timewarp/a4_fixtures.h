@@ -1,5 +1,4 @@
-/// What the tests of a4 share: events and effects in few words, words for what was found, and small
-/// scenes driven by the scheduler under test.
+/// What the tests of a4 share: events and effects in few words, and words for what was found.
 #pragma once
 
 #include <cmath>
@@ -11,8 +10,6 @@
 
 #include "assignments/a4_timewarp/a4_timewarp.h"
 #include "framework/modules/under_test.h"
-#include "framework/scene/scene.h"
-#include "framework/trajectory/trajectory.h"
 #include "tests/support/story.h"
 
 namespace tumble::a4_testing {
@@ -68,25 +65,5 @@ void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Roll
 /// The two times that a decision may change; the rest must be as it was.
 void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time,
                   double time, const Story& story);
-
-// ---- Whole scenes ------------------------------------------------------------------------------
-
-/// Balls of radius 0.1 m and 1 kg, restitution 1.
-scene::BodySpec ball(const std::string& name, const Vector3d& position, const Vector3d& velocity);
-/// A wall that is a half-space; its normal points to where the balls are.
-scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal);
-scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duration_s, double step_s);
-/// n balls at lot's places in a box of walls, at speeds of about 1 m/s.
-scene::Scene balls_in_a_box(int n, std::uint64_t seed, double duration_s);
-/// Balls that do not bounce and have friction: one drops between two that touch on a floor, a heap
-/// that slides apart, and a last one falls on it from `last_at`. Contact groups form and split.
-scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s);
-
-/// The scene by the framework's teaching timewarp on the decisions under test.
-Trajectory run_by_the_scheduler(const scene::Scene& scene);
-/// The same, which must end well: every committed event the ordered reference's, and at least so
-/// many of them.
-Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events,
-                                       const std::string& what);
 
 }  // namespace tumble::a4_testing

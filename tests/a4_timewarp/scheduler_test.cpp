@@ -3,7 +3,7 @@
 // decision should pass first.
 #include <algorithm>
 
-#include "tests/a4_timewarp/a4_fixtures.h"
+#include "tests/a4_timewarp/scene_fixtures.h"
 
 namespace tumble::a4_testing {
 namespace {

@@ -1,6 +1,6 @@
 #include "framework/core/random.h"
 #include "framework/effects/gravity/gravity.h"
-#include "tests/a4_timewarp/a4_fixtures.h"
+#include "tests/a4_timewarp/scene_fixtures.h"
 
 namespace tumble::a4_testing {
 namespace {
