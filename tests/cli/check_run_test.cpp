@@ -164,7 +164,7 @@ TEST(Mine, ABodyIsNoWall) {
   EXPECT_GT(finite_inertia(2, Matrix3d::Identity()).inverse_mass, infinite_inertia().inverse_mass);
 }
 TEST(Mine, AForceAtTheCentreTurnsNothing) {
-  a1_testing::a1_module().wrench_of_point_force({4, 5, 6}, {1, 2, 3}, {1, 2, 3});
+  modules::under_test<a1::Module>().wrench_of_point_force({4, 5, 6}, {1, 2, 3}, {1, 2, 3});
 }
 )");
   expect_said(check({file.path.string(), "--my-tests", tests.string()}), 4,
