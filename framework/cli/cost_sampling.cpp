@@ -246,9 +246,11 @@ std::vector<std::string> readings_of(const std::vector<Trial>& ways, const Answe
       "An answer to a tenth of its spread costs {} of CPU time by the cheapest chain ({}){}; one "
       "digit more costs a hundred times as much.",
       report::price_of(chain), best->name,
-      brute.points.empty() ? ", and brute force has no answer yet"
-                           : fmt::format(" and {} by brute force, {:.2g} times as much",
-                                         report::price_of(prior), prior / chain))};
+      brute.points.empty()
+          ? ", and brute force has no answer yet"
+          : fmt::format(" and {} by brute force, {:.2g} times {}", report::price_of(prior),
+                        std::max(prior / chain, chain / prior),
+                        prior >= chain ? "as much" : "less"))};
   if (std::isfinite(prior) && share > 0.0)
     readings.push_back(fmt::format(
         "Of the worlds of the prior {:.2g} % do what is asked. Brute force pays for all the "
