@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The figures of the handouts: pictures and plots of runs with the reference solutions, and the drawings of handouts/drawings. The same tree gives the same bytes, but for the figure of CPU times.
+# The figures of the handouts: pictures and plots of runs with the reference solutions, and the drawings of handouts/drawings. The same tree gives the same bytes, but for the figures of CPU times.
 # Usage: make_figures.sh [FOLDER]     FOLDER: where they are put; default: handouts/figures, which is what the repository shows
 set -euo pipefail
 folder=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/figures}")
@@ -19,6 +19,8 @@ pages=$(mktemp -d)
 trap 'rm -rf "$pages"' EXIT
 ./tumble sample ball_into_bin --modules a1=reference,a2=reference,a5=reference --out "$pages"
 cp "$pages/ball_into_bin/worlds.png" "$folder/worlds_of_the_ball.png"
+./tumble sample bowling_split --samples 60 --warm-up 40 --modules a1=reference,a2=reference,a3=reference,a5=reference --out "$pages"
+cp "$pages/bowling_split/worlds.png" "$folder/worlds_of_the_split.png"
 # Drawings (handouts/drawings), twice as large as they stand on a page.
 build=${TUMBLE_BUILD:-build}
 cmake --build "$build" --target draw_handouts >&2
@@ -36,8 +38,10 @@ plot_of() { # PAGE PLOT FIGURE
 plot_of t_handle error_against_evaluations accuracy_and_its_price
 ./tumble cost double_pendulum --methods none --engines none --stabilisations none,baumgarte,projection --steps 1/30,1/60,1/120,1/240,1/480,1/960,1/1920 --modules reference --out "$pages"
 plot_of double_pendulum error_against_the_step stabilisation_and_its_worth
-# its times are this machine's, so this one figure differs from run to run
+# times are this machine's, so these two figures differ from run to run
 ./tumble cost chain_8 --methods rk4,fehlberg78 --engines none --duration-s 1 --modules reference --out "$pages"
 plot_of chain_8 error_against_cpu_time rows_and_joint_coordinates
+./tumble cost a5 --modules reference --out "$pages"
+plot_of a5 error_of_an_answer_against_cpu_time what_a_chain_costs
 ./tumble engines atoms --sizes 10,20,40,80,160 --duration-s 1 --modules reference --out "$pages"
 plot_of atoms work_per_body_and_simulated_second work_of_three_engines

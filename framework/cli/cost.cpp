@@ -13,9 +13,11 @@
 #include "framework/cli/cost_all.h"
 #include "framework/cli/cost_impacts.h"
 #include "framework/cli/cost_measure.h"
+#include "framework/cli/cost_sampling.h"
 #include "framework/cli/cost_scheduler.h"
 #include "framework/cli/json_output.h"
 #include "framework/report/tables_json.h"
+#include "framework/sampling/sampler.h"
 
 namespace tumble::cli {
 namespace {
@@ -73,9 +75,11 @@ void tell_impacts(const Context& context, const CostWords& words) {
 void run_cost(Context& context, const CostWords& words) {
   if (words.scene == kImpactWord) return tell_impacts(context, words);
   if (words.scene == kAllWord) return cost_of_all(context, words);
-  for (const modules::ModuleKind* kind : context.registry.all())
-    if (kind->id == words.scene && kind->is_scheduler)
-      return cost_of_scheduler(context, *kind, words);
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    if (kind->id != words.scene) continue;
+    if (kind->is_scheduler) return cost_of_scheduler(context, *kind, words);
+    if (kind->note<sampling::Sampler>().functions) return cost_of_sampling(context, *kind, words);
+  }
   const MeasuredCost measured = measure_cost(context, words);
   print_and_write(context, measured.page, words, measured.against);
   if (measured.not_attempted) context.exit = ExitCode::kNotAttempted;
@@ -87,10 +91,11 @@ void add_cost(CLI::App& app, Context& context) {
   auto words = std::make_shared<CostWords>();
   Verb verb(app, "cost",
             "Error against CPU time by every method, step and engine, with plots and sentences");
-  verb.option("scene", words->scene,
-              "A scene file, the bare name of one, a scene with a size, an assignment (a1 to a4): "
-              "the student's module against the reference; toi: root finders on times of impact; "
-              "or all: every scene, and one table")
+  verb.option(
+          "scene", words->scene,
+          "A scene file, the bare name of one, a scene with a size, an assignment (such as a2): "
+          "the student's module against the reference; toi: root finders on times of impact; "
+          "or all: every scene, and one table")
       .required()
       .type_name("SCENE");
   verb.option("--methods", words->methods,

@@ -193,6 +193,8 @@ void run_sample(Context& context, const SampleWords& words) {
     print_json(context, parts);
   } else {
     print(sampled);
+    for (const std::string& doubt : sampling::doubts(answers, sampled.chains.size()))
+      fmt::print("  {}\n", doubt);
     fmt::print("{}\n", (folder / "index.html").string());
   }
   if (answers.done == 0) context.exit = ExitCode::kCheckFailed;

@@ -165,6 +165,8 @@ void write_sample_page(const Context& context, const Sampled& sampled, const fs:
       fmt::format("{} chains by the functions of {}; {} simulations in {:.3g} s of CPU time{}.",
                   sampled.chains.size(), sampled.source, answers.simulations, answers.cpu_s,
                   answers.broken > 0 ? fmt::format(", of which {} broke", answers.broken) : ""));
+  for (const std::string& doubt : sampling::doubts(answers, sampled.chains.size()))
+    page.paragraph(doubt, report::Look::kWarning);
   if (answers.done > 0 || answers.samples > 0) {
     const sampling::Overlay overlay = overlaid(sampled);
     render::PictureOptions options;

@@ -3,10 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace tumble::sampling {
 namespace {
 
 constexpr int kLeastSamples = 8;  // of a chain: halves of four
+
+// When chains have met (Vehtari et al. 2021); above the second they may have missed worlds.
+constexpr double kMet = 1.01, kApart = 1.1;
+constexpr double kFewEffective = 50.0;  // of half a chain: below, R-hat and errors are rough
+constexpr double kManyBroken = 0.02;    // of runs: worlds that are left out change the answer
 
 double smaller(double a, double b) { return std::fmin(a, b); }  // of a number and NaN: the number
 
@@ -83,6 +90,41 @@ Answers answers_of(const Sampling& by, const std::vector<std::string>& names,
     answers.estimates.push_back(estimate);
   }
   return answers;
+}
+
+std::vector<std::string> doubts(const Answers& answers, std::size_t chains) {
+  std::vector<std::string> all;
+  if (answers.done == 0)
+    return {
+        "No sample does what is asked: there is no answer. Take more samples or a longer "
+        "warm-up, or let near misses count for more (softness)."};
+  // By chance alone R-hat^2 - 1 falls as 1 / samples.
+  const double r_hat = answers.worst_r_hat, longer = (r_hat * r_hat - 1.0) / (kMet * kMet - 1.0);
+  if (!std::isfinite(r_hat))
+    all.push_back(
+        "R-hat is unknown: a number stands still in the chains, so nothing shows whether "
+        "they have met.");
+  else if (r_hat > kApart)
+    all.push_back(fmt::format(
+        "The chains have not met (R-hat {:.2f}): do not trust these answers, nor their errors. "
+        "Take about {:.2g} times as many samples; if that does not help, other steps.",
+        r_hat, longer));
+  else if (r_hat > kMet)
+    all.push_back(fmt::format(
+        "The chains nearly agree (R-hat {:.3f}, wanted {}): errors are rough. About {:.2g} times "
+        "as many samples would do.",
+        r_hat, kMet, longer));
+  const double wanted = 2.0 * kFewEffective * static_cast<double>(chains);
+  if (!(answers.least_effective >= wanted))
+    all.push_back(fmt::format(
+        "The worst known number has {:.0f} effective samples, fewer than the {:.0f} that {} chains "
+        "should have: its error is known to a factor only.",
+        std::isfinite(answers.least_effective) ? answers.least_effective : 0.0, wanted, chains));
+  if (answers.broken > kManyBroken * answers.simulations)
+    all.push_back(fmt::format(
+        "{} of {} runs broke; such worlds count as impossible, which may bias the answers.",
+        answers.broken, answers.simulations));
+  return all;
 }
 
 std::vector<Answers> growing_answers(const Sampling& by, const std::vector<std::string>& names,

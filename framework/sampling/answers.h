@@ -34,6 +34,11 @@ struct Answers {
 Answers answers_of(const Sampling& by, const std::vector<std::string>& names,
                    const std::vector<Chain>& chains, int samples);
 
+/// Why the answers of chains are not to be trusted yet, a sentence each; empty where nothing speaks
+/// against them. Looked at are the worlds found, R-hat, effective samples, and runs that broke.
+/// Source: Vehtari et al. 2021, section 4 (an R-hat of 1.01, 50 effective samples of half a chain).
+std::vector<std::string> doubts(const Answers& answers, std::size_t chains);
+
 /// Error against CPU time: the answers of ever longer beginnings of the chains.
 std::vector<Answers> growing_answers(const Sampling& by, const std::vector<std::string>& names,
                                      const std::vector<Chain>& chains);

@@ -119,10 +119,11 @@ double violation_of(const SampledScene& sampled, const Frame& last) {
         last.poses[static_cast<std::size_t>(index_of(sampled.scene, asked.body))];
     double lacks = 0.0;
     if (asked.is_place) {
-      const Vector3d nearest = pose.com_world.cwiseMax(asked.low_m).cwiseMin(asked.high_m);
-      lacks = (pose.com_world - nearest).norm();
+      const Vector3d point_world = pose.com_world + pose.world_from_body * asked.point_body;
+      const Vector3d nearest_world = point_world.cwiseMax(asked.low_m).cwiseMin(asked.high_m);
+      lacks = (point_world - nearest_world).norm();
     } else {
-      const double cosine = (pose.world_from_body * asked.axis_body).z();
+      const double cosine = asked.direction_world.dot(pose.world_from_body * asked.axis_body);
       const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
       lacks = std::max({0.0, asked.least_rad - angle, angle - asked.most_rad});
     }

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "framework/scene/document.h"
 #include "framework/scene/names.h"
@@ -75,6 +76,7 @@ AskedSpec asked(const json& value, const std::string& pointer, const Document& d
                     "Give one of them: what is asked of the body.");
   if (spec.is_place) {
     const json& place = value.at("place");
+    read(place, "point_body_m", spec.point_body);
     spec.low_m = bounds(place, "low_m", -kNoBound);
     spec.high_m = bounds(place, "high_m", kNoBound);
     if (!((spec.low_m.array() < spec.high_m.array()).all()))
@@ -85,9 +87,14 @@ AskedSpec asked(const json& value, const std::string& pointer, const Document& d
   }
   const json& lean = value.at("lean");
   read(lean, "axis_body", spec.axis_body);
-  if (spec.axis_body.norm() == 0.0)
-    document.refuse(pointer + "/lean/axis_body", "the axis has no direction", "Give another.");
-  spec.axis_body.normalize();
+  read(lean, "direction", spec.direction_world);
+  for (auto [key, vector] :
+       {std::pair{"axis_body", &spec.axis_body}, std::pair{"direction", &spec.direction_world}}) {
+    if (vector->norm() == 0.0)
+      document.refuse(pointer + "/lean/" + key, "the vector (0, 0, 0) has no direction",
+                      "Give another.");
+    vector->normalize();
+  }
   spec.least_rad = kDegree * number_or(lean, "least_deg", 0.0);
   spec.most_rad = kDegree * number_or(lean, "most_deg", 180.0);
   if (!(spec.least_rad < spec.most_rad))

@@ -28,13 +28,16 @@ struct PerturbationSpec {
   std::string pointer;      // JSON pointer of its entry
 };
 
-/// What is asked of a body at the end of the run: a place, or how an axis of it leans.
+/// What is asked of a body at the end of the run: the place of a point of it, or how an axis of it
+/// leans.
 struct AskedSpec {
   std::string body;
   bool is_place = true;
+  Vector3d point_body = Vector3d::Zero();  // that has the place, from the centre of mass [m]
   Vector3d low_m = Vector3d::Constant(-kNoBound), high_m = Vector3d::Constant(kNoBound);  // world
   Vector3d axis_body = Vector3d::UnitZ();                                                 // unit
-  double least_rad = 0.0, most_rad = kNoBound;  // between that axis and the world's z
+  Vector3d direction_world = Vector3d::UnitZ();                                           // unit
+  double least_rad = 0.0, most_rad = kNoBound;  // between that axis and that direction
   double softness = kUnset;                     // of a violation [m] or [rad]
   std::string pointer;
 };

@@ -169,6 +169,32 @@ TEST_F(CommandLine, CostOfAnAssignmentReadsItsMethods) {
   EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "your rk4"));
 }
 
+TEST_F(CommandLine, CostOfChainsReadsEachProposalBesideBruteForce) {
+  const Said said = type("cost a5 --modules reference --budget-s 2 --json");
+  ASSERT_EQ(said.code, 0) << said.err;
+  const nlohmann::json told = nlohmann::json::parse(said.out);
+  ASSERT_EQ(told["ways"].size(), 6u);  // mixed, plain, small, large steps, hard; brute force
+  // Half of the prior's worlds do it, so brute force has points at every length: the law of means.
+  // Its errors at 7 lengths are of nested samples, some 20 % each: the slope is known to 0.2.
+  const nlohmann::json& brute = told["ways"].back();
+  EXPECT_NEAR(brute["slope"], -0.5, 0.25) << brute;
+  EXPECT_GT(brute["done"], 0.3 * static_cast<double>(brute["samples"]));
+  EXPECT_EQ(told["ways"][4]["done"], told["ways"][4]["samples"]) << "a hard chain never leaves";
+  const std::string page = contents_of(folder_ / "out" / "cost" / "a5" / "index.html");
+  EXPECT_TRUE(holds(page, "An answer to a tenth of its spread costs") &&
+              holds(page, "a chain pays where fewer than about 1 world in") &&
+              holds(page, "Error of an answer against CPU time"));
+}
+
+TEST_F(CommandLine, CostOfChainsRefusesWhatChangesNothing) {
+  const Said said = type("cost a5 --modules reference --methods rk4"),
+             other = type("cost a5 --modules reference --on pong_1");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "a chain chooses among worlds")) << said.err;
+  EXPECT_EQ(other.code, 2);
+  EXPECT_TRUE(holds(other.err, "does not say in what its worlds differ")) << other.err;
+}
+
 TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoReferenceSolution) {
   const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
   EXPECT_EQ(said.code, 2) << said.out;

@@ -3,6 +3,7 @@
 #include "framework/sampling/worlds.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include "framework/sampling/overlay.h"
 #include "framework/scene/load_sampling.h"
 #include "framework/scene/load_scene.h"
+#include "tests/support/places.h"
 
 namespace tumble::sampling {
 namespace {
@@ -104,6 +106,31 @@ TEST(Violation, IsTheDistanceFromWhatIsAskedInItsSoftness) {
   EXPECT_NEAR(violation_of(both, frame_with({-2, 8, 0}, nearly)), std::hypot(10, 1), 1e-12);
 }
 
+TEST(Violation, IsOfThePointThatThePlaceIsAskedOf) {
+  // A corner of the die: turned by 90 degrees about y, its body's (0, 0, 0.5) points along x.
+  const SampledScene scene = thrown_ball(
+      kSpeed,
+      R"({"body": "die", "place": {"point_body_m": [0, 0, 0.5], "low_m": [6, null, null], "high_m": [7, null, null], "softness_m": 0.1}})");
+  const Quaterniond over(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY()));
+  // The die is at x = 5: upright the point is there too, 1 m short; turned it is 0.5 m short.
+  EXPECT_NEAR(violation_of(scene, frame_with({0, 0, 0}, Quaterniond::Identity())), 10, 1e-12);
+  EXPECT_NEAR(violation_of(scene, frame_with({0, 0, 0}, over)), 5, 1e-12);
+}
+
+TEST(Violation, IsOfTheAngleToTheDirectionThatIsAsked) {
+  // "Fell along x": its z within 20 degrees of the world's x, given at another length.
+  const SampledScene scene = thrown_ball(
+      kSpeed,
+      R"({"body": "die", "lean": {"direction": [3, 0, 0], "most_deg": 20, "softness_deg": 10}})");
+  const auto tilted = [](double degrees, const Vector3d& axis) {
+    return Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180, axis));
+  };
+  EXPECT_EQ(violation_of(scene, frame_with({0, 0, 0}, tilted(90, Vector3d::UnitY()))), 0);
+  EXPECT_NEAR(violation_of(scene, frame_with({0, 0, 0}, Quaterniond::Identity())), 7, 1e-12);
+  EXPECT_NEAR(violation_of(scene, frame_with({0, 0, 0}, tilted(-90, Vector3d::UnitY()))), 16,
+              1e-12);
+}
+
 TEST(Overlay, HoldsWhatMovesOnceForEachRun) {
   const SampledScene scene = thrown_ball(kSpeed, kPlace);
   Trajectory first;
@@ -159,8 +186,45 @@ TEST(SamplingEntry, IsRefusedWithItsPlace) {
           kPlace),
       "must be positive");
   expect_refused(refusal(kSpeed, R"({"body": "ball"})"), "neither");
+  expect_refused(
+      refusal(
+          kSpeed,
+          R"({"body": "die", "lean": {"direction": [0, 0, 0], "most_deg": 9, "softness_deg": 1}})"),
+      "/sampling/asked/0/lean/direction");
   expect_refused(refusal(kSpeed, R"({"body": "cube", "place": {"softness_m": 1}})"),
                  "/sampling/asked/0/body");
+}
+
+// ---- What the course has ----
+
+TEST(EverySampledScene, SaysInWhatItsWorldsDifferAndIsItselfOneOfThem) {
+  const std::filesystem::path folder =
+      std::filesystem::path(test::source_dir()) / "assignments/a5_plausible/scenes";
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    SCOPED_TRACE(entry.path().filename().string());
+    const scene::Scene scene = scene::load_scene(entry.path());
+    const auto spec = scene::load_sampling(scene);
+    ASSERT_TRUE(spec.has_value());
+    const SampledScene sampled{scene, *spec};
+    EXPECT_GE(spec->perturbed.size(), 2u);
+    EXPECT_GE(spec->asked.size(), 1u);
+    // The world that the file shows is the one at the prior's means.
+    VectorXd means(static_cast<Eigen::Index>(spec->perturbed.size()));
+    for (std::size_t i = 0; i < spec->perturbed.size(); ++i) {
+      ASSERT_TRUE(spec->perturbed[i].is_normal);
+      means[static_cast<Eigen::Index>(i)] = spec->perturbed[i].mean;
+    }
+    const scene::Scene world = world_of(sampled, means);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      EXPECT_EQ(world.bodies[b].position_m, scene.bodies[b].position_m) << scene.bodies[b].name;
+      EXPECT_EQ(world.bodies[b].velocity_m_s, scene.bodies[b].velocity_m_s);
+      EXPECT_EQ(world.bodies[b].omega_world_rad_s, scene.bodies[b].omega_world_rad_s);
+      EXPECT_EQ(world.bodies[b].restitution, scene.bodies[b].restitution);
+    }
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 4);
 }
 
 }  // namespace
