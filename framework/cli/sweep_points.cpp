@@ -81,9 +81,10 @@ std::string faults_of(const std::vector<engines::CheckResult>& checks, std::size
   std::string text;
   for (std::size_t i = asked; i < checks.size(); ++i)
     if (!checks[i].passed)
-      text += fmt::format("{}{} of {}: {:.3g} {}, at most {:.3g} is allowed",
-                          text.empty() ? "" : "; ", checks[i].kind, checks[i].subject,
-                          checks[i].value, checks[i].unit, checks[i].threshold);
+      text +=
+          fmt::format("{}{} of {}: {:.3g}{}{}, at most {:.3g} is allowed", text.empty() ? "" : "; ",
+                      checks[i].kind, checks[i].subject, checks[i].value,
+                      checks[i].unit.empty() ? "" : " ", checks[i].unit, checks[i].threshold);
   return text;
 }
 
