@@ -12,15 +12,13 @@
 #include "framework/core/terminal.h"
 #include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/modules/names.h"
 
 namespace tumble::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using grading::Output;
-using grading::ProgramOutcome;
 
 // s: a test program starts in 20 ms; the rest is for a loaded machine
 constexpr double kLoadLimit = 10.0;
@@ -61,7 +59,7 @@ ExitCode run_tests(const Command& command, const CheckWords& words,
   if (!words.results.empty()) program.insert(program.end(), {"--json", words.results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);
-  const int code = grading::run_program(program, Output::kOurs).code;
+  const int code = run_program(program, Output::kOurs).code;
   if (code < 0 || code > static_cast<int>(ExitCode::kNotAttempted)) {
     fmt::print(
         "\nthe program with your code ended with code {} before its tests could be judged: look "
@@ -107,7 +105,7 @@ class KeptWords {
 // every test.
 bool starts(std::vector<std::string> program) {
   program.insert(program.end(), {"--debug", "--gtest_list_tests"});
-  return grading::run_program(program, Output::kDropped, kLoadLimit).in_time;
+  return run_program(program, Output::kDropped, kLoadLimit).in_time;
 }
 
 // The public tests by a program that holds the user's own code.
@@ -124,7 +122,7 @@ ExitCode run_own(const Command& command, const CheckWords& words, const fs::path
 ExitCode check_own(const Command& command, const CheckWords& words, const fs::path& file,
                    const fs::path& header) {
   const KeptWords kept(command, words.id, folder_of(words.id));
-  const ProgramOutcome built = grading::run_program(
+  const ProgramOutcome built = run_program(
       {"ninja", "-C", command.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
   if (built.code != 0) return does_not_compile(file, header, built.printed);
   print_warnings(file, kept.after_build(built.printed));
@@ -139,7 +137,7 @@ ExitCode check_installed(const Command& command, const CheckWords& words, const 
   const PrivateFolder folder;
   const fs::path object = folder.path() / (words.id + ".so"),
                  program = command.build / "bin" / ("check_" + words.id);
-  const ProgramOutcome built = grading::run_program(
+  const ProgramOutcome built = run_program(
       grading::own_compilation(command.root, command.build, file, object), Output::kCaptured);
   if (built.code != 0) return does_not_compile(file, header, built.printed);
   print_warnings(file, built.printed);
@@ -196,7 +194,7 @@ ExitCode check_own_tests(const Command& command, const CheckWords& words, const 
   std::vector<std::string> run = {program.string(), "--tests",       own.string(),
                                   "--submission",   object.string(), "--quick"};
   if (!words.results.empty()) run.insert(run.end(), {"--json", words.results.string()});
-  const int code = grading::run_program(run, Output::kOurs).code;
+  const int code = run_program(run, Output::kOurs).code;
   return code < 0 || code > static_cast<int>(ExitCode::kNotAttempted) ? ExitCode::kCheckFailed
                                                                       : static_cast<ExitCode>(code);
 }
@@ -255,7 +253,7 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
     program = {(programs / ("check_" + id + "_sandboxed")).string(), "--submission",
                object.string(), "--quick"};
   } else {
-    const ProgramOutcome built = grading::run_program(
+    const ProgramOutcome built = run_program(
         command.is_installed ? grading::own_compilation(command.root, command.build, file, object)
                              : std::vector<std::string>{"ninja", "-C", command.build.string(),
                                                         "--quiet", "check_" + id},
@@ -271,7 +269,7 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
   }
   program.insert(program.end(), {"--json", results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
-  const ProgramOutcome ran = grading::run_program(program, Output::kCaptured);
+  const ProgramOutcome ran = run_program(program, Output::kCaptured);
   if (ran.code == static_cast<int>(ExitCode::kUserError))  // its words, such as a pattern
     throw UserError("check " + id, ran.printed.substr(0, ran.printed.find_last_not_of('\n') + 1));
   if (!fs::exists(results))

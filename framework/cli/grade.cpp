@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/grading_run.h"
-#include "framework/grading/grades/cluster.h"
+#include "framework/grading/grades/grade_shards.h"
 #include "framework/grading/grades/grade.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/grades/output_folder.h"
@@ -79,7 +79,7 @@ std::vector<std::string> words_of_task(const Context& context, const GradeWords&
 
 void grade_shards(const Context& context, const GradeWords& words, std::size_t total,
                   const grading::GradeOptions& options, const fs::path& out) {
-  grading::ClusterJob job;
+  grading::ShardedGrading job;
   job.cluster = grading::cluster_of(words.on);
   job.command = words_of_task(context, words, out);
   job.root = context.root;
@@ -112,7 +112,7 @@ void grade(Context& context, const GradeWords& words) {
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
   GradingRequest request{words.id, words.folder, out, words.sandbox, words.policy, {}};
   request.options.jobs = words.jobs > 0 ? words.jobs : default_jobs();
-  if (!words.shard.empty()) request.options.shard = grading::shard_of(words.shard);
+  if (!words.shard.empty()) request.options.shard = farm::shard_of(words.shard);
   if (!words.on.empty())
     request.before = [&](std::size_t total, const grading::GradeOptions& options) {
       grade_shards(context, words, total, options, fs::weakly_canonical(fs::absolute(out)));

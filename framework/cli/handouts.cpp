@@ -12,7 +12,7 @@
 #include "framework/cli/record.h"
 #include "framework/cli/words.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/report/html.h"
 
 namespace tumble::cli {
@@ -119,9 +119,9 @@ void make_figures(const Command& command, const fs::path& figures) {
                "with it are used\n");
     return;
   }
-  const auto made = grading::run_program(
-      {"bash", (command.root / "handouts/make_figures.sh").string(), figures.string()},
-      grading::Output::kCaptured);
+  const auto made =
+      run_program({"bash", (command.root / "handouts/make_figures.sh").string(), figures.string()},
+                  Output::kCaptured);
   if (made.code != 0)
     throw UserError("handouts/make_figures.sh",
                     "did not draw the figures; it said:\n" + made.printed,
@@ -143,7 +143,7 @@ void run_pandoc(const Command& command, const Handout& handout, const fs::path& 
                                     "--metadata=root:" + fs::relative(folder, out).string() + "/",
                                     "--metadata=lang:en"};
   words.insert(words.end(), more.begin(), more.end());
-  const auto done = grading::run_program(words, grading::Output::kCaptured, 300);
+  const auto done = run_program(words, Output::kCaptured, 300);
   if (done.code == 127)
     throw UserError("pandoc", "is not installed", "Install what packages.txt lists.");
   if (done.code != 0)

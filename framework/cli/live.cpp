@@ -12,7 +12,7 @@
 #include "framework/cli/planned_run.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/course.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/live/session.h"
 #include "framework/live/showcase.h"
 
@@ -98,9 +98,9 @@ std::string handout_page(const Context& context, const std::string& name) {
   const fs::path drawn = context.root / "out" / "handouts" / name;
   if (fs::is_regular_file(drawn)) return text_of(drawn);
   const auto made =
-      grading::run_program({"pandoc", "--from=markdown", "--to=html5", "--mathml", "--standalone",
-                            "--quiet", "--metadata=title:" + file.stem().string(), file.string()},
-                           grading::Output::kCaptured, 30.0);
+      run_program({"pandoc", "--from=markdown", "--to=html5", "--mathml", "--standalone", "--quiet",
+                   "--metadata=title:" + file.stem().string(), file.string()},
+                  Output::kCaptured, 30.0);
   return made.code == 0 ? made.printed : "";
 }
 

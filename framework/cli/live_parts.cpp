@@ -20,7 +20,7 @@
 #include "framework/core/files.h"
 #include "framework/core/not_implemented.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/grading/verdicts/rubric.h"
 #include "framework/grading/worker/guarded_calls.h"
 #include "framework/live/records.h"
@@ -141,8 +141,8 @@ struct Symbol {
 };
 /// What nm says of the code in an object, by where it begins.
 std::vector<Symbol> symbols_of(const fs::path& object) {
-  const auto listed = grading::run_program({"nm", "--numeric-sort", object.string()},
-                                           grading::Output::kCaptured, 20.0);
+  const auto listed =
+      run_program({"nm", "--numeric-sort", object.string()}, Output::kCaptured, 20.0);
   std::vector<Symbol> symbols;
   std::istringstream lines(listed.printed);
   for (std::string line; std::getline(lines, line);) {
@@ -166,18 +166,17 @@ int line_of_offset(const Context& context, const fs::path& source, const fs::pat
   if (function.name.empty()) return 0;
   const PrivateFolder folder;
   const fs::path with_lines = folder.path() / "with_lines.o";
-  const auto compiled = grading::run_program(
+  const auto compiled = run_program(
       {"g++", "-std=c++20", "-O2", "-g1", "-fPIC", "-ffp-contract=off", "-fno-finite-loops",
        "-fno-gnu-unique", "-DTUMBLE_BUILDING_MODULE", "-I", context.root.string(), "-isystem",
        TUMBLE_EIGEN_INCLUDE, "-c", source.string(), "-o", with_lines.string()},
-      grading::Output::kCaptured, 60.0);
+      Output::kCaptured, 60.0);
   if (compiled.code != 0) return 0;
   for (const Symbol& symbol : symbols_of(with_lines)) {
     if (symbol.name != function.name) continue;
-    const auto told =
-        grading::run_program({"addr2line", "-i", "-e", with_lines.string(),
-                              fmt::format("{:#x}", symbol.start + offset - function.start)},
-                             grading::Output::kCaptured, 20.0);
+    const auto told = run_program({"addr2line", "-i", "-e", with_lines.string(),
+                                   fmt::format("{:#x}", symbol.start + offset - function.start)},
+                                  Output::kCaptured, 20.0);
     // Innermost first; inlined library code is passed over.
     std::istringstream lines(told.printed);
     for (std::string line; std::getline(lines, line);)

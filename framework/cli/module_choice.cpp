@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
 
 #include <spawn.h>
@@ -16,7 +17,7 @@
 #include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/worker/guarded_calls.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/modules/bind_laws.h"
 #include "framework/modules/load.h"
 #include "framework/scene/model_scene.h"
@@ -87,12 +88,17 @@ fs::path build_student(const Context& context, const ModuleKind& kind) {
   const auto made = fs::last_write_time(object, missing);
   if (missing || made < fs::last_write_time(source))
     std::fprintf(stderr, "compiling %s\n", student_file(context, kind).c_str());
+  // Tasks of a farm do not build, all at once, what the command that started them has built.
+  if (std::getenv("TUMBLE_TASK") != nullptr && !missing && made >= fs::last_write_time(source)) {
+    fresh.insert(kind.id);
+    return object;
+  }
   const std::vector<std::string> by_ninja = {"ninja", "-C", context.build.string(), "--quiet",
                                              kind.id + "_student"};
-  const auto outcome = grading::run_program(
+  const auto outcome = run_program(
       context.is_installed ? grading::own_compilation(context.root, context.build, source, object)
                            : by_ninja,
-      grading::Output::kCaptured);
+      Output::kCaptured);
   if (outcome.code != 0) {
     const fs::path header = context.root / grading::header_in(kind.folder);
     throw UserError(

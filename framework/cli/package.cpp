@@ -8,7 +8,7 @@
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/course.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::cli {
 namespace {
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* kCourse = "tumble-course_";  // its file begins like this
 
 void run(const std::vector<std::string>& words, const std::string& remedy) {
-  const auto outcome = grading::run_program(words, grading::Output::kCaptured);
+  const auto outcome = run_program(words, Output::kCaptured);
   if (outcome.code == 0) return;
   throw UserError(
       words.front(),

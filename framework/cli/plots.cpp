@@ -8,7 +8,7 @@
 #include "framework/cli/command.h"
 #include "framework/cli/words.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/report/plot_files.h"
 
 namespace tumble::cli {
@@ -35,9 +35,9 @@ std::string read_page(const fs::path& file) {
 void draw(const fs::path& svg, const fs::path& png, int width_px) {
   make_whole(png, [&](const fs::path& draft) {
     const auto done =
-        grading::run_program({"rsvg-convert", "--width=" + std::to_string(width_px),
-                              "--keep-aspect-ratio", "--output=" + draft.string(), svg.string()},
-                             grading::Output::kCaptured, 60);
+        run_program({"rsvg-convert", "--width=" + std::to_string(width_px), "--keep-aspect-ratio",
+                     "--output=" + draft.string(), svg.string()},
+                    Output::kCaptured, 60);
     if (done.code == 127)
       throw UserError("rsvg-convert", "is not installed",
                       "Install what packages.txt lists, or ask for --svg.");

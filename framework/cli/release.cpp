@@ -16,7 +16,7 @@
 #include "framework/extend/unwritten.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/course/release_checks.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::cli {
 namespace {
@@ -154,7 +154,7 @@ void build_and_check(const Context& context, const fs::path& release,
                                (folder.path() / "build").string() + "' exec '" +
                                (release / "tumble").string() + "' " + words + " >'" +
                                (folder.path() / "said").string() + "'";
-    return grading::run_program({"/bin/sh", "-c", script}, grading::Output::kOurs).code;
+    return run_program({"/bin/sh", "-c", script}, Output::kOurs).code;
   };
   std::fprintf(stderr, "building the released tree (minutes; --no-build leaves this out)\n");
   if (launch("test --show-only") != 0)

@@ -10,9 +10,12 @@
 #include "framework/cli/find_scene.h"
 #include "framework/cli/json_output.h"
 #include "framework/cli/module_choice.h"
+#include "framework/cli/sample_files.h"
 #include "framework/cli/sample_page.h"
 #include "framework/cli/sandboxed_module.h"
+#include "framework/cli/spread_words.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/sampling/kept_chain.h"
 #include "framework/sampling/sampler.h"
 #include "framework/scene/load_sampling.h"
 
@@ -23,6 +26,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using sampling::Answers;
 
+const std::string kUnit = "chain";
 constexpr int kPriorParts = 8;  // of worlds drawn from the prior: chains to compare
 
 struct SampleWords {
@@ -32,6 +36,7 @@ struct SampleWords {
   bool is_hard = false, json = false;
   std::optional<double> step_s, duration_s;
   std::string out = "out/sample";
+  SpreadWords spread;
 };
 
 void tell(const std::string& what, int done, int all) {
@@ -66,7 +71,8 @@ void choose_sampler(const Context& context, const ModuleWords& words, Sampled& s
                   "It is assignment a5 of the course.");
 }
 
-Sampled sample(const Context& context, const SampleWords& words) {
+/// All but the chains.
+Sampled prepared(const Context& context, const SampleWords& words) {
   Sampled sampled;
   scene::Scene scene = find_scene(context, words.scene);
   const auto spec = scene::load_sampling(scene);
@@ -75,7 +81,6 @@ Sampled sample(const Context& context, const SampleWords& words) {
                     "Add \"sampling\" to it, or take a scene that has it, such as ball_into_bin.");
   const ModuleWords module_words = parse_module_words(words.modules, context.registry);
   sampled.chosen = choose_laws(context, scene, module_words, words.engine);
-  for (const auto& notice : sampled.chosen.notices) fmt::print(stderr, "{}\n", notice);
   sampled.worlds = {std::move(scene), *spec};
   choose_sampler(context, module_words, sampled);
   sampled.run.engine = words.engine;
@@ -85,64 +90,88 @@ Sampled sample(const Context& context, const SampleWords& words) {
   sampled.run.duration_s = words.duration_s;
   sampled.run.command = context.command_line;
   sampled.names = sampling::names_of(sampled.worlds);
-
-  sampling::ChainOptions options;
-  options.seed = static_cast<std::uint64_t>(words.seed);
-  options.samples = words.samples;
-  options.warm_up = words.warm_up;
-  options.is_hard = words.is_hard;
-  options.progress = [](int chain, int step, int steps) {
+  sampled.options.seed = static_cast<std::uint64_t>(words.seed);
+  sampled.options.samples = words.samples;
+  sampled.options.warm_up = words.warm_up;
+  sampled.options.is_hard = words.is_hard;
+  sampled.options.progress = [](int chain, int step, int steps) {
     tell(fmt::format("chain {}", chain + 1), step, steps);
   };
-  for (int number = 0; number < words.chains; ++number)
-    sampled.chains.push_back(sampling::run_chain(sampled.worlds, sampled.by, sampled.chosen.laws,
-                                                 sampled.run, options, number));
-  sampled.growing = sampling::growing_answers(sampled.by, sampled.names, sampled.chains);
-  if (words.prior > 0) {
-    sampled.prior = sampling::draw_prior(
-        sampled.worlds, sampled.chosen.laws, sampled.run, options.seed, words.prior,
-        [&](int done) { tell("worlds of the prior", done, words.prior); });
-    sampled.prior_growing = sampling::growing_answers(sampled.by, sampled.names,
-                                                      sampling::cut(*sampled.prior, kPriorParts));
-  }
   return sampled;
 }
 
-ordered_json json_of(const Answer& answer) {
-  ordered_json json;
-  json["mean"] = answer.mean;
-  json["deviation"] = answer.deviation;
-  json["effective_samples"] = answer.effective_samples;
-  json["standard_error"] = answer.standard_error;
-  return json;
+/// One chain, or the worlds of the prior behind the last of them, as text.
+std::string made(const Context& context, const SampleWords& words, const Sampled& prepared_here,
+                 std::size_t index) {
+  // A sandbox answers one process, so that this one needs its own.
+  std::optional<Sampled> own;
+  if (!prepared_here.chosen.connections.empty()) own = prepared(context, words);
+  const Sampled& sampled = own ? *own : prepared_here;
+  const int number = static_cast<int>(index);
+  if (number < words.chains)
+    return text_of(sampling::run_chain(sampled.worlds, sampled.by, sampled.chosen.laws, sampled.run,
+                                       sampled.options, number));
+  return text_of(sampling::draw_prior(
+      sampled.worlds, sampled.chosen.laws, sampled.run, sampled.options.seed, words.prior,
+      [&](int done) { tell("worlds of the prior", done, words.prior); }));
 }
 
-ordered_json json_of(const Answers& answers) {
-  ordered_json json;
-  json["samples"] = answers.samples;
-  json["done"] = answers.done;
-  json["simulations"] = answers.simulations;
-  json["broken"] = answers.broken;
-  json["acceptance"] = answers.acceptance;
-  json["worst_r_hat"] = answers.worst_r_hat;
-  json["share_done"] = json_of(answers.share);
-  json["numbers"] = ordered_json::array();
-  for (const sampling::Estimate& estimate : answers.estimates) {
-    ordered_json one = json_of(estimate.answer);
-    one["r_hat"] = estimate.r_hat;
-    one["name"] = estimate.name;
-    json["numbers"].push_back(one);
+/// The words of a task on another machine, which runs in this folder.
+std::vector<std::string> words_of_task(const SampleWords& words) {
+  std::vector<std::string> all = {"sample",    words.scene,
+                                  "--chains",  std::to_string(words.chains),
+                                  "--samples", std::to_string(words.samples),
+                                  "--warm-up", std::to_string(words.warm_up),
+                                  "--seed",    std::to_string(words.seed),
+                                  "--prior",   std::to_string(words.prior),
+                                  "--out",     words.out};
+  if (words.is_hard) all.push_back("--hard");
+  if (!words.modules.empty()) all.insert(all.end(), {"--modules", words.modules});
+  if (!words.engine.empty()) all.insert(all.end(), {"--engine", words.engine});
+  if (words.step_s) all.insert(all.end(), {"--step-s", fmt::format("{}", *words.step_s)});
+  if (words.duration_s)
+    all.insert(all.end(), {"--duration-s", fmt::format("{}", *words.duration_s)});
+  return all;
+}
+
+/// Makes the chains, wherever it is to be, and their answers. Without answers where this is one
+/// shard of them.
+void sample(const Context& context, const SampleWords& words, const fs::path& folder,
+            Sampled& sampled) {
+  const farm::KeptParts parts(
+      folder / "chains",
+      key_of(context, sampled.worlds.scene, parse_module_words(words.modules, context.registry),
+             fmt::format("sample {} {} {} {} {} {} {}", words.samples, words.warm_up, words.seed,
+                         words.is_hard, words.engine, words.step_s.value_or(0.0),
+                         words.duration_s.value_or(0.0))));
+  farm::SplitWork work;
+  work.unit = kUnit;
+  for (int number = 1; number <= words.chains; ++number) {
+    work.names.push_back(fmt::format("chain-{}", number));
+    work.labels.push_back(fmt::format("chain {}", number));
   }
-  return json;
-}
+  if (words.prior > 0) {
+    work.names.push_back(fmt::format("prior-{}", words.prior));
+    work.labels.push_back("the worlds of the prior");
+  }
+  work.make = [&](std::size_t index) { return made(context, words, sampled, index); };
+  sampled.outcome = spread(context, words.spread, parts, work, words_of_task(words));
+  if (!words.spread.shard.empty()) return;
 
-ordered_json times_of(const Answers& answers) {
-  ordered_json json;
-  json["cpu_s"] = answers.cpu_s;
-  json["samples_a_second"] = answers.samples / answers.cpu_s;
-  json["simulations_a_second"] = answers.simulations / answers.cpu_s;
-  json["effective_samples_a_second"] = answers.least_effective / answers.cpu_s;
-  return json;
+  for (int number = 0; number < words.chains; ++number)
+    if (const auto text = parts.result(work.names[static_cast<std::size_t>(number)]))
+      sampled.chains.push_back(sampling::chain_of(*text));
+  if (sampled.chains.empty())
+    throw UserError(folder.string(),
+                    "no chain came to its end: " + lost_in_words(sampled.outcome, kUnit),
+                    "See what ended the processes; with --jobs 1 they take less memory.");
+  sampled.growing = sampling::growing_answers(sampled.by, sampled.names, sampled.chains);
+  if (words.prior == 0) return;
+  if (const auto text = parts.result(work.names.back())) {
+    sampled.prior = sampling::chain_of(*text);
+    sampled.prior_growing = sampling::growing_answers(sampled.by, sampled.names,
+                                                      sampling::cut(*sampled.prior, kPriorParts));
+  }
 }
 
 void print(const Sampled& sampled) {
@@ -176,16 +205,28 @@ void print(const Sampled& sampled) {
 }
 
 void run_sample(Context& context, const SampleWords& words) {
-  const Sampled sampled = sample(context, words);
+  check(words.spread);
+  constexpr int kLeastPrior = 8 * kPriorParts;  // of a part: the least that answers are made of
+  if (words.prior > 0 && words.prior < kLeastPrior)
+    throw UserError("--prior", fmt::format("{} worlds are too few to compare with", words.prior),
+                    fmt::format("Draw at least {}.", kLeastPrior));
+  Sampled sampled = prepared(context, words);
+  for (const auto& notice : sampled.chosen.notices) fmt::print(stderr, "{}\n", notice);
   const fs::path folder = fs::path(words.out) / sampled.worlds.scene.name;
+  sample(context, words, folder, sampled);
+  if (!words.spread.shard.empty()) return end_shard(context, words.spread, sampled.outcome, kUnit);
+  const std::string lost = lost_in_words(sampled.outcome, kUnit);
   write_sample_page(context, sampled, folder);
+  write_sample_files(context, sampled, folder);
   const Answers& answers = sampled.growing.back();
   if (words.json) {
     ordered_json parts = {{"scene", sampled.worlds.scene.name},
                           {"chains", words.chains},
                           {"seed", words.seed},
                           {"functions", sampled.source},
+                          {"lost", ordered_json::array()},
                           {"answers", json_of(answers)}};
+    for (const farm::Lost& one : sampled.outcome.lost) parts["lost"].push_back(one.name);
     if (sampled.prior) parts["prior"] = json_of(sampled.prior_growing.back());
     parts["times"] = times_of(answers);
     if (sampled.prior) parts["times_of_prior"] = times_of(sampled.prior_growing.back());
@@ -197,7 +238,8 @@ void run_sample(Context& context, const SampleWords& words) {
       fmt::print("  {}\n", doubt);
     fmt::print("{}\n", (folder / "index.html").string());
   }
-  if (answers.done == 0) context.exit = ExitCode::kCheckFailed;
+  if (!lost.empty()) fmt::print(stderr, "tumble: {}\n", lost);
+  if (answers.done == 0 || !lost.empty()) context.exit = ExitCode::kCheckFailed;
 }
 
 }  // namespace
@@ -239,10 +281,14 @@ void add_sample(CLI::App& app, Context& context) {
       .positive();
   verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made")
       .shows_default();
+  add_spread_words(verb, words->spread, "chains");
   verb.flag("--json", words->json, "For machines");
   verb.footer(
-      "Example: tumble sample ball_into_bin --prior 2000\nExit: 0 worlds were found, 1 none does "
-      "what is asked, 2 something to repair, 4 not attempted.");
+      "Example: tumble sample ball_into_bin --prior 2000\n"
+      "The same chains give the same bytes of chains.csv and answers.json wherever they are made. "
+      "What is finished lies in OUT/SCENE/chains, and a second start takes it over.\n"
+      "Exit: 0 worlds were found, 1 none does what is asked or a chain is missing, 2 something to "
+      "repair, 4 not attempted.");
   verb.runs([&context, words] { run_sample(context, *words); });
 }
 

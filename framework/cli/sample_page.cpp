@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/record.h"
+#include "framework/cli/spread_words.h"
 #include "framework/render/picture.h"
 #include "framework/report/html.h"
 #include "framework/report/player.h"
@@ -165,6 +166,8 @@ void write_sample_page(const Context& context, const Sampled& sampled, const fs:
       fmt::format("{} chains by the functions of {}; {} simulations in {:.3g} s of CPU time{}.",
                   sampled.chains.size(), sampled.source, answers.simulations, answers.cpu_s,
                   answers.broken > 0 ? fmt::format(", of which {} broke", answers.broken) : ""));
+  if (const std::string lost = lost_in_words(sampled.outcome, "chain"); !lost.empty())
+    page.paragraph(lost, report::Look::kBad);
   for (const std::string& doubt : sampling::doubts(answers, sampled.chains.size()))
     page.paragraph(doubt, report::Look::kWarning);
   if (answers.done > 0 || answers.samples > 0) {

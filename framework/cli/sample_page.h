@@ -8,6 +8,7 @@
 
 #include "framework/cli/module_choice.h"
 #include "framework/cli/verb.h"
+#include "framework/farm/spread.h"
 #include "framework/sampling/answers.h"
 #include "framework/scene/scene.h"
 
@@ -21,6 +22,8 @@ struct Sampled {
   Sampling by;
   std::string source;  // whose functions `by` are
   std::vector<std::string> names;
+  sampling::ChainOptions options;
+  farm::Outcome outcome;  // what is missing of the chains
   std::vector<sampling::Chain> chains;
   std::vector<sampling::Answers> growing;  // of ever longer beginnings; the last is of all
   // worlds of the prior alone, where they were asked for

@@ -38,6 +38,7 @@ void add_release(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
 void add_sample(CLI::App& app, Context& context);
 void add_scenes(CLI::App& app, Context& context);
+void add_sweep(CLI::App& app, Context& context);
 void add_truths(CLI::App& app, Context& context);
 
 }  // namespace tumble::cli

@@ -19,6 +19,7 @@ void add_verbs(CLI::App& app, Context& context) {
   begin_group(app, "what accuracy costs");
   add_cost(app, context);
   add_engines(app, context);
+  add_sweep(app, context);
   add_plots(app, context);
   add_truths(app, context);
   add_battery(app, context);

@@ -64,6 +64,11 @@ Word& Word::needs(const Word& other) {
   return *this;
 }
 
+Word& Word::one_each() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 Word& Word::hidden() {
   option_->group("");
   return *this;

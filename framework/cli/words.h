@@ -25,6 +25,7 @@ class Word {
   Word& between(int least, int most);  // both ends allowed
   Word& between(double least, double most);
   Word& separated_by(char separator);           // of lists: 1,2,3
+  Word& one_each();                             // of lists: each flag has one value; it is repeated
   Word& shows_default();                        // help shows the current value of the variable
   Word& default_text(const std::string& text);  // help shows this instead
   Word& excludes(const std::string& name);      // refused together with that word

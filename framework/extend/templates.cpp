@@ -8,7 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::extend {
 namespace {
@@ -130,7 +130,7 @@ void put_in_place(const fs::path& root, const std::vector<NewFile>& files) {
       }
       parts.insert(part);
     }
-    if (format.size() > 2) grading::run_program(format, grading::Output::kCaptured);
+    if (format.size() > 2) run_program(format, Output::kCaptured);
     std::vector<fs::path> order(parts.begin(), parts.end());
     std::stable_partition(order.begin(), order.end(),
                           [](const fs::path& part) { return *part.begin() != "assignments"; });

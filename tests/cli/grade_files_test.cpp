@@ -17,7 +17,7 @@
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/verdicts/plain_text.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/grading/grades/scoring.h"
 
 namespace tumble::grading {

@@ -16,7 +16,7 @@
 
 #include "tests/support/places.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::grading {
 

@@ -9,7 +9,7 @@
 #include "framework/core/files.h"
 #include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::grading {
 namespace {

@@ -25,8 +25,9 @@ const fs::path kRoot = test::source_dir();
 
 // Top to bottom: a folder includes only what stands above it (or itself).
 const std::vector<std::string> kFolders = {
-    "core",    "geometry", "scene",  "dynamics", "collision", "trajectory", "effects", "modules",
-    "engines", "sampling", "render", "report",   "live",      "grading",    "extend",  "cli"};
+    "core",    "geometry", "scene",   "dynamics", "collision", "trajectory",
+    "effects", "modules",  "engines", "sampling", "render",    "report",
+    "live",    "farm",     "grading", "extend",   "cli"};
 
 // Rooms of two folders, in the same order. A file that lies beside the rooms is their entry: it may
 // include all of them.

@@ -5,7 +5,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {

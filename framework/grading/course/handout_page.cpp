@@ -1,7 +1,7 @@
 #include "framework/grading/course/handout_page.h"
 
 #include "framework/core/files.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::grading {
 namespace {

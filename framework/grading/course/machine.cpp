@@ -19,7 +19,7 @@
 
 #include "framework/core/error.h"
 #include "framework/grading/compiler/page_module.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/grading/sandbox/landlock.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_user.h"

@@ -13,8 +13,9 @@
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_key.h"
-#include "framework/grading/course/processes.h"
+#include "framework/farm/processes.h"
 #include "framework/grading/grades/scoring.h"
+#include "framework/grading/sandbox/sandbox_user.h"
 
 namespace tumble::grading {
 namespace {
@@ -249,7 +250,7 @@ std::vector<AuditResult> audit(const Course& course, const std::string& id,
   }
   std::size_t done = candidates.size() - open.size();
   if (told) told(done, candidates.size());
-  run_in_processes(
+  farm::run_in_processes(
       open.size(), jobs,
       [&](std::size_t i) {
         run_one(course, id, candidates[open[i]], sources[open[i]], kept[open[i]]);
@@ -257,7 +258,8 @@ std::vector<AuditResult> audit(const Course& course, const std::string& id,
       [&](std::size_t, int, double) {
         ++done;
         if (told) told(done, candidates.size());
-      });
+      },
+      sweep_stages_of_the_dead);
   std::vector<AuditResult> results;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     results.push_back(read_result(rubric, candidates[i], kept[i]));

@@ -29,8 +29,9 @@
 #include "framework/grading/grades/output_folder.h"
 #include "framework/grading/grades/own_tests.h"
 #include "framework/grading/sandbox/protection.h"
+#include "framework/grading/sandbox/sandbox_user.h"
 #include "framework/grading/verdicts/plain_text.h"
-#include "framework/grading/course/processes.h"
+#include "framework/farm/processes.h"
 #include "framework/grading/grades/scoring.h"
 
 namespace tumble::grading {
@@ -271,7 +272,7 @@ class Batch {
       notice("the right law is in no page: " + page_code_->laws().why_no_right);
     report_progress("");
     const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
-    run_in_processes(
+    farm::run_in_processes(
         open_.size(), options_.jobs, work,
         [&](std::size_t i, int status, double seconds) {
           open_[i]->seconds = seconds;
@@ -281,7 +282,10 @@ class Batch {
           ++fresh_;
           report_progress(open_[i]->submission->name);
         },
-        [this] { clear_drafts(); });
+        [this] {
+          sweep_stages_of_the_dead();
+          clear_drafts();
+        });
   }
 
   // Removes unfinished results; finished ones stay, and are reused by the next run.

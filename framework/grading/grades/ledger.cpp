@@ -14,7 +14,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/version.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {

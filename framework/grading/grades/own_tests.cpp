@@ -13,7 +13,7 @@
 #include "framework/core/text.h"
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/course/build_submission.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 #include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/sandbox/protection.h"

@@ -11,8 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostShards = 1'000'000;
-
 std::string name_of(const Shard& shard) {
   return std::to_string(shard.number) + "-of-" + std::to_string(shard.of);
 }
@@ -44,17 +42,6 @@ void for_each_result(const fs::path& shard, const Tell& tell) {
 }
 
 }  // namespace
-
-Shard shard_of(const std::string& words) {
-  static const std::regex form("([0-9]{1,7})/([0-9]{1,7})");
-  std::smatch match;
-  if (std::regex_match(words, match, form)) {
-    const Shard shard{std::stoi(match[1]), std::stoi(match[2])};
-    if (shard.number >= 1 && shard.number <= shard.of && shard.of <= kMostShards) return shard;
-  }
-  throw UserError("--shard", "is '" + words + "'",
-                  "The second of eight shards is 2/8; they are counted from 1.");
-}
 
 fs::path shards_folder(const fs::path& out) { return out / kShards; }
 

@@ -1,5 +1,6 @@
-/// A shard: a part of a class that is graded by itself, perhaps on another machine. A grading of
-/// the whole class takes over what shards have finished, as if it had graded it.
+/// A shard (farm/shard.h) of a class: a part of it that is graded by itself, perhaps on another
+/// machine. A grading of the whole class takes over what shards have finished, as if it had graded
+/// it.
 ///
 ///   OUT/.shards/2-of-8/       results of the second of eight: an output folder (output_folder.h)
 ///   OUT/.shards/2-of-8.done   that shard has come to its end; how many it graded
@@ -11,22 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "framework/farm/shard.h"
+
 namespace tumble::grading {
 
-struct Shard {
-  int number = 1, of = 1;  // 1 <= number <= of
-
-  /// Whether a submission belongs to it. Neighbours in a list go to different shards, so that work
-  /// is spread evenly.
-  /// @param index  of the submission, by name
-  bool holds(std::size_t index) const {
-    return index % static_cast<std::size_t>(of) == static_cast<std::size_t>(number - 1);
-  }
-};
-
-/// From "2/8".
-/// @throws UserError for other words
-Shard shard_of(const std::string& words);
+using farm::Shard;
 
 /// OUT/.shards
 std::filesystem::path shards_folder(const std::filesystem::path& out);

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 namespace tumble::grading {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/grading/grades/cluster.h"
+#include "framework/farm/cluster.h"
 
 #include <sys/stat.h>
 
@@ -12,18 +12,16 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/machine_key.h"
-#include "framework/grading/course/run_program.h"
-#include "framework/grading/verdicts/plain_text.h"
+#include "framework/core/run_program.h"
 
-namespace tumble::grading {
+namespace tumble::farm {
 namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kSubmissionsOfShard = 10, kMostUnasked = 1000;  // Slurm's default limit: 1001
+constexpr std::size_t kMostUnasked = 1000;  // Slurm's default limit: 1001
 constexpr int kMostRounds = 5;
 constexpr auto kLook = 2s;             // between two looks at what is finished, at least
 constexpr int kMostOfTime = 10;        // and ten times as long as a look takes
@@ -35,47 +33,54 @@ std::string quoted(const std::string& word) {
   return safe + "'";
 }
 
+/// Plain ASCII: a log may hold what a submission printed, and a terminal would obey it.
+std::string printable(std::string line) {
+  for (char& c : line)
+    if (c < ' ' || c > '~') c = '?';
+  return line;
+}
+
 std::string last_line_of(const std::string& text) {
   std::istringstream in(text);
   std::string last;
   for (std::string line; std::getline(in, line);)
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  return plain_text(last);
+  return printable(last);
 }
 
 class Rounds {
  public:
-  explicit Rounds(const ClusterJob& job) : job_(job), folder_(shards_folder(job.out)) {
-    const std::size_t wanted = job.shards > 0
-                                   ? static_cast<std::size_t>(job.shards)
-                                   : std::min(kMostUnasked, job.total / kSubmissionsOfShard + 1);
+  explicit Rounds(const ClusterJob& job) : job_(job), folder_(job.folder) {
+    const std::size_t wanted =
+        job.shards > 0 ? static_cast<std::size_t>(job.shards)
+                       : std::min(kMostUnasked, (job.total + job.unasked - 1) / job.unasked);
     shards_ = static_cast<int>(std::max<std::size_t>(1, std::min(wanted, job.total)));
   }
 
-  void run() {
-    machine_key();  // made now, by one process
+  std::vector<LostShard> run() {
     attach();
-    for (int number = 1; number <= shards_; ++number) todo_.push_back(number);
-    std::error_code ignored;
-    if (!attached_)
-      for (const int number : todo_) fs::remove(done_file(job_.out, {number, shards_}), ignored);
+    for (int number = 1; number <= shards_; ++number) {
+      if (!attached_ && job_.begin) job_.begin({number, shards_});
+      if (attached_ || !is_done(number)) todo_.push_back(number);
+    }
     for (int round = 1; !todo_.empty(); ++round) {
-      const std::size_t before = finished_in_shards(job_.out), left = todo_.size();
+      const std::size_t before = job_.finished(), left = todo_.size();
       write_script();
       if (job_.cluster == Cluster::kSlurm)
         run_on_slurm();
       else
         run_by_parallel();
-      std::erase_if(todo_, [&](int number) {
-        return fs::exists(done_file(job_.out, {number, shards_}));
-      });
+      if (job_.is_refused)
+        for (const int number : todo_) job_.is_refused({number, shards_});
+      std::erase_if(todo_, [&](int number) { return is_done(number); });
       if (todo_.empty()) break;
-      const bool is_idle = todo_.size() == left && finished_in_shards(job_.out) == before;
+      const bool is_idle = todo_.size() == left && job_.finished() == before;
       if (is_idle && round == 1 && static_cast<int>(left) == shards_) refuse();
-      if (is_idle || round == kMostRounds) return report_rest();
+      if (is_idle || round == kMostRounds) return rest();
       notice(fmt::format("{} of {} shards did not come to their end; they are run again",
                          todo_.size(), shards_));
     }
+    return {};
   }
 
  private:
@@ -87,36 +92,37 @@ class Rounds {
 
   std::string said_by(int number) const { return last_line_of(text_of(log_of(number))); }
 
+  bool is_done(int number) const { return job_.is_done({number, shards_}); }
+
   [[noreturn]] void refuse() const {
     const std::string said = said_by(todo_.front());
     throw UserError(
         log_of(todo_.front()).string(),
-        "no shard finished a submission" +
+        "no shard finished a " + job_.unit +
             (said.empty() ? ", and this one printed nothing" : "; this one said: " + said),
-        "Every machine needs the course, the submissions, the results and the key "
-        "under these paths.");
+        "Every machine needs the course and the files of this work under these paths.");
   }
 
-  void report_rest() const {
-    constexpr std::size_t kNamed = 5;
-    for (std::size_t i = 0; i < std::min(kNamed, todo_.size()); ++i)
-      notice(fmt::format("shard {} of {} did not come to its end: {}", todo_[i], shards_,
-                         said_by(todo_[i])));
-    notice("what these shards did not finish is graded by this process");
+  std::vector<LostShard> rest() const {
+    std::vector<LostShard> lost;
+    for (const int number : todo_) lost.push_back({{number, shards_}, said_by(number)});
+    return lost;
   }
 
   // What a task runs. The number of its shard comes from Slurm, or as its argument.
   void write_script() const {
-    std::string text =
-        "#!/bin/sh\n# One shard of a grading, made by `tumble grade --on`.\n"
-        "#SBATCH --job-name=tumble-grade\n";
-    const std::string key = machine_key_file().string();
-    for (const std::string& path : {job_.command.front(), job_.root.string(),
-                                    job_.submissions.string(), job_.out.string(), key})
+    std::string text = fmt::format(
+        "#!/bin/sh\n# One shard of a work, made by a command of tumble with --on.\n"
+        "#SBATCH --job-name={}\n",
+        job_.name);
+    for (const std::string& path : job_.needed)
       text += fmt::format("[ -e {0} ] || {{ echo \"$(hostname): there is no \"{0}; exit 2; }}\n",
                           quoted(path));
-    text += fmt::format("export TUMBLE_ROOT={} TUMBLE_GRADER_KEY={}\nexec",
-                        quoted(job_.root.string()), quoted(key));
+    for (const auto& [name, value] : job_.environment)
+      text += fmt::format("export {}={}\n", name, quoted(value));
+    if (!job_.directory.empty())
+      text += fmt::format("cd {} || exit 2\n", quoted(job_.directory.string()));
+    text += "exec";
     for (const std::string& word : job_.command) text += ' ' + quoted(word);
     text += fmt::format(" --jobs 1 --shard \"${{SLURM_ARRAY_TASK_ID:-$1}}/{}\"\n", shards_);
     write_whole(folder_ / "job.sh", text);
@@ -126,7 +132,7 @@ class Rounds {
   void report_progress() {
     if (!job_.progress || Clock::now() < next_look_) return;
     const auto began = Clock::now();
-    const std::size_t done = std::min(finished_in_shards(job_.out), job_.total);
+    const std::size_t done = std::min(job_.finished(), job_.total);
     next_look_ = Clock::now() + kMostOfTime * (Clock::now() - began);
     if (done == reported_) return;
     reported_ = done;
@@ -134,7 +140,7 @@ class Rounds {
     const double left =
         done == 0 ? -1.0
                   : spent / static_cast<double>(done) * static_cast<double>(job_.total - done);
-    job_.progress({done, job_.total, "", left});
+    job_.progress(done, job_.total, left);
   }
 
   // ---- Slurm
@@ -187,9 +193,9 @@ class Rounds {
                       "SBATCH_ACCOUNT, SBATCH_TIMELIMIT).");
     write_whole(folder_ / "job.id", fmt::format("{} {}\n", job_id_, shards_));
     notice(
-        fmt::format("job {}: {} shards of {} submissions (scancel {} ends it; this command can "
+        fmt::format("job {}: {} shards of {} {}s (scancel {} ends it; this command can "
                     "be stopped and started again)",
-                    job_id_, todo_.size(), job_.total, job_id_));
+                    job_id_, todo_.size(), job_.total, job_.unit, job_id_));
   }
 
   void run_on_slurm() {
@@ -232,7 +238,7 @@ class Rounds {
     report_progress();
     if (outcome.code == 127)
       throw UserError("parallel", "is not on this machine", "Debian: apt-get install parallel.");
-    if (outcome.code != 0 && finished_in_shards(job_.out) == 0 && !outcome.printed.empty())
+    if (outcome.code != 0 && job_.finished() == 0 && !outcome.printed.empty())
       notice("parallel: " + last_line_of(outcome.printed));
   }
 
@@ -250,16 +256,9 @@ class Rounds {
 
 }  // namespace
 
-Cluster cluster_of(const std::string& word) {
-  if (word == "slurm") return Cluster::kSlurm;
-  if (word == "parallel") return Cluster::kParallel;
-  throw UserError("--on", "is '" + word + "'",
-                  "slurm (an array job) or parallel (GNU parallel over ssh).");
+std::vector<LostShard> run_on(const ClusterJob& job) {
+  fs::create_directories(job.folder);
+  return Rounds(job).run();
 }
 
-void grade_on(const ClusterJob& job) {
-  fs::create_directories(shards_folder(job.out));
-  Rounds(job).run();
-}
-
-}  // namespace tumble::grading
+}  // namespace tumble::farm

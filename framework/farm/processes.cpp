@@ -1,4 +1,4 @@
-#include "framework/grading/course/processes.h"
+#include "framework/farm/processes.h"
 
 #include <signal.h>
 #include <sys/prctl.h>
@@ -14,9 +14,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "framework/grading/sandbox/sandbox.h"
-
-namespace tumble::grading {
+namespace tumble::farm {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -88,7 +86,6 @@ void run_in_processes(std::size_t count, int jobs, const std::function<void(std:
   while (next < count || !running.empty()) {
     if (ended_by != 0) {
       end_all(running);
-      sweep_stages_of_the_dead();
       if (cleared) cleared();
       SignalRecorder::set_defaults();
       ::raise(ended_by);
@@ -108,8 +105,13 @@ void run_in_processes(std::size_t count, int jobs, const std::function<void(std:
     if (it == running.end()) continue;
     const auto [index, since] = it->second;
     running.erase(it);
-    done(index, status, std::chrono::duration<double>(Clock::now() - since).count());
+    try {
+      done(index, status, std::chrono::duration<double>(Clock::now() - since).count());
+    } catch (...) {
+      end_all(running);
+      throw;
+    }
   }
 }
 
-}  // namespace tumble::grading
+}  // namespace tumble::farm

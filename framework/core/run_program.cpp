@@ -1,4 +1,4 @@
-#include "framework/grading/course/run_program.h"
+#include "framework/core/run_program.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -11,7 +11,7 @@
 #include <chrono>
 #include <stdexcept>
 
-namespace tumble::grading {
+namespace tumble {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -78,4 +78,4 @@ ProgramOutcome run_program(const std::vector<std::string>& words, Output output,
   return outcome;
 }
 
-}  // namespace tumble::grading
+}  // namespace tumble
