@@ -11,7 +11,7 @@ namespace {
 /// A chain of one number whose sample i is `value(i)`, all of them doing what is asked; a second of
 /// CPU time each.
 template <typename Value>
-Chain chain_of(int samples, const Value& value) {
+Chain chain_from(int samples, const Value& value) {
   Chain chain;
   chain.x = MatrixXd(samples, 1);
   chain.violation = VectorXd::Zero(samples);
@@ -33,8 +33,8 @@ Answers truth_of(double mean, double deviation) {
 
 TEST(Accuracy, IsTheDistanceOfEachChainsMeanInDeviations) {
   // Means 5 and 1 against 2 +- 0.5: 6 and -2 deviations off, sqrt((36 + 4)/2) at every length.
-  const std::vector<Chain> chains = {chain_of(64, [](int) { return 5.0; }),
-                                     chain_of(64, [](int) { return 1.0; })};
+  const std::vector<Chain> chains = {chain_from(64, [](int) { return 5.0; }),
+                                     chain_from(64, [](int) { return 1.0; })};
   const std::vector<AccuracyPoint> points = accuracy_of(chains, truth_of(2.0, 0.5));
   ASSERT_EQ(points.size(), 7u);  // 1, 2, ..., 64 samples
   for (const AccuracyPoint& point : points) {
@@ -46,10 +46,10 @@ TEST(Accuracy, IsTheDistanceOfEachChainsMeanInDeviations) {
 
 TEST(Accuracy, LeavesOutSamplesThatDoNotDoItAndBeginningsWithoutAnAnswer) {
   // The first half of one chain does not do what is asked, and its numbers say nothing.
-  Chain late = chain_of(64, [](int i) { return i < 32 ? 1e9 : 3.0; });
+  Chain late = chain_from(64, [](int i) { return i < 32 ? 1e9 : 3.0; });
   late.violation.head(32).setOnes();
   const std::vector<AccuracyPoint> points =
-      accuracy_of({late, chain_of(64, [](int) { return 3.0; })}, truth_of(2.0, 1.0));
+      accuracy_of({late, chain_from(64, [](int) { return 3.0; })}, truth_of(2.0, 1.0));
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].samples, 64);
   EXPECT_NEAR(points[0].error, 1.0, 1e-14);
