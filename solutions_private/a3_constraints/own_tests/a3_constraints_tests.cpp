@@ -1,4 +1,5 @@
-// A student's own tests, as good as they need to be: tests/grading/own_tests_of_all.sh hands them in.
+// A student's own tests, as good as they need to be. tests/grading/own_tests_of_all.sh hands them
+// in.
 #include "tests/a3_constraints/a3_fixtures.h"
 
 using namespace tumble;

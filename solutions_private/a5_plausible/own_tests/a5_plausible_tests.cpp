@@ -1,4 +1,5 @@
-// A student's own tests, as good as they need to be: tests/grading/own_tests_of_all.sh hands them in.
+// A student's own tests, as good as they need to be. tests/grading/own_tests_of_all.sh hands them
+// in.
 #include "tests/a5_plausible/a5_fixtures.h"
 
 namespace tumble::a5_testing {
