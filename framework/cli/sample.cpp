@@ -225,7 +225,8 @@ void run_sample(Context& context, const SampleWords& words) {
                           {"seed", words.seed},
                           {"functions", sampled.source},
                           {"lost", ordered_json::array()},
-                          {"answers", json_of(answers)}};
+                          {"answers", json_of(answers)},
+                          {"doubts", sampling::doubts(answers, sampled.chains.size())}};
     for (const farm::Lost& one : sampled.outcome.lost) parts["lost"].push_back(one.name);
     if (sampled.prior) parts["prior"] = json_of(sampled.prior_growing.back());
     parts["times"] = times_of(answers);
@@ -239,7 +240,7 @@ void run_sample(Context& context, const SampleWords& words) {
     fmt::print("{}\n", (folder / "index.html").string());
   }
   if (!lost.empty()) fmt::print(stderr, "tumble: {}\n", lost);
-  if (answers.done == 0 || !lost.empty()) context.exit = ExitCode::kCheckFailed;
+  if (!sampling::can_be_used(answers) || !lost.empty()) context.exit = ExitCode::kCheckFailed;
 }
 
 }  // namespace
@@ -287,8 +288,10 @@ void add_sample(CLI::App& app, Context& context) {
       "Example: tumble sample ball_into_bin --prior 2000\n"
       "The same chains give the same bytes of chains.csv and answers.json wherever they are made. "
       "What is finished lies in OUT/SCENE/chains, and a second start takes it over.\n"
-      "Exit: 0 worlds were found, 1 none does what is asked or a chain is missing, 2 something to "
-      "repair, 4 not attempted.");
+      "Exit: 0 worlds were found, 1 the answers are not to be trusted (no world does what is "
+      "asked, "
+      "R-hat above 1.1, many broken runs) or a chain is missing, 2 something to repair, 4 not "
+      "attempted.");
   verb.runs([&context, words] { run_sample(context, *words); });
 }
 

@@ -63,7 +63,8 @@ void write_sample_files(const Context& context, const Sampled& sampled,
                        {"integrator_source", sampled.chosen.laws.integrator_source},
                        {"chains", sampled.chains.size()},
                        {"lost", ordered_json::array()},
-                       {"answers", json_of(sampled.growing.back())}};
+                       {"answers", json_of(sampled.growing.back())},
+                       {"doubts", sampling::doubts(sampled.growing.back(), sampled.chains.size())}};
   for (const farm::Lost& lost : sampled.outcome.lost) answers["lost"].push_back(lost.name);
   ordered_json times{{"command", context.command_line},
                      {"version", kProgramVersion},

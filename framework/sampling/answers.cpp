@@ -92,6 +92,11 @@ Answers answers_of(const Sampling& by, const std::vector<std::string>& names,
   return answers;
 }
 
+bool can_be_used(const Answers& answers) {
+  return answers.done > 0 && answers.worst_r_hat <= kApart &&
+         answers.broken <= kManyBroken * answers.simulations;
+}
+
 std::vector<std::string> doubts(const Answers& answers, std::size_t chains) {
   std::vector<std::string> all;
   if (answers.done == 0)

@@ -38,6 +38,9 @@ Answers answers_of(const Sampling& by, const std::vector<std::string>& names,
 /// against them. Looked at are the worlds found, R-hat, effective samples, and runs that broke.
 /// Source: Vehtari et al. 2021, section 4 (an R-hat of 1.01, 50 effective samples of half a chain).
 std::vector<std::string> doubts(const Answers& answers, std::size_t chains);
+/// Whether they are answers at all, however rough: worlds were found, R-hat is known and at most
+/// 1.1, and few runs broke.
+bool can_be_used(const Answers& answers);
 
 /// Error against CPU time: the answers of ever longer beginnings of the chains.
 std::vector<Answers> growing_answers(const Sampling& by, const std::vector<std::string>& names,

@@ -158,8 +158,9 @@ const std::string kChains =
 TEST_F(Farm, ChainsGiveTheSameBytesForAnyNumberOfJobs) {
   const Said one = type(kChains + "3 --jobs 1 --prior 80 --out one"),
              three = type(kChains + "3 --jobs 3 --prior 80 --out three");
-  EXPECT_EQ(one.code, 0) << one.err;
-  EXPECT_EQ(three.code, 0) << three.err;
+  // Of 60 samples each R-hat may be above 1.1, which is code 1, too.
+  EXPECT_LE(one.code, 1) << one.err;
+  EXPECT_EQ(three.code, one.code) << three.err;
   for (const std::string name : {"chains.csv", "answers.json"}) {
     const std::string bytes = file("one/ball_into_bin/" + name);
     EXPECT_GT(bytes.size(), 100u) << name;
@@ -193,9 +194,9 @@ TEST_F(Farm, AKilledWorkerCostsItsChainOnlyAndASecondStartGivesTheSameBytes) {
   EXPECT_EQ(answers["chains"], 2);
   EXPECT_EQ(answers["lost"], nlohmann::json::array({"chain-2"}));
   const Said second = type(words);
-  EXPECT_EQ(second.code, 0) << second.err;
+  EXPECT_LE(second.code, 1) << second.err;
   EXPECT_TRUE(holds(second.err, "2 chains of an earlier start taken over")) << second.err;
-  EXPECT_EQ(type(words + "--out undisturbed").code, 0);
+  EXPECT_EQ(type(words + "--out undisturbed").code, second.code);
   for (const std::string name : {"chains.csv", "answers.json"})
     EXPECT_EQ(file("out/sample/ball_into_bin/" + name), file("undisturbed/ball_into_bin/" + name));
 }
@@ -214,9 +215,9 @@ TEST_F(Farm, AKilledCommandLeavesWhatItFinishedAndNoProcess) {
   std::string words;
   for (const std::string& word : kLong) words += word + ' ';
   const Said second = type(words);
-  EXPECT_EQ(second.code, 0) << second.err;
+  EXPECT_LE(second.code, 1) << second.err;
   EXPECT_TRUE(holds(second.err, "of an earlier start taken over")) << second.err;
-  EXPECT_EQ(type(words + "--out undisturbed").code, 0);
+  EXPECT_EQ(type(words + "--out undisturbed").code, second.code);
   EXPECT_EQ(file("out/sample/ball_into_bin/chains.csv"),
             file("undisturbed/ball_into_bin/chains.csv"));
 }

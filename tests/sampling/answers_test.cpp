@@ -82,7 +82,10 @@ std::string doubts_of(const Answers& answers) {
   return all;
 }
 
-TEST(Doubts, AreNoneWhereChainsHaveMet) { EXPECT_EQ(doubts_of(good_answers()), ""); }
+TEST(Doubts, AreNoneWhereChainsHaveMet) {
+  EXPECT_EQ(doubts_of(good_answers()), "");
+  EXPECT_TRUE(can_be_used(good_answers()));
+}
 
 TEST(Doubts, NameWhatSpeaksAgainstTheAnswers) {
   Answers apart = good_answers(), nearly = good_answers(), few = good_answers(),
@@ -103,6 +106,8 @@ TEST(Doubts, NameWhatSpeaksAgainstTheAnswers) {
   EXPECT_NE(doubts_of(none).find("there is no answer"), std::string::npos);
   EXPECT_NE(doubts_of(broken).find("200 of 4400 runs broke"), std::string::npos);
   EXPECT_NE(doubts_of(unknown).find("R-hat is unknown"), std::string::npos);
+  for (const Answers& rough : {nearly, few}) EXPECT_TRUE(can_be_used(rough));
+  for (const Answers& bad : {apart, none, broken, unknown}) EXPECT_FALSE(can_be_used(bad));
 }
 
 }  // namespace
