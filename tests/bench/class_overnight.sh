@@ -33,15 +33,26 @@ make_class() {
   done
 }
 
-# done_in OUT: how many submissions its log calls finished.
-done_in() { grep -ao '^\[[0-9]*/' "$folder/$1.log" 2> /dev/null | tail -1 | tr -d '[/' || true; }
+# read_done: $finished is how many submissions the log on descriptor 9 calls finished. It reads what is new
+# in the log without starting a process: what this script costs is not the grading's.
+read_done() {
+  local line
+  while read -r line <&9; do
+    if [[ $line =~ ^\[([0-9]+)/ ]]; then finished=${BASH_REMATCH[1]}; fi
+  done
+}
 
-# Once a second "finished KiB": the largest memory so far of the grading's first process.
+# watch_memory PID OUT: every five seconds "finished KiB", the largest memory so far of the grading's first
+# process.
 watch_memory() {
-  local most
-  while most=$(awk '/^VmHWM/ {print $2}' "/proc/$1/status" 2> /dev/null) && [ -n "$most" ]; do
-    echo "$(done_in "$2") $most" >> "$folder/$2.memory"
-    sleep 1
+  local finished=0 name value most
+  exec 9< "$folder/$2.log"
+  while most=; do
+    while read -r name value; do [ "$name" != VmHWM: ] || most=${value% kB}; done 2> /dev/null < "/proc/$1/status" || return 0
+    [ -n "$most" ] || return 0
+    read_done
+    echo "$finished ${most// /}" >> "$folder/$2.memory"
+    sleep 5
   done
 }
 
@@ -76,8 +87,10 @@ awk -v n="$calm" '{c = $1 + $2; printf "CPU time of all processes: %.1f s, %.2f 
 mapfile -t moments < <(for ((k = 1; k < kills; ++k)); do echo $((RANDOM * 32768 % n + RANDOM % n)); done | awk -v n="$n" '{print $1 % n}' | sort -n; echo "$n")
 for ((k = 0; k < kills; ++k)); do
   start in killed
-  until [ "$(done_in killed)" -ge "${moments[k]}" ] 2> /dev/null || ! kill -0 "$pid" 2> /dev/null; do sleep 0.1; done
-  sleep "0.$((RANDOM % 10))$((RANDOM % 10))"
+  exec 9< "$folder/killed.log"
+  finished=0
+  until ((finished >= moments[k])) || ! kill -0 "$pid" 2> /dev/null; do sleep 0.2; read_done; done
+  ((moments[k] == n)) || sleep "$((RANDOM % 8)).$((RANDOM % 10))"
   kill -KILL "$pid" 2> /dev/null || true
   wait "$pid" 2> /dev/null || true
   echo "kill $((k + 1)) after ${moments[k]}: $(find "$folder/killed" -name results.json -not -path '*/.making-*' | wc -l) of $n have results"
