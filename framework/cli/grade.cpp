@@ -80,7 +80,7 @@ std::vector<std::string> words_of_task(const Context& context, const GradeWords&
 void grade_shards(const Context& context, const GradeWords& words, std::size_t total,
                   const grading::GradeOptions& options, const fs::path& out) {
   grading::ShardedGrading job;
-  job.cluster = grading::cluster_of(words.on);
+  job.cluster = farm::cluster_of(words.on);
   job.command = words_of_task(context, words, out);
   job.root = context.root;
   job.submissions = fs::canonical(words.folder);
@@ -88,7 +88,7 @@ void grade_shards(const Context& context, const GradeWords& words, std::size_t t
   job.total = total;
   job.shards = words.shards;
   job.hosts = words.hosts;
-  job.per_host = words.jobs;
+  job.jobs = words.jobs;
   job.progress = options.progress;
   job.notice = options.notice;
   { const grading::OutputFolder check(out, words.folder, words.id); }  // refused before any job
@@ -100,7 +100,7 @@ void refuse_contradictions(const GradeWords& words) {
     throw UserError("--shard", "is one part, which --on makes itself", "Leave out one of them.");
   if (words.on.empty() && (!words.hosts.empty() || words.shards > 0))
     throw UserError(words.hosts.empty() ? "--shards" : "--hosts", "means something with --on only",
-                    "Add --on parallel or --on slurm.");
+                    "Add --on slurm, parallel or mpi.");
   if (words.on == "slurm" && !words.hosts.empty())
     throw UserError("--hosts", "are chosen by Slurm",
                     "Leave it out; SBATCH_PARTITION and SBATCH_NODELIST choose machines.");
@@ -187,15 +187,16 @@ void add_grade(CLI::App& app, Context& context) {
               "that it is not official")
       .type_name("KIND");
   verb.option("--on", words->on,
-              "Grade on other machines: slurm (an array job) or parallel (GNU parallel over ssh). "
-              "Course, submissions, results and key lie in a folder that all share")
+              "Grade on other machines: " + farm::names_of_clusters() +
+                  ". Course, submissions, results and key lie in a folder that all share")
       .type_name("WHAT");
   verb.option("--shards", words->shards,
               "With --on: in how many parts; default: ten submissions each, at most 1,000")
       .between(1, 1000000);
-  verb.option("--hosts", words->hosts,
-              "With --on parallel: its words for --sshlogin, e.g. ta@lab1,ta@lab2; default: this "
-              "machine")
+  verb.option(
+          "--hosts", words->hosts,
+          "With --on parallel its words for --sshlogin, e.g. ta@lab1,ta@lab2; with --on mpi for "
+          "--host, e.g. lab1:4,lab2:4; default: this machine")
       .type_name("HOSTS");
   verb.option("--shard", words->shard,
               "Grade only this part of the class, e.g. 2/8, into OUT/.shards; the same command "

@@ -34,15 +34,17 @@ void add_spread_words(Verb& verb, SpreadWords& words, const std::string& pieces)
       .between(1, 1024)
       .default_text("number of cores");
   verb.option("--on", words.on,
-              "Where they are made: local (this machine), slurm (an array job) or parallel (GNU "
-              "parallel over ssh). Course and results lie in a folder that all machines share")
+              "Where they are made: local (this machine), " + farm::names_of_clusters() +
+                  ". Course and results lie in a folder that all machines share")
       .type_name("WHAT")
       .shows_default();
   verb.option("--shards", words.shards,
-              "With --on slurm or parallel: in how many tasks; default: one each, at most 1,000")
+              "With --on another than local: in how many tasks; default: one each, at most 1,000")
       .between(1, 1000000);
-  verb.option("--hosts", words.hosts,
-              "With --on parallel: its words for --sshlogin; default: this machine")
+  verb.option(
+          "--hosts", words.hosts,
+          "With --on parallel its words for --sshlogin, with --on mpi for --host; default: this "
+          "machine")
       .type_name("HOSTS");
   verb.option("--shard", words.shard,
               "Make only this part of the " + pieces +
@@ -53,14 +55,12 @@ void add_spread_words(Verb& verb, SpreadWords& words, const std::string& pieces)
 }
 
 void check(const SpreadWords& words) {
-  if (words.on != "local" && words.on != "slurm" && words.on != "parallel")
-    throw UserError("--on", "is '" + words.on + "'",
-                    "local, slurm (an array job) or parallel (GNU parallel over ssh).");
+  if (words.on != "local") farm::cluster_of(words.on);
   if (words.on != "local" && !words.shard.empty())
     throw UserError("--shard", "is one part, which --on makes itself", "Leave out one of them.");
   if (words.on == "local" && (!words.hosts.empty() || words.shards > 0))
     throw UserError(words.hosts.empty() ? "--shards" : "--hosts",
-                    "means nothing on this machine alone", "Add --on parallel or --on slurm.");
+                    "means nothing on this machine alone", "Add --on slurm, parallel or mpi.");
   if (words.on == "slurm" && !words.hosts.empty())
     throw UserError("--hosts", "are chosen by Slurm",
                     "Leave it out; SBATCH_PARTITION and SBATCH_NODELIST choose machines.");
@@ -102,7 +102,7 @@ farm::Outcome spread(const Context& context, const SpreadWords& words, const far
     outcome = farm::make_here(parts, work, options);
   } else {
     farm::ClusterJob job;
-    job.cluster = words.on == "slurm" ? farm::Cluster::kSlurm : farm::Cluster::kParallel;
+    job.cluster = farm::cluster_of(words.on);
     job.name = "tumble-" + command.front();
     job.command = {(context.build / "bin/tumble").string()};
     job.command.insert(job.command.end(), command.begin(), command.end());
@@ -112,7 +112,7 @@ farm::Outcome spread(const Context& context, const SpreadWords& words, const far
     job.environment = {{"TUMBLE_ROOT", context.root.string()}, {"TUMBLE_TASK", "1"}};
     job.shards = words.shards;
     job.hosts = words.hosts;
-    job.per_host = words.jobs;
+    job.jobs = words.jobs;
     job.progress = progress;
     job.notice = [](const std::string& sentence) { fmt::print(stderr, "tumble: {}\n", sentence); };
     fs::create_directories(parts.folder());

@@ -1,6 +1,7 @@
 #include "framework/farm/cluster.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -66,10 +67,11 @@ class Rounds {
     for (int round = 1; !todo_.empty(); ++round) {
       const std::size_t before = job_.finished(), left = todo_.size();
       write_script();
-      if (job_.cluster == Cluster::kSlurm)
-        run_on_slurm();
-      else
-        run_by_parallel();
+      switch (job_.cluster) {
+        case Cluster::kSlurm: run_on_slurm(); break;
+        case Cluster::kParallel: run_by_parallel(); break;
+        case Cluster::kMpi: run_by_mpi(); break;
+      }
       if (job_.is_refused)
         for (const int number : todo_) job_.is_refused({number, shards_});
       std::erase_if(todo_, [&](int number) { return is_done(number); });
@@ -109,24 +111,32 @@ class Rounds {
     return lost;
   }
 
-  // What a task runs. The number of its shard comes from Slurm, or as its argument.
-  void write_script() const {
-    std::string text = fmt::format(
-        "#!/bin/sh\n# One shard of a work, made by a command of tumble with --on.\n"
-        "#SBATCH --job-name={}\n",
-        job_.name);
+  // The first lines of a script: nothing runs on a machine that does not see the files.
+  std::string script_of(const std::string& what) const {
+    std::string text = "#!/bin/sh\n# " + what + ", made by a command of tumble with --on.\n";
+    if (job_.cluster == Cluster::kSlurm) text += fmt::format("#SBATCH --job-name={}\n", job_.name);
     for (const std::string& path : job_.needed)
       text += fmt::format("[ -e {0} ] || {{ echo \"$(hostname): there is no \"{0}; exit 2; }}\n",
                           quoted(path));
+    return text;
+  }
+
+  // What a task runs. The number of its shard is its argument, or comes from Slurm.
+  void write_script() const {
+    std::string text = script_of("One shard of a work");
     for (const auto& [name, value] : job_.environment)
       text += fmt::format("export {}={}\n", name, quoted(value));
     if (!job_.directory.empty())
       text += fmt::format("cd {} || exit 2\n", quoted(job_.directory.string()));
     text += "exec";
     for (const std::string& word : job_.command) text += ' ' + quoted(word);
-    text += fmt::format(" --jobs 1 --shard \"${{SLURM_ARRAY_TASK_ID:-$1}}/{}\"\n", shards_);
-    write_whole(folder_ / "job.sh", text);
-    ::chmod((folder_ / "job.sh").c_str(), 0755);
+    text += fmt::format(" --jobs 1 --shard \"${{1:-$SLURM_ARRAY_TASK_ID}}/{}\"\n", shards_);
+    write_executable("job.sh", text);
+  }
+
+  void write_executable(const std::string& name, const std::string& text) const {
+    write_whole(folder_ / name, text);
+    ::chmod((folder_ / name).c_str(), 0755);
   }
 
   void report_progress() {
@@ -210,20 +220,16 @@ class Rounds {
     fs::remove(folder_ / "job.id", ignored);
   }
 
-  // ---- GNU parallel
+  // ---- GNU parallel and MPI
 
-  void run_by_parallel() {
-    std::vector<std::string> words = {
-        "parallel",  "--will-cite",
-        "--retries", "3",
-        "--joblog",  (folder_ / "job.log").string(),
-        "--workdir", "/",
-        "--jobs",    job_.per_host > 0 ? std::to_string(job_.per_host) : std::string("100%")};
-    if (!job_.hosts.empty()) words.insert(words.end(), {"--sshlogin", job_.hosts});
-    const std::string log = quoted((folder_ / "log-").string()) + "{}.txt";
-    words.push_back("sh " + quoted((folder_ / "job.sh").string()) + " {} >" + log + " 2>&1");
-    words.push_back(":::");
-    for (const int number : todo_) words.push_back(std::to_string(number));
+  // The command of a shell that runs shard `number`, a shell's word.
+  std::string shell_command(const std::string& number) const {
+    const std::string log = quoted((folder_ / "log-").string()) + number + ".txt";
+    return "sh " + quoted((folder_ / "job.sh").string()) + ' ' + number + " >" + log + " 2>&1";
+  }
+
+  // Runs the scheduler's program to its end, and reports progress meanwhile.
+  void run_reporting(const std::vector<std::string>& words, const std::string& package) {
     std::atomic<bool> is_over = false;
     std::thread reporter([&] {
       while (!is_over) {
@@ -237,9 +243,44 @@ class Rounds {
     reporter.join();
     report_progress();
     if (outcome.code == 127)
-      throw UserError("parallel", "is not on this machine", "Debian: apt-get install parallel.");
+      throw UserError(words.front(), "is not on this machine",
+                      "Debian: apt-get install " + package + ".");
     if (outcome.code != 0 && job_.finished() == 0 && !outcome.printed.empty())
-      notice("parallel: " + last_line_of(outcome.printed));
+      notice(words.front() + ": " + last_line_of(outcome.printed));
+  }
+
+  void run_by_parallel() {
+    std::vector<std::string> words = {
+        "parallel",  "--will-cite",
+        "--retries", "3",
+        "--joblog",  (folder_ / "job.log").string(),
+        "--workdir", "/",
+        "--jobs",    job_.jobs > 0 ? std::to_string(job_.jobs) : std::string("100%")};
+    if (!job_.hosts.empty()) words.insert(words.end(), {"--sshlogin", job_.hosts});
+    words.push_back(shell_command("{}"));
+    words.push_back(":::");
+    for (const int number : todo_) words.push_back(std::to_string(number));
+    run_reporting(words, "parallel");
+  }
+
+  void run_by_mpi() {
+    const fs::path taken = folder_ / "taken";
+    fs::remove_all(taken);
+    fs::create_directories(taken);
+    std::string text = script_of("A rank: takes the next shard that no other rank has taken");
+    text += "for number in";
+    for (const int number : todo_) text += fmt::format(" {}", number);
+    text += fmt::format("; do\n  mkdir {}/$number 2>/dev/null || continue\n  {}\ndone\nexit 0\n",
+                        quoted(taken.string()), shell_command("$number"));
+    write_executable("rank.sh", text);
+    std::vector<std::string> words = {"mpirun", "--enable-recovery", "--bind-to", "none"};
+    if (::geteuid() == 0) words.push_back("--allow-run-as-root");
+    if (!job_.hosts.empty()) words.insert(words.end(), {"--host", job_.hosts});
+    // as many as were asked for, also where mpirun counts fewer cores (it counts no hyperthreads)
+    if (job_.jobs > 0)
+      words.insert(words.end(), {"--oversubscribe", "-n", std::to_string(job_.jobs)});
+    words.push_back((folder_ / "rank.sh").string());
+    run_reporting(words, "openmpi-bin");
   }
 
   const ClusterJob& job_;
@@ -255,6 +296,17 @@ class Rounds {
 };
 
 }  // namespace
+
+std::string names_of_clusters() {
+  return "slurm (an array job), parallel (GNU parallel over ssh) or mpi (ranks of Open MPI)";
+}
+
+Cluster cluster_of(const std::string& word) {
+  if (word == "slurm") return Cluster::kSlurm;
+  if (word == "parallel") return Cluster::kParallel;
+  if (word == "mpi") return Cluster::kMpi;
+  throw UserError("--on", "is '" + word + "'", names_of_clusters() + ".");
+}
 
 std::vector<LostShard> run_on(const ClusterJob& job) {
   fs::create_directories(job.folder);

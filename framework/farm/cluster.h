@@ -1,12 +1,17 @@
-/// Shards of a work on several machines: tasks of an array job of Slurm, or commands that GNU
-/// parallel runs over ssh. This file plans nothing itself: the scheduler decides where and when,
-/// and repeats what a lost machine did not finish.
+/// Shards of a work on several machines: tasks of an array job of Slurm, commands that GNU parallel
+/// runs over ssh, or ranks that Open MPI's mpirun starts. This file plans nothing itself: the
+/// scheduler decides where and when, and what a lost machine did not finish is run again.
+///
+/// The ranks of MPI send each other nothing, for the pieces need nothing of each other: each takes
+/// the next shard that no rank has taken, by making a folder in the shared one. A lost rank costs
+/// the shard that it had, and no other rank ends (mpirun --enable-recovery).
 ///
 /// Every machine must see the files of the work under the same paths, as in a shared folder. What
 /// is left in ClusterJob::folder:
 ///   job.sh      what a task runs
 ///   job.id      the running job of Slurm, so that a second start waits for it
 ///   job.log     GNU parallel's list of finished commands
+///   rank.sh     what a rank of MPI runs; taken/K: shard K is a rank's
 ///   log-K.txt   what shard K printed
 #pragma once
 
@@ -21,7 +26,14 @@
 
 namespace tumble::farm {
 
-enum class Cluster { kSlurm, kParallel };
+enum class Cluster { kSlurm, kParallel, kMpi };
+
+/// For people: "slurm (an array job), ..."
+std::string names_of_clusters();
+
+/// From "slurm", "parallel" or "mpi".
+/// @throws UserError for other words
+Cluster cluster_of(const std::string& word);
 
 struct ClusterJob {
   Cluster cluster = Cluster::kSlurm;
@@ -35,8 +47,10 @@ struct ClusterJob {
   std::size_t total = 0;
   int shards = 0;  // 0: so many that each has `unasked` units, at most 1,000
   std::size_t unasked = 1;
-  std::string hosts;  // for parallel: its words for --sshlogin; empty: this machine
-  int per_host = 0;   // for parallel: shards at a time on a host; 0: one a core
+  // for parallel its words for --sshlogin, for MPI for --host; empty: this machine, and for MPI
+  // the nodes of the allocation in which it is started
+  std::string hosts;
+  int jobs = 0;  // shards at a time, for parallel on each host; 0: one a core
   std::function<std::size_t()> finished;            // units that are there
   std::function<bool(const Shard& shard)> is_done;  // it came to its end
   // throws where running it again cannot help; may be empty

@@ -101,12 +101,14 @@ TEST_F(Spread, AnErrorOfAPieceIsThrownHereAndEndsTheWork) {
   EXPECT_EQ(made(), 2u) << "the others are not begun";
 }
 
-// GNU parallel runs what Slurm would: the script of a job, with the number of a shard.
-class OnParallel : public Spread {
+// GNU parallel and the ranks of MPI run what Slurm would: the script of a job, with the number of a
+// shard.
+class OnCluster : public Spread, public ::testing::WithParamInterface<Cluster> {
  protected:
   void SetUp() override {
-    if (run_program({"parallel", "--version"}, Output::kDropped).code != 0)
-      GTEST_SKIP() << "GNU parallel is not here: apt-get install parallel";
+    const std::string program = GetParam() == Cluster::kMpi ? "mpirun" : "parallel";
+    if (run_program({program, "--version"}, Output::kDropped).code != 0)
+      GTEST_SKIP() << program << " is not here: apt-get install parallel openmpi-bin";
     // A task stands for the program: it makes the pieces of its shard, all in one process.
     write_whole(folder / "task.sh",
                 "while [ \"$1\" != --shard ]; do shift; done\n"
@@ -114,32 +116,33 @@ class OnParallel : public Spread {
                 "while [ $i -lt 6 ]; do\n"
                 "  if [ $((i % n)) = $((k - 1)) ]; then\n"
                 "    if [ -e \"$FOLDER/kill-$i\" ]; then echo \"no power for $i\"; kill -9 $$; fi\n"
+                "    if [ -e \"$FOLDER/kill-rank-$i\" ]; then kill -9 $PPID; kill -9 $$; fi\n"
                 "    cp \"$FOLDER/made-here/piece-$i.part\" \"$FOLDER/parts/\"\n"
                 "  fi\n"
                 "  i=$((i + 1))\n"
                 "done\n");
     make_here(parts("made-here"), work, {2, {}, {}});
     fs::create_directories(folder / "parts");
-    job.cluster = Cluster::kParallel;
+    job.cluster = GetParam();
     job.name = "test";
     job.command = {"/bin/sh", (folder / "task.sh").string()};
     job.needed = {folder.string()};
     job.environment = {{"FOLDER", folder.string()}};
     job.directory = folder;
     job.shards = 3;
-    job.per_host = 2;
+    job.jobs = 2;
     job.notice = [this](const std::string& sentence) { said += sentence + '\n'; };
   }
   ClusterJob job;
   std::string said;
 };
 
-TEST_F(OnParallel, TasksGiveTheBytesOfThisProcess) {
+TEST_P(OnCluster, TasksGiveTheBytesOfThisProcess) {
   EXPECT_TRUE(make_on(parts(), work, job).lost.empty()) << said;
   EXPECT_EQ(bytes_of(parts()), bytes_of(parts("made-here")));
 }
 
-TEST_F(OnParallel, ALostTaskIsNamedWithWhatItSaidAndASecondStartMakesTheRest) {
+TEST_P(OnCluster, ALostTaskIsNamedWithWhatItSaidAndASecondStartMakesTheRest) {
   write_whole(folder / "kill-4", "");
   const Outcome first = make_on(parts(), work, job);
   ASSERT_EQ(first.lost.size(), 1u) << said;  // piece 1 of the same shard was finished before
@@ -152,7 +155,7 @@ TEST_F(OnParallel, ALostTaskIsNamedWithWhatItSaidAndASecondStartMakesTheRest) {
   EXPECT_EQ(bytes_of(parts()), bytes_of(parts("made-here")));
 }
 
-TEST_F(OnParallel, AJobThatFinishesNothingIsRefused) {
+TEST_P(OnCluster, AJobThatFinishesNothingIsRefused) {
   job.needed.push_back("/no/such/path");
   try {
     make_on(parts(), work, job);
@@ -162,6 +165,25 @@ TEST_F(OnParallel, AJobThatFinishesNothingIsRefused) {
         << error.what();
   }
 }
+
+// mpirun ends all ranks when one is lost, unless it is told otherwise.
+TEST_P(OnCluster, ALostRankCostsItsShardOnly) {
+  if (GetParam() != Cluster::kMpi) GTEST_SKIP() << "GNU parallel has no ranks";
+  write_whole(folder / "kill-rank-1", "");
+  const Outcome first = make_on(parts(), work, job);
+  ASSERT_EQ(first.lost.size(), 2u) << said;
+  EXPECT_EQ(first.lost[0].name, "piece-1");
+  EXPECT_EQ(first.lost[1].name, "piece-4");
+  fs::remove(folder / "kill-rank-1");
+  EXPECT_TRUE(make_on(parts(), work, job).lost.empty()) << said;
+  EXPECT_EQ(bytes_of(parts()), bytes_of(parts("made-here")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Schedulers, OnCluster,
+                         ::testing::Values(Cluster::kParallel, Cluster::kMpi),
+                         [](const auto& chosen) {
+                           return chosen.param == Cluster::kMpi ? "Mpi" : "Parallel";
+                         });
 
 }  // namespace
 }  // namespace tumble::farm

@@ -4,20 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/error.h"
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/shard.h"
 
 namespace tumble::grading {
 
 namespace fs = std::filesystem;
-
-farm::Cluster cluster_of(const std::string& word) {
-  if (word == "slurm") return farm::Cluster::kSlurm;
-  if (word == "parallel") return farm::Cluster::kParallel;
-  throw UserError("--on", "is '" + word + "'",
-                  "slurm (an array job) or parallel (GNU parallel over ssh).");
-}
 
 void grade_on(const ShardedGrading& grading) {
   machine_key();  // made now, by one process
@@ -35,7 +27,7 @@ void grade_on(const ShardedGrading& grading) {
   job.shards = grading.shards;
   job.unasked = 10;
   job.hosts = grading.hosts;
-  job.per_host = grading.per_host;
+  job.jobs = grading.jobs;
   job.finished = [&] { return finished_in_shards(grading.out); };
   job.is_done = [&](const Shard& shard) { return fs::exists(done_file(grading.out, shard)); };
   job.begin = [&](const Shard& shard) {

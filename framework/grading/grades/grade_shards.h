@@ -13,10 +13,6 @@
 
 namespace tumble::grading {
 
-/// From "slurm" or "parallel".
-/// @throws UserError for other words
-farm::Cluster cluster_of(const std::string& word);
-
 struct ShardedGrading {
   farm::Cluster cluster = farm::Cluster::kSlurm;
   // `tumble grade ...` with absolute paths and without --shard
@@ -26,8 +22,8 @@ struct ShardedGrading {
   std::filesystem::path out;
   std::size_t total = 0;  // submissions
   int shards = 0;         // 0: ten submissions each, at most 1,000
-  std::string hosts;      // for parallel: its words for --sshlogin; empty: this machine
-  int per_host = 0;       // for parallel: shards at a time on a host; 0: one a core
+  std::string hosts;      // as farm::ClusterJob's
+  int jobs = 0;
   std::function<void(const GradeProgress&)> progress;
   std::function<void(const std::string&)> notice;
 };
