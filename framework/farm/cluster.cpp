@@ -24,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostUnasked = 1000;  // Slurm's default limit: 1001
 constexpr int kMostRounds = 5;
+constexpr const char* kNoPath = ": there is no ";
 constexpr auto kLook = 2s;             // between two looks at what is finished, at least
 constexpr int kMostOfTime = 10;        // and ten times as long as a look takes
 constexpr int kMostSilentLooks = 150;  // of a controller that does not answer: five minutes
@@ -97,7 +98,8 @@ class Rounds {
   bool is_done(int number) const { return job_.is_done({number, shards_}); }
 
   [[noreturn]] void refuse() const {
-    const std::string said = said_by(todo_.front());
+    std::string said = said_by(todo_.front());
+    if (said.empty()) said = missing_path_;
     throw UserError(
         log_of(todo_.front()).string(),
         "no shard finished a " + job_.unit +
@@ -116,8 +118,8 @@ class Rounds {
     std::string text = "#!/bin/sh\n# " + what + ", made by a command of tumble with --on.\n";
     if (job_.cluster == Cluster::kSlurm) text += fmt::format("#SBATCH --job-name={}\n", job_.name);
     for (const std::string& path : job_.needed)
-      text += fmt::format("[ -e {0} ] || {{ echo \"$(hostname): there is no \"{0}; exit 2; }}\n",
-                          quoted(path));
+      text += fmt::format("[ -e {0} ] || {{ echo \"$(hostname){1}\"{0}; exit 2; }}\n", quoted(path),
+                          kNoPath);
     return text;
   }
 
@@ -245,6 +247,9 @@ class Rounds {
     if (outcome.code == 127)
       throw UserError(words.front(), "is not on this machine",
                       "Debian: apt-get install " + package + ".");
+    std::istringstream lines(outcome.printed);  // of ranks that began no shard
+    for (std::string line; missing_path_.empty() && std::getline(lines, line);)
+      if (line.find(kNoPath) != std::string::npos) missing_path_ = printable(line);
     if (outcome.code != 0 && job_.finished() == 0 && !outcome.printed.empty())
       notice(words.front() + ": " + last_line_of(outcome.printed));
   }
@@ -263,6 +268,8 @@ class Rounds {
     run_reporting(words, "parallel");
   }
 
+  // A shard runs beside the shell, which says nothing of a killed one then: the log ends with what
+  // the shard said.
   void run_by_mpi() {
     const fs::path taken = folder_ / "taken";
     fs::remove_all(taken);
@@ -270,8 +277,9 @@ class Rounds {
     std::string text = script_of("A rank: takes the next shard that no other rank has taken");
     text += "for number in";
     for (const int number : todo_) text += fmt::format(" {}", number);
-    text += fmt::format("; do\n  mkdir {}/$number 2>/dev/null || continue\n  {}\ndone\nexit 0\n",
-                        quoted(taken.string()), shell_command("$number"));
+    text += fmt::format(
+        "; do\n  mkdir {}/$number 2>/dev/null || continue\n  {} &\n  wait $!\ndone\nexit 0\n",
+        quoted(taken.string()), shell_command("$number"));
     write_executable("rank.sh", text);
     std::vector<std::string> words = {"mpirun", "--enable-recovery", "--bind-to", "none"};
     if (::geteuid() == 0) words.push_back("--allow-run-as-root");
@@ -290,6 +298,7 @@ class Rounds {
   bool attached_ = false;
   std::string job_id_;
   int silent_ = 0;
+  std::string missing_path_;  // what a machine said that does not see the files
   std::size_t reported_ = static_cast<std::size_t>(-1);
   const Clock::time_point start_ = Clock::now();
   Clock::time_point next_look_ = start_;
