@@ -117,6 +117,7 @@ class OnCluster : public Spread, public ::testing::WithParamInterface<Cluster> {
                 "  if [ $((i % n)) = $((k - 1)) ]; then\n"
                 "    if [ -e \"$FOLDER/kill-$i\" ]; then echo \"no power for $i\"; kill -9 $$; fi\n"
                 "    if [ -e \"$FOLDER/kill-rank-$i\" ]; then kill -9 $PPID; kill -9 $$; fi\n"
+                "    if [ -e \"$FOLDER/slow\" ]; then sleep 1; fi\n"
                 "    cp \"$FOLDER/made-here/piece-$i.part\" \"$FOLDER/parts/\"\n"
                 "  fi\n"
                 "  i=$((i + 1))\n"
@@ -170,11 +171,14 @@ TEST_P(OnCluster, AJobThatFinishesNothingIsRefused) {
 TEST_P(OnCluster, ALostRankCostsItsShardOnly) {
   if (GetParam() != Cluster::kMpi) GTEST_SKIP() << "GNU parallel has no ranks";
   write_whole(folder / "kill-rank-1", "");
+  write_whole(folder / "slow", "");  // the other rank is at work when this one is lost
   const Outcome first = make_on(parts(), work, job);
   ASSERT_EQ(first.lost.size(), 2u) << said;
   EXPECT_EQ(first.lost[0].name, "piece-1");
   EXPECT_EQ(first.lost[1].name, "piece-4");
+  EXPECT_TRUE(said.starts_with("1 of 3 shards did not come to their end")) << said;
   fs::remove(folder / "kill-rank-1");
+  fs::remove(folder / "slow");
   EXPECT_TRUE(make_on(parts(), work, job).lost.empty()) << said;
   EXPECT_EQ(bytes_of(parts()), bytes_of(parts("made-here")));
 }
