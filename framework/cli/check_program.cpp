@@ -169,10 +169,10 @@ ExitCode check_own_tests(const Command& command, const CheckWords& words, const 
                          const fs::path& header) {
   const fs::path program = command.build / "bin" / ("own_tests_" + words.id),
                  tests = fs::absolute(words.own_tests);
-  if (command.is_installed && !fs::exists(program))
-    throw UserError("--my-tests", "the installed package cannot run tests of your own",
-                    "It works in the course's source tree: ./tumble check " + words.id +
-                        " YOUR.cpp --my-tests FILE");
+  for (const char* header : {"/usr/include/gtest/gtest.h", "/usr/include/fmt/format.h"})
+    if (!fs::exists(header))
+      throw UserError("--my-tests", std::string("there is no ") + header + " on this machine",
+                      "apt install libgtest-dev libfmt-dev libssl-dev");
   if (!fs::exists(program))
     throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
   const PrivateFolder folder;

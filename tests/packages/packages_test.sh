@@ -44,6 +44,12 @@ began=$(date +%s%N)
 code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
 [ $code = 0 ] || { cat "$folder/said"; fail "check of a right file ends with $code, not 0"; }
 echo "check a1 took $((($(date +%s%N) - began) / 1000000)) ms"
+# Tests of one's own, from the handout's example: they pass on the right file, which does not say that they catch anything.
+sed -n '/^#include "tests\/a1_impulse/,/^```$/p' "$root/handouts/a1_impulse.md" | sed '/^```/,$d' >mine.cpp
+[ -s mine.cpp ] || fail "the handout of a1 has no example of own tests"
+code=0; "$tumble" check a1 --my-tests mine.cpp >"$folder/said" 2>&1 || code=$?
+[ $code = 0 ] || { cat "$folder/said"; fail "own tests of an installed course end with $code, not 0"; }
+grep -qE '/own_tests_a1$' "$folder/grader" || fail "the grader cannot judge own tests"
 echo 'int broken(' >>a1_impulse.cpp
 code=0; "$tumble" check a1 >"$folder/said" 2>&1 || code=$?
 [ $code = 1 ] && grep -q 'does not compile' "$folder/said" || { cat "$folder/said"; fail "a file that does not compile ends with $code"; }

@@ -39,6 +39,9 @@ timed "first tumble check a1 (a stub)" "$(as_student 'cd a1 && tumble check a1')
 timed "second tumble check a1" "$(as_student 'cd a1 && tumble check a1')" 4
 for id in $(cd "$tree/assignments" && ls -d a[0-9]*_*/ | sed 's/_.*//'); do [ "$id" = a1 ] || timed "start and check $id" "$(as_student "tumble start $id $id >/dev/null; cd $id && tumble check $id")" 4; done
 timed "another file, in the sandbox" "$(as_student 'cp a1/a1_impulse.cpp other.cpp; cd a1; tumble check a1 ../other.cpp')" 4
+timed "own tests, without their packages" "$(as_student 'cd a1; echo "TEST(Mine, Runs) {}" > mine.cpp; tumble check a1 --my-tests mine.cpp 2>&1 | tee /dev/stderr | grep -q "apt install libgtest-dev" && exit 2')" 2
+timed "apt install what they need" "apt-get install --yes --no-install-recommends libgtest-dev libfmt-dev libssl-dev"
+timed "own tests" "$(as_student 'cd a1; tumble check a1 --my-tests mine.cpp')"
 timed "tumble inspect t_handle" "$(as_student 'tumble inspect t_handle')"
 timed "tumble grade, which the course has not" "$(as_student 'mkdir -p s/ada; cp a1/a1_impulse.cpp s/ada; tumble grade a1 s')" 2
 
