@@ -23,6 +23,15 @@ grep -qE '^drwxr-x--- .* \./opt/tumble-grader/$' "$folder/grader" || fail "/opt/
 awk '{ print $6 }' "$folder/course" | grep -E 'solutions_private|/judge_a|_reference|mutants|hidden|\.slip$' && fail "the course has a private file"
 
 mkdir "$folder/root" && dpkg-deb -x "$course" "$folder/root"
+# The course depends on every library that the grader needs, so that the grader has to name none itself.
+needed() { find "$1" -type f \( -perm -100 -o -name '*.so' \) -exec readelf -d {} + 2>/dev/null | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | sort -u; }
+mkdir "$folder/grader_root" && dpkg-deb -x "$grader" "$folder/grader_root"
+needed "$folder/root/usr/lib/tumble" >"$folder/course_needs"
+needed "$folder/grader_root/opt/tumble-grader" >"$folder/grader_needs"
+[ -s "$folder/grader_needs" ] || fail "the grader's programs need no library at all?"
+more=$(comm -13 "$folder/course_needs" "$folder/grader_needs")
+[ -z "$more" ] || fail "the grader needs libraries that the course does not depend on: $more"
+rm -rf "$folder/grader_root"
 tumble=$folder/root/usr/bin/tumble
 # No symbol of the fast scheduler, which is a solution.
 nm -C "$folder/root/usr/lib/tumble/bin/tumble" | grep -F 'tumble::a4::Coordinator' >"$folder/symbols" || true
