@@ -1,20 +1,15 @@
 // The articulated-body algorithm: from the leaves to the roots what each body asks of its joint,
 //   F = M a + H alpha + f,      N = H^T a + J alpha + n      about its centre                 (R.2)
 // then from the roots to the leaves what its joint gives. About the joint's point, at the arm d
-// from
-// the centre, with D = [d]x, a = a_point + D alpha - w x (w x d):
-//   H_p = H + M D,   J_p = J + H^T D + D^T H + D^T M D,   f_p = f - M c,   n_p = n - H^T c - d x
-// f_p
+// from the centre, with D = [d]x, a = a_point + D alpha - w x (w x d):
+//   H_p = H + M D,   J_p = J + H^T D + D^T H + D^T M D,
+//   f_p = f - M c,   n_p = n - H^T c - d x f_p
 // A joint leaves some accelerations free, and these follow from the forces that it cannot take:
-//   ball    N_p = 0:              alpha = -J_p^-1 (H_p^T a_p + n_p)
-// (R.3)
-//   rod     besides F across u = 0:  F = lambda u, u . (a_own - a_parent) = -L |u'|^2
-// (R.4)
-//   hinge   k . N_p = 0:          theta'' = -(h . a_p + j . alpha + s) / (k . J_p k)
-// (R.5)
+//   ball    N_p = 0:              alpha = -J_p^-1 (H_p^T a_p + n_p)                         (R.3)
+//   rod     F across u = 0 too:   F = lambda u,  u . (a_own - a_parent) = -L |u'|^2         (R.4)
+//   hinge   k . N_p = 0:          theta'' = -(h . a_p + j . alpha + s) / (k . J_p k)        (R.5)
 // A rod's mass is none: what it passes on to its parent is the mass (u . M_b^-1 u)^-1 along u,
-// which
-// is regular however it stands.
+// which is regular however it stands.
 #include "framework/core/error.h"
 #include "framework/dynamics/articulated_tree.h"
 

@@ -2,14 +2,11 @@
 /// articulated-body algorithm, which gives their accelerations in time linear in their number.
 ///
 /// A link of the forest is a joint that leaves its body some freedom against its parent.
-/// Orientation
-/// and angular velocity of a body are its own ones (in the world), not those against its parent,
-/// but
-/// at a hinge or a weld; so that no joint has angles with a singular posture:
+/// Orientation and angular velocity of a body are its own ones (in the world), not those against
+/// its parent, but at a hinge or a weld; so that no joint has angles with a singular posture:
 ///   free    centre c, unit quaternion q; v, omega         a body that hangs on nothing
 ///   ball    q; omega                                      one point of it is a point of the parent
-///   rod     u, q; u', omega                               p_own = p_parent + L u, |u| = 1
-/// (R.1)
+///   rod     u, q; u', omega                               p_own = p_parent + L u, |u| = 1     (R.1)
 ///   hinge   theta; theta'                                 turns about an axis of the parent
 ///   weld    nothing
 /// y holds all places, then all velocities in the same order, as many of them as places (a
@@ -21,8 +18,7 @@
 /// their rows (reduced_motion.h of engines/stepping).
 ///
 /// Frames and units as in body.h. Sources: R. Featherstone, "The calculation of robot dynamics
-/// using
-/// articulated-body inertias", IJRR 1983; "Rigid body dynamics algorithms", 2008, chapter 7.
+/// using articulated-body inertias", IJRR 1983; "Rigid body dynamics algorithms", 2008, chapter 7.
 #pragma once
 
 #include <vector>

@@ -80,9 +80,8 @@ std::uint64_t solves(const Trajectory& run) { return run.counters.counts.at("con
 
 TEST(JointCoordinates, MoveScenesOfTheCourseAsSixCoordinatesABodyDo) {
   // Both are of order 4 with errors of their own: half the step brings them 16 times nearer. Half
-  // of
-  // that is asked for, and to be near enough that another motion shows: a wrong bias term or torque
-  // is off by centimetres in a second.
+  // of that is asked for, and to be near enough that another motion shows: a wrong bias term or
+  // torque is off by centimetres in a second.
   for (const auto& [name, step] : {std::pair{"double_pendulum", 1.0 / 120},
                                    {"chain_8", 1.0 / 240},
                                    {"four_bar", 1.0 / 60},
@@ -128,9 +127,8 @@ TEST(JointCoordinates, AreTheSameInProcesses) {
 
 TEST(JointCoordinates, GiveWayToSixCoordinatesInContact) {
   // A ball drops on a block that hangs on rods, bounces and stays: the block leaves joint
-  // coordinates
-  // and goes on from the same state. Both are at their step's truncation, which is the same where
-  // nothing turns; rounding, through some fifteen impacts, is 1e-12.
+  // coordinates and goes on from the same state. Both are at their step's truncation, which is the
+  // same where nothing turns; rounding, through some fifteen impacts, is 1e-12.
   const scene::Scene scene = of_course("dropped_on_a_block_on_rods", 0.8);
   const Trajectory reduced = run(scene, Coordinates::kReduced, scene.step_s),
                    maximal = run(scene, Coordinates::kMaximal, scene.step_s);

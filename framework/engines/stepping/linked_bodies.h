@@ -82,8 +82,7 @@ class LinkedBodies final : effects::GroupPlaces {
   /// empty, and the world asks for joint coordinates
   std::string reduced_in_words() const;
   /// From here on bodies of the group are in persistent contact, or are not: contacts push bodies
-  /// of
-  /// six coordinates, so the group goes on in these from the same state, and back.
+  /// of six coordinates, so the group goes on in these from the same state, and back.
   void set_touched(bool touched) { touched_ = touched; }
 
   /// Control laws whose time has come look and set their torques.

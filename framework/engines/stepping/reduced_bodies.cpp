@@ -3,8 +3,8 @@
 // Each step begins at the bodies' states and ends there, so that whatever else looks at the world
 // (impacts, contacts, pictures, processes that go back in time) knows nothing of coordinates, and a
 // step depends on these states alone. A loop is closed by the rows of the links that the tree
-// leaves
-// out:  A lambda = -(J u' + J' u),   A = J (response of the tree to J^T)                      (R.6)
+// leaves out:
+//   A lambda = -(J u' + J' u),   A = J (response of the tree to J^T)                      (R.6)
 // A has a column for each row, each in time linear in the bodies; redundant rows (four hinges of a
 // plane linkage) make it singular, and the lambda of least norm is taken: the motion is the same.
 #include <algorithm>
@@ -139,10 +139,8 @@ void LinkedBodies::stand_fixed_ends_at(double t) {
 }
 
 // Coordinates of these states. Where an impact within a step, or a time in six coordinates, has
-// left
-// links open, the states are projected first, as six coordinates would be: what the tree alone
-// would
-// take away is not the least in the measure of the masses, and would change energy.
+// left links open, the states are projected first, as six coordinates would be: what the tree alone
+// would take away is not the least in the measure of the masses, and would change energy.
 VectorXd LinkedBodies::begin_reduced(std::vector<RigidBodyState>& local, double t) {
   begun_at_ = t;
   stand_fixed_ends_at(t);
