@@ -36,6 +36,8 @@ constexpr const char* kScripts[] = {"decode.js",
                                     "plot.js",
                                     "curves.js",
                                     "events.js",
+                                    "views.js",
+                                    "save.js",
                                     "player.js",
                                     "panel_virtual_times.js",
                                     "main.js"};
@@ -140,7 +142,8 @@ bool is_same_motion(const scene::Scene& scene, const std::vector<PlayedRun>& run
 
 std::string three_js(const fs::path& folder) {
   return library(folder, "three.min.js") + "\n" +
-         library(folder, "examples/js/controls/OrbitControls.js");
+         library(folder, "examples/js/controls/OrbitControls.js") + "\n" +
+         library(folder, "examples/js/exporters/GLTFExporter.js");
 }
 
 std::string_view player_source(std::string_view name) { return player_file(name); }

@@ -15,6 +15,7 @@ const kPlots = {
   velocity: { title: 'Velocity', axis: 'velocity' },
   omega: { title: 'Angular velocity, world', axis: 'ω' },
 };
+const kMostFound = 30;   // bodies that are listed
 const kMostLinks = 4;   // curves in one plot; with more links the user chooses one
 
 function curvesOf(runs, pick) {
@@ -49,7 +50,8 @@ class CurvePane {
   }
 
   add(plot, box) {
-    const made = new TimePlot(plot, this.player.end, t => this.player.seek(t));
+    const made = new TimePlot(plot, this.player.end, t => this.player.seek(t), (factor, t) => this.player.zoom(factor, t));
+    made.setWindow(this.player.from, this.player.until);
     this.plots.push(made);
     box.append(made.box);
     return made;
@@ -74,14 +76,28 @@ class CurvePane {
     show();
   }
 
-  follow(t, isFull = true) { for (const plot of this.plots) plot.follow(t, isFull); }
+  follow(t, isFull = true) {
+    for (const plot of this.plots) {
+      plot.setWindow(this.player.from, this.player.until);
+      plot.follow(t, isFull);
+    }
+  }
 }
 
 // Curves of the chosen body.
 class BodyPane extends CurvePane {
+  constructor(pane, player) {
+    const box = html('div');
+    super(box, player);
+    this.finder = new BodyFinder(player);
+    pane.append(this.finder.box, box);
+    this.choose(player.chosen);
+  }
+
   choose(body) {
+    this.body = body;
     if (body < 0) {
-      this.box.textContent = 'Choose a body: click it in the picture, or select it in the list below.';
+      this.box.textContent = 'Choose a body: click it in the picture, or find it by its name.';
       this.plots = [];
       return;
     }
@@ -89,5 +105,40 @@ class BodyPane extends CurvePane {
     this.fill(curvesOf(this.player.runs, run => run.bodySeries(body)));
     const note = this.plots.length === 0 ? (about.immovable ? ' is immovable.' : ' never moves.') : '';
     this.box.prepend(html('h2', {}, about.name), ...(note ? [html('p', {}, about.name + note)] : []));
+  }
+}
+
+// A field in which one types part of a body's name, and the bodies that have it in theirs. The
+// return key chooses the first, and again the next.
+class BodyFinder {
+  constructor(player) {
+    this.player = player;
+    this.field = html('input', { type: 'search', placeholder: 'find a body', ariaLabel: 'Find a body by its name' });
+    this.list = html('div', { className: 'found' });
+    this.box = html('div', { className: 'finder' }, this.field, this.list);
+    this.field.addEventListener('input', () => this.show());
+    this.field.addEventListener('keydown', event => {
+      if (event.key === 'Escape') { this.field.value = ''; this.show(); this.field.blur(); }
+      if (event.key !== 'Enter') return;
+      const found = this.found();
+      if (found.length > 0) player.choose(found[(found.indexOf(player.chosen) + 1) % found.length]);
+      this.show();
+    });
+  }
+
+  found() {
+    const words = this.field.value.trim().toLowerCase().split(/\s+/).filter(Boolean), all = this.player.about.bodies;
+    return words.length === 0 ? [] : all.map((_, i) => i).filter(i => words.every(word => all[i].name.toLowerCase().includes(word)));
+  }
+
+  show() {
+    const found = this.found();
+    this.list.replaceChildren(...found.slice(0, kMostFound).map(i => {
+      const button = html('button', {}, this.player.about.bodies[i].name);
+      button.setAttribute('aria-pressed', String(i === this.player.chosen));
+      button.addEventListener('click', () => { this.player.choose(i); this.show(); });
+      return button;
+    }));
+    if (this.field.value.trim()) this.list.append(html('span', { className: 'count' }, found.length === 0 ? 'no body has this in its name' : found.length > kMostFound ? `${found.length - kMostFound} more` : ''));
   }
 }

@@ -48,9 +48,33 @@ class Picture {
     this.orbit.addEventListener('change', () => { this.isDirty = true; });
     player.listeners.push(() => { this.isDirty = true; });
     new ResizeObserver(() => this.resize()).observe(byId('scene'));
+    this.triad = new Triad();
     this.addPicking();
     this.reset();
     this.resize();
+  }
+
+  // From another side, at the same distance; or so that all bodies, or the chosen one, fill the
+  // picture.
+  look(name) {
+    const { from, of } = kLooks[name], first = this.stages[0], now = this.camera.position.clone().sub(this.orbit.target);
+    if (of === 'scene') return this.reset();
+    let distance = now.length();
+    const box = of === 'all' ? first.extent.clone() : new THREE.Box3(), chosen = this.player.about.bodies[this.player.chosen];
+    if (of === 'body' && chosen && chosen.radius !== null) {
+      const r = Math.max(chosen.radius, 0.01 * first.sight);
+      box.setFromCenterAndSize(first.placeOf(this.player.chosen, this.player.time), new THREE.Vector3(2 * r, 2 * r, 2 * r));
+    }
+    if (of && box.isEmpty()) return;
+    if (of) {
+      this.orbit.target.copy(box.getCenter(new THREE.Vector3()));
+      distance = 0.5 * box.getSize(new THREE.Vector3()).length() / Math.sin(this.player.about.camera.fov * Math.PI / 360);
+    }
+    const direction = from ? new THREE.Vector3(...from) : now.normalize();
+    this.camera.position.copy(this.orbit.target).addScaledVector(direction.normalize(), distance);
+    this.camera.near = Math.min(this.camera.near, 0.01 * distance);
+    this.orbit.update();
+    this.isDirty = true;
   }
 
   reset() {
@@ -128,6 +152,7 @@ class Picture {
       renderer.render(stage.scene, camera);
       if (shift) camera.position.sub(shift);
     });
+    if (player.shown.triad) this.triad.draw(renderer, camera, this.orbit.target);
   }
 
   addPicking() {
@@ -199,7 +224,11 @@ function addTabs(player) {
   tabs.forEach((entry, i) => entry.tab.addEventListener('click', () => open(i)));
   player.listeners.push(update);
   open(0);
-  return { open, names: tabs.map(entry => entry.tab.textContent) };
+  const find = () => {
+    open(1);
+    tabs[1].pane.finder.field.focus();
+  };
+  return { open, find, names: tabs.map(entry => entry.tab.textContent) };
 }
 
 // The arrows of the picture in words: the latest impact, and active forces.
@@ -241,7 +270,10 @@ function addWords(player, picture) {
 
 function readHash(player, tabs) {
   const words = new URLSearchParams(location.hash.slice(1));
-  if (words.has('bare')) document.body.classList.add('bare');
+  if (words.has('bare')) {
+    document.body.classList.add('bare');
+    player.shown.triad = false;
+  }
   if (words.has('body')) player.choose(player.about.bodies.findIndex(body => body.name === words.get('body')));
   if (words.has('follow')) player.follow(true);
   if (words.has('tab')) tabs.open(Math.max(0, tabs.names.findIndex(name => name.toLowerCase().startsWith(words.get('tab')))));
@@ -286,8 +318,8 @@ async function main() {
     complain(`The motion cannot be drawn here (${error.message}). Curves and events work.`);
     document.body.classList.add('flat');
   }
-  new Controls(player, () => picture && picture.reset());
   const tabs = addTabs(player);
+  new Controls(player, picture, () => tabs.find());
   addWords(player, picture);
   byId('still').hidden = true;
   readHash(player, tabs);

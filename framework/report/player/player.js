@@ -1,6 +1,7 @@
 // Time and its listeners: play, pause, step, scrub, speed; keys; the chosen body.
 
 const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8];
+const kFewestFrames = 4;   // in the shown part of time
 const byId = id => document.getElementById(id);
 
 class Player {
@@ -10,18 +11,41 @@ class Player {
     this.end = Math.max(...runs.map(run => run.end));
     this.longest = runs.reduce((a, b) => (b.end > a.end ? b : a));
     this.time = 0;
+    this.from = 0;   // the part of time that slider and curves show
+    this.until = this.end;
     this.speed = [...kSpeeds].reverse().find(s => s <= 1 && s <= this.end / 3) || kSpeeds[0];   // a short run is played slowly: at least three seconds
     this.isPlaying = false;
     this.chosen = -1;
     this.followed = -1;
     this.listeners = [];   // called with the player whenever something has changed
     this.events = [...new Set(runs.flatMap(run => Array.from(run.events.time)))].sort((a, b) => a - b);
-    this.shown = { impulses: true, contacts: true, forces: true, links: true, path: true, halo: true, ground: true, shadows: true, loop: false, beside: false };
+    this.shown = { impulses: true, contacts: true, forces: true, links: true, path: true, halo: true, ground: true, shadows: true, triad: true, xray: false, wires: false, loop: false, beside: false };
   }
 
   changed() {
+    this.keepInWindow();
     for (const tell of this.listeners) tell(this);
     this.tenth = Math.floor(performance.now() / 100);
+  }
+
+  get isZoomed() { return this.until - this.from < this.end * (1 - 1e-9); }
+
+  // Shows `factor` times as much time, and t where it was. @param factor  Infinity: all of it
+  zoom(factor, t = this.time) {
+    const shown = this.until - this.from, least = Math.min(this.end, kFewestFrames * this.end / Math.max(1, this.longest.times.length - 1));
+    const size = Math.min(this.end, Math.max(least, factor * shown)), from = t - (t - this.from) / shown * size;
+    this.from = Math.min(this.end - size, Math.max(0, Number.isFinite(from) ? from : 0));
+    this.until = this.from + size;
+    if (this.time < this.from || this.time > this.until) this.time = Math.min(this.until, Math.max(this.from, this.time));
+    this.changed();
+  }
+
+  // The shown part moves on with the time.
+  keepInWindow() {
+    const size = this.until - this.from;
+    if (this.time > this.until) this.until = Math.min(this.end, this.time + 0.8 * size);
+    else if (this.time < this.from) this.until = Math.max(size, this.time + 0.2 * size);
+    this.from = this.until - size;
   }
 
   seek(t) {
@@ -101,11 +125,15 @@ class Player {
   }
 }
 
+const kInset = 8;   // half of the slider's thumb [px]
+
 // The controls below the picture.
 class Controls {
-  constructor(player, resetView) {
+  // @param picture  null where nothing can be drawn  @param find()  shows the list of bodies
+  constructor(player, picture, find) {
     this.player = player;
-    this.resetView = resetView;
+    this.picture = picture;
+    this.find = find;
     const click = (id, act) => byId(id).addEventListener('click', act);
     click('play', () => player.toggle());
     click('stepBack', () => player.step(-1));
@@ -113,17 +141,22 @@ class Controls {
     click('back', () => player.jump(-1));
     click('next', () => player.jump(1));
     click('follow', () => player.follow(player.followed < 0));
-    click('home', resetView);
+    click('home', () => picture && picture.reset());
+    click('nearer', () => player.zoom(0.5));
+    click('farther', () => player.zoom(2));
+    byId('looks').append(html('option', { value: '' }, 'view …'), ...Object.entries(kLooks).map(([name, look]) => html('option', { value: name }, look.text)));
+    byId('looks').addEventListener('change', event => { if (picture && event.target.value) picture.look(event.target.value); event.target.value = ''; });
     for (const s of kSpeeds) byId('speed').append(html('option', { value: String(s) }, `${s} ×`));
     byId('speed').addEventListener('change', event => player.setSpeed(Number(event.target.value)));
     byId('body').append(html('option', { value: '-1' }, 'body …'));
     player.about.bodies.forEach((body, i) => byId('body').append(html('option', { value: String(i) }, body.name)));
     byId('body').addEventListener('change', event => player.choose(Number(event.target.value)));
     const scrub = byId('scrub');
-    scrub.max = String(player.end);
-    scrub.step = String(player.end / 20000);
+    byId('line').addEventListener('wheel', event => { event.preventDefault(); player.zoom(zoomOf(event), this.timeAt(event)); }, { passive: false });
+    byId('line').addEventListener('dblclick', () => player.zoom(Infinity));
     scrub.addEventListener('input', () => player.goTo(Number(scrub.value)));
     this.addOptions();
+    this.addSaving();
     this.addDifference();
     window.addEventListener('keydown', event => this.key(event));
     new ResizeObserver(() => this.drawMarks()).observe(byId('marks'));
@@ -136,7 +169,7 @@ class Controls {
     const has = { contacts: this.player.runs.some(run => run.head.contacts > 0), forces: this.player.about.forces.length > 0,
       beside: this.player.runs.length > 1, links: this.player.about.springs.length + this.player.about.rods.length + this.player.about.joints.length > 0 };
     const options = [['impulses', 'impulses', kColors.impulse], ['contacts', 'contact points and their forces', kColors.contact], ['forces', 'point forces', kColors.force],
-      ['links', 'springs, rods, joints', kColors.rod], ['path', 'path of the chosen body', kColors.path], ['halo', 'chosen body outlined', kChosen], ['ground', 'ground and grid', kLine], ['shadows', 'shadows'], ['beside', 'two views instead of a ghost'], ['loop', 'repeat']];
+      ['links', 'springs, rods, joints', kColors.rod], ['path', 'path of the chosen body', kColors.path], ['halo', 'chosen body outlined', kChosen], ['ground', 'ground and grid', kLine], ['shadows', 'shadows'], ['triad', 'directions of x, y, z'], ['xray', 'bodies that one sees through'], ['wires', 'edges of the triangles only'], ['beside', 'two views instead of a ghost'], ['loop', 'repeat']];
     for (const [name, text, color] of options) {
       if (has[name] === false) continue;
       const box = html('input', { type: 'checkbox', checked: this.player.shown[name] }), swatch = html('i');
@@ -144,7 +177,23 @@ class Controls {
       box.addEventListener('change', () => { this.player.shown[name] = box.checked; this.player.changed(); });
       byId('options').append(html('label', {}, box, swatch, ` ${text}`));
     }
-    byId('options').append(html('p', { className: 'keys' }, 'Keys: space play and pause · ← → a frame, with shift ten · ↑ ↓ speed · N P next and previous event · Home End · F follow · R reset the view · drag turn, right drag or two fingers shift, wheel or pinch nearer.'));
+    byId('options').append(html('p', { className: 'keys' }, 'Keys: space play and pause · ← → a frame, with shift ten · ↑ ↓ speed · N P next and previous event · Home End · + − more and less of the time, or the wheel on the slider, and with the control key on a curve; double click: all of it · F follow · / find a body · 1 to 6 views, R that of the scene · drag turn, right drag or two fingers shift, wheel or pinch nearer.'));
+  }
+
+  addSaving() {
+    const box = html('p', { className: 'saving' }, 'Save ');
+    const add = (text, title, act) => {
+      const button = html('button', { title }, text);
+      button.addEventListener('click', () => act(button));
+      box.append(button);
+    };
+    if (this.picture) {
+      add('PNG', 'The picture as it is', () => savePicture(this.player, this.picture));
+      if (canRecord()) add('WebM', 'A video of the shown part of time, at the chosen speed', button => recordVideo(this.player, this.picture, button));
+      add('glTF', 'Bodies and their motion, for Blender and others', () => saveGltf(this.player, this.picture));
+    }
+    add('CSV', 'All curves; of a chosen body its motion, too', () => saveTable(this.player));
+    byId('options').append(box);
   }
 
   addDifference() {
@@ -168,12 +217,13 @@ class Controls {
   }
 
   key(event) {
-    const inText = event.target instanceof Element && event.target.closest('select, input[type=text]');
+    const inText = event.target instanceof Element && event.target.closest('select, input[type=text], input[type=search]');
     if (inText || event.ctrlKey || event.metaKey || event.altKey) return;
-    const player = this.player, onButton = event.target instanceof Element && event.target.closest('button, summary');
+    const player = this.player, onButton = event.target instanceof Element && event.target.closest('button, summary'), names = Object.keys(kLooks);
     const acts = { ' ': onButton ? null : () => player.toggle(), ArrowRight: () => player.step(event.shiftKey ? 10 : 1), ArrowLeft: () => player.step(event.shiftKey ? -10 : -1),
       ArrowUp: () => player.faster(1), ArrowDown: () => player.faster(-1), Home: () => player.goTo(0), End: () => player.goTo(player.end), n: () => player.jump(1), p: () => player.jump(-1),
-      f: () => player.follow(player.followed < 0), r: () => this.resetView() };
+      f: () => player.follow(player.followed < 0), r: () => this.picture && this.picture.reset(), '+': () => player.zoom(0.5), '-': () => player.zoom(2), '/': () => this.find() };
+    names.forEach((name, i) => { if (i < 6) acts[String(i + 1)] = () => this.picture && this.picture.look(name); });
     const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     act();
@@ -181,8 +231,15 @@ class Controls {
   }
 
   show() {
-    const player = this.player;
-    byId('scrub').value = String(player.time);
+    const player = this.player, scrub = byId('scrub'), shown = `${player.from} ${player.until}`;
+    if (shown !== this.shown) {
+      this.shown = shown;
+      Object.assign(scrub, { min: String(player.from), max: String(player.until), step: String((player.until - player.from) / 20000) });
+      byId('window').textContent = player.isZoomed ? `${short(player.from, 5)} to ${short(player.until, 5)} of ${short(player.end, 5)} s` : '';
+      byId('farther').disabled = !player.isZoomed;
+      this.drawMarks();
+    }
+    scrub.value = String(player.time);
     if (!player.isTimeToTell()) return;
     byId('play').textContent = player.isPlaying ? 'Pause' : 'Play';
     byId('clock').textContent = `${player.time.toFixed(player.end < 1 ? 4 : 3)} s`;
@@ -194,18 +251,23 @@ class Controls {
     byId('follow').setAttribute('aria-pressed', String(player.followed >= 0));
   }
 
+  timeAt(event) {
+    const box = byId('marks').getBoundingClientRect(), share = (event.clientX - box.left - kInset) / (box.width - 2 * kInset);
+    return this.player.from + Math.min(1, Math.max(0, share)) * (this.player.until - this.player.from);
+  }
+
   // Marks along the slider: a line for an event, a long one for a collision, a wedge for the first
   // difference and for an early end.
   drawMarks() {
     const canvas = byId('marks'), width = canvas.clientWidth, height = canvas.clientHeight, ratio = window.devicePixelRatio || 1;
     canvas.width = width * ratio;
     canvas.height = height * ratio;
-    const g = canvas.getContext('2d'), inset = 8;   // half of the scrubber's thumb
+    const g = canvas.getContext('2d'), { from, until } = this.player;
     g.scale(ratio, ratio);
-    const x = t => inset + t / this.player.end * (width - 2 * inset), rows = this.player.runs.length;
+    const x = t => kInset + (t - from) / (until - from) * (width - 2 * kInset), rows = this.player.runs.length;
     this.player.runs.forEach((run, r) => {
       const top = r * height / rows, size = height / rows - 1;
-      for (let i = 0; i < run.events.count; ++i) {
+      for (let i = run.eventFrom(from); i < run.events.count && run.events.time[i] <= until; ++i) {
         const isCollision = run.events.kind[i] === kCollision, part = isCollision ? 1 : 0.5;
         g.fillStyle = isCollision ? '#c14d00' : '#5b6875';
         g.globalAlpha = run.events.count > 400 ? 0.35 : 0.9;
@@ -214,7 +276,7 @@ class Controls {
     });
     g.globalAlpha = 1;
     for (const [at, color] of [[this.player.about.stopped, '#8a5a00'], [this.player.about.difference, '#a82c00']]) {
-      if (!at) continue;
+      if (!at || at.time < from || at.time > until) continue;
       g.fillStyle = color;
       g.beginPath();
       g.moveTo(x(at.time), height);

@@ -54,36 +54,75 @@ function stylesOf(curves) {
   return curves.map((curve, i) => (isOfTwo ? [kStyles[quantities.indexOf(curve.link) % kStyles.length][0], kRunDashes[curve.run]] : kStyles[i % kStyles.length]));
 }
 
+// How much more time is shown after a turn of the wheel.
+function zoomOf(event) { return Math.exp(Math.max(-0.5, Math.min(0.5, 0.004 * event.deltaY))); }
+
 class TimePlot {
-  // @param plot {title, axis, unit, isLog, curves: [{name, times, values}]}; seek(t) is called on a click or drag
-  constructor(plot, end, seek) {
+  // @param plot {title, axis, unit, isLog, curves: [{name, times, values, frameAt}]}; seek(t) is called on a click or
+  //   drag, zoom(factor, t) on the wheel with the control key (and by two fingers on a touch pad), zoom(Infinity) on a double click
+  constructor(plot, end, seek, zoom = () => {}) {
     this.plot = plot;
     this.end = end > 0 ? end : 1;
+    this.from = 0;
+    this.until = this.end;
+    this.hidden = new Set();   // places in plot.curves
     this.box = html('figure', { className: 'curve' });
     this.readouts = [];
-    this.find();
+    this.styles = stylesOf(plot.curves);
     this.svg = element('svg', { viewBox: `0 0 ${kFrame.width} ${kFrame.height}`, class: 'plot', role: 'img', 'aria-label': plot.title });
-    this.drawFrame();
-    const styles = stylesOf(plot.curves);
-    plot.curves.forEach((curve, i) => this.drawCurve(curve, styles[i]));
-    // The cursor is an element above the drawing: moving it repaints nothing.
+    // The cursors are elements above the drawing: moving them repaints nothing.
     this.cursor = html('div', { className: 'cursor' });
-    const holder = html('div', { className: 'holder' }, this.svg, this.cursor);
+    this.hover = html('div', { className: 'cursor hover', hidden: true });
+    this.tip = html('div', { className: 'tip', hidden: true });
+    const holder = html('div', { className: 'holder' }, this.svg, this.cursor, this.hover, this.tip);
     const legend = html('figcaption', { className: 'legend' });
-    plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, styles[i])));
+    plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, i)));
     this.box.append(html('h3', {}, plot.title), holder, legend);
-    const toTime = event => {
-      const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * kFrame.width;
-      seek(Math.min(1, Math.max(0, (x - kFrame.left) / (kFrame.right - kFrame.left))) * this.end);
-    };
-    this.svg.addEventListener('pointerdown', event => { this.svg.setPointerCapture(event.pointerId); toTime(event); });
-    this.svg.addEventListener('pointermove', event => { if (event.buttons) toTime(event); });
+    this.draw();
+    this.svg.addEventListener('pointerdown', event => { this.svg.setPointerCapture(event.pointerId); seek(this.timeAt(event)); });
+    this.svg.addEventListener('pointermove', event => { if (event.buttons) seek(this.timeAt(event)); this.tell(event); });
+    for (const name of ['pointerleave', 'pointercancel']) this.svg.addEventListener(name, () => { this.hover.hidden = this.tip.hidden = true; });
+    this.svg.addEventListener('wheel', event => { if (!event.ctrlKey) return; event.preventDefault(); zoom(zoomOf(event), this.timeAt(event)); }, { passive: false });
+    this.svg.addEventListener('dblclick', () => zoom(Infinity));
+  }
+
+  timeAt(event) {
+    const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * kFrame.width;
+    return this.from + Math.min(1, Math.max(0, (x - kFrame.left) / (kFrame.right - kFrame.left))) * (this.until - this.from);
+  }
+
+  // The part of time that is drawn.
+  setWindow(from, until) {
+    if (from === this.from && until === this.until) return;
+    [this.from, this.until] = [from, until];
+    this.draw();
+  }
+
+  draw() {
+    this.svg.textContent = '';
+    this.find();
+    this.drawFrame();
+    const { left, right, top, bottom } = kFrame, size = { x: left, y: top, width: right - left, height: bottom - top };
+    this.curves = element('svg', { ...size, viewBox: `${left} ${top} ${size.width} ${size.height}` });   // cuts off what is outside
+    this.plot.curves.forEach((curve, i) => { if (!this.hidden.has(i)) this.drawCurve(curve, this.styles[i]); });
+    this.svg.append(this.curves);
+  }
+
+  // Of a curve the first and last place that the drawn part of time needs.
+  placesOf(curve) {
+    return this.from <= 0 && this.until >= this.end ? [0, curve.values.length - 1] : [curve.frameAt(this.from), Math.min(curve.values.length - 1, curve.frameAt(this.until) + 1)];
   }
 
   find() {
     let low = Infinity, high = -Infinity;
-    for (const { values } of this.plot.curves)
-      for (const v of values) if (Number.isFinite(v) && (!this.plot.isLog || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
+    this.plot.curves.forEach((curve, i) => {
+      if (this.hidden.has(i)) return;
+      const [first, last] = this.placesOf(curve);
+      for (let k = first; k <= last; ++k) {
+        const v = curve.values[k];
+        if (Number.isFinite(v) && (!this.plot.isLog || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
+      }
+    });
     this.isEmpty = !(low <= high);
     if (this.isEmpty) [low, high] = this.plot.isLog ? [0.1, 1] : [0, 1];
     if (this.plot.isLog) {
@@ -96,7 +135,7 @@ class TimePlot {
     }
   }
 
-  x(t) { return kFrame.left + t / this.end * (kFrame.right - kFrame.left); }
+  x(t) { return kFrame.left + (t - this.from) / (this.until - this.from) * (kFrame.right - kFrame.left); }
 
   y(v) {
     const part = this.plot.isLog ? Math.log(Math.max(v, this.low) / this.low) / Math.log(this.high / this.low) : (v - this.low) / (this.high - this.low);
@@ -111,9 +150,9 @@ class TimePlot {
       this.svg.append(element('line', { x1: left, x2: right, y1: y, y2: y, class: 'grid' }),
         element('text', { x: left - 6, y: y + 4, 'text-anchor': 'end' }, isTiny ? '0' : this.plot.isLog ? (v < 1e-3 || v > 9999 ? `1e${Math.round(Math.log10(v))}` : short(v)) : short(v, 6)));
     }
-    for (const t of ticksOf(0, this.end, 6)) {
+    for (const t of ticksOf(this.from, this.until, 6)) {
       this.svg.append(element('line', { x1: this.x(t), x2: this.x(t), y1: top, y2: bottom, class: 'grid' }),
-        element('text', { x: this.x(t), y: bottom + 15, 'text-anchor': 'middle' }, short(t, 6)));
+        element('text', { x: this.x(t), y: bottom + 15, 'text-anchor': 'middle' }, short(t, 7)));
     }
     this.svg.append(element('rect', { x: left, y: top, width: right - left, height: bottom - top, fill: 'none', stroke: '#5b6875' }),
       element('text', { x: (left + right) / 2, y: bottom + 31, 'text-anchor': 'middle' }, 'time [s]'),
@@ -123,7 +162,7 @@ class TimePlot {
 
   // Of many points only the minimum and maximum in each column of the screen.
   drawCurve(curve, [colour, dashes]) {
-    const n = curve.values.length, parts = Math.min(n, 500);
+    const [first, last] = this.placesOf(curve), n = last - first + 1, parts = Math.min(n, 500);
     let path = '', down = false;
     const to = i => {
       const v = curve.values[i];
@@ -132,7 +171,7 @@ class TimePlot {
       down = true;
     };
     for (let part = 0; part < parts; ++part) {
-      const from = Math.floor(part * n / parts), until = Math.floor((part + 1) * n / parts);
+      const from = first + Math.floor(part * n / parts), until = first + Math.floor((part + 1) * n / parts);
       let least = from, largest = from;
       for (let i = from; i < until; ++i) {
         if (curve.values[i] < curve.values[least]) least = i;
@@ -141,19 +180,47 @@ class TimePlot {
       to(Math.min(least, largest));
       if (least !== largest) to(Math.max(least, largest));
     }
-    this.svg.append(element('path', { d: path, fill: 'none', stroke: colour, 'stroke-width': 1.7, 'stroke-linejoin': 'round', 'stroke-dasharray': dashes }));
+    this.curves.append(element('path', { d: path, fill: 'none', stroke: colour, 'stroke-width': 1.7, 'stroke-linejoin': 'round', 'stroke-dasharray': dashes }));
   }
 
-  legendEntry(curve, [colour, dashes]) {
-    const key = element('svg', { viewBox: '0 0 28 8', class: 'key', 'aria-hidden': 'true' });
+  // A button: a click hides the curve and shows it again.
+  legendEntry(curve, i) {
+    const [colour, dashes] = this.styles[i], key = element('svg', { viewBox: '0 0 28 8', class: 'key', 'aria-hidden': 'true' });
     key.append(element('line', { x1: 0, x2: 28, y1: 4, y2: 4, stroke: colour, 'stroke-width': 2.4, 'stroke-dasharray': dashes }));
-    const value = html('b', {}, '');
+    const value = html('b', {}, ''), entry = html('button', { className: 'entry', title: 'Hide or show this curve' }, key, ` ${curve.name} `, value);
+    entry.setAttribute('role', 'checkbox');
+    entry.setAttribute('aria-checked', 'true');
+    entry.addEventListener('click', () => {
+      this.hidden.has(i) ? this.hidden.delete(i) : this.hidden.add(i);
+      entry.setAttribute('aria-checked', String(!this.hidden.has(i)));
+      this.draw();
+    });
     this.readouts.push(value);
-    return html('span', {}, key, ` ${curve.name} `, value);
+    return entry;
+  }
+
+  // The values under the pointer, at the frame nearest to it.
+  tell(event) {
+    const t = this.timeAt(event), lines = [];
+    let at = t;
+    this.plot.curves.forEach((curve, i) => {
+      if (this.hidden.has(i)) return;
+      const k = curve.frameAt(t), n = Math.min(k + 1, curve.times.length - 1), near = t - curve.times[k] <= curve.times[n] - t ? k : n;
+      at = curve.times[near];
+      lines.push(html('div', {}, `${curve.name}: `, html('b', {}, `${short(curve.values[near], 6)} ${this.plot.unit}`)));
+    });
+    this.hover.hidden = this.tip.hidden = lines.length === 0;
+    if (lines.length === 0) return;
+    const share = this.x(at) / kFrame.width, isRight = share > 0.55;
+    this.hover.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
+    this.tip.replaceChildren(html('div', {}, `${short(at, 7)} s`), ...lines.slice(0, 8));
+    this.tip.style.left = isRight ? '' : `calc(${(100 * share).toFixed(2)}% + .5rem)`;
+    this.tip.style.right = isRight ? `calc(${(100 * (1 - share)).toFixed(2)}% + .5rem)` : '';
   }
 
   // @param isFull  updates the numbers too, not only the cursor
   follow(t, isFull) {
+    this.cursor.hidden = t < this.from - 1e-9 || t > this.until + 1e-9;
     this.cursor.style.transform = `translateX(${(100 * this.x(t) / kFrame.width).toFixed(3)}%)`;
     if (!isFull) return;
     this.plot.curves.forEach((curve, i) => {

@@ -1,6 +1,6 @@
 // One run in three dimensions, with the camera, light and colours of the program's pictures.
 
-const kChosen = 0xffb000, kGhostColor = 0x2a4a6a, kGhost = 0.38;
+const kChosen = 0xffb000, kGhostColor = 0x2a4a6a, kGhost = 0.38, kXray = 0.28;
 let kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd;   // a page that follows the dark scheme has others
 
 class Stage {
@@ -255,6 +255,22 @@ class Stage {
       if (isGhost) material.color.lerp(new THREE.Color(kGhostColor), 0.6);
       material.needsUpdate = true;
     }
+    this.dressed = undefined;
+  }
+
+  // Bodies that one sees through, or the edges of their triangles, where asked for.
+  dress({ xray = false, wires = false }) {
+    const words = `${xray} ${wires}`;
+    if (this.dressed === words) return;
+    const isFirst = this.dressed === undefined && !xray && !wires;
+    this.dressed = words;
+    if (isFirst) return;
+    for (const group of this.groups) {
+      const material = group.mesh.material, solid = this.isGhost ? kGhost * (group.glass || 1) : group.glass || 1;
+      Object.assign(material, { wireframe: wires, transparent: xray || solid < 1, opacity: xray ? Math.min(solid, kXray) : solid, depthWrite: !xray && solid === 1 });
+      group.mesh.castShadow = !xray && !wires && !group.glass;
+      material.needsUpdate = true;
+    }
   }
 
   // Levels of detail of balls, by their size in the picture. @param pixels  per metre at the
@@ -266,6 +282,7 @@ class Stage {
   // Updates everything to time t. @param speed  of playing, for the duration of a flash
   show(t, speed, shown) {
     const at = this.run.frameAt(t), matrix = new THREE.Matrix4();
+    this.dress(shown);
     for (const group of this.groups) {
       group.members.forEach((i, slot) => {
         const seen = this.run.pose(i, at, this.place, this.turn);
