@@ -76,7 +76,7 @@ Shown turning(const Vector3d& found, const Body& body, const Vector3d& torque) {
   x.found = numbers(found);
   x.variants = {
       {0, "tau in the world frame", numbers(Vector3d(r * (inverse * (torque - gyroscopic))))},
-      {2, "nothing here", numbers(Vector3d(r * (inverse * tau)))},
+      {2, "nothing", numbers(Vector3d(r * (inverse * tau)))},
       {2, "the other sign", numbers(Vector3d(r * (inverse * (tau + gyroscopic))))},
       {3, "I^-1 of the body with tau of the world, and nothing from w x (I w)",
        numbers(Vector3d(inverse * torque))},

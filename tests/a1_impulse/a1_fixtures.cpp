@@ -65,7 +65,7 @@ bool asked_first(bool came, const std::string& scene, const std::string& expecte
                  const std::string& n) {
   expect_true(
       came, expected, "nothing of the kind",
-      {.scene = "asked first, because this test's own answer is \"nothing\": " + scene,
+      {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
        .slip = "the function gives nothing (0, NaN, a miss, its own argument) whatever it is asked",
        .handout = equation(n)});
   return came;

@@ -288,7 +288,9 @@ void expect_impact(const RootResult& found, const Approach& approach, const Look
           "the wrong side of the bracket is returned: the one where the gap has closed already"));
   expect_near(found.residual, gap, 0.0, "m", because("residual is not g at the time returned"));
   expect_near(found.evaluations, looks.calls, 0.0, "calls of the gap",
-              because("evaluations does not count every call of g, the two ends included"));
+              because("evaluations does not count every call of g, the two ends included: the test "
+                      "counted " +
+                      std::to_string(looks.calls)));
 }
 
 void expect_no_impact(const RootResult& found, const Looks& looks, const std::string& scene,
@@ -417,7 +419,7 @@ bool asked_first(bool came, const std::string& scene, const std::string& expecte
                  int equation_number) {
   expect_true(
       came, expected, "nothing of the kind",
-      {.scene = "asked first, because this test's own answer is \"nothing\": " + scene,
+      {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
        .slip =
            "the function gives nothing (0, NaN, no impact, its own argument) whatever it is asked",
        .handout = equation(equation_number)});

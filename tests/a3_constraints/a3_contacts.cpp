@@ -78,7 +78,8 @@ bool something_is_held() {
   const VectorXd f = forces_of(MatrixXd::Constant(1, 1, 0.5), vector({-1}));
   expect_true(
       f.allFinite() && f[0] > 0, "a force", "none",
-      {.scene = "asked first, because this test's own answer is \"nothing\": a ball on the floor",
+      {.scene =
+           "this test's own answer is \"nothing\", so this is asked before it: a ball on the floor",
        .slip = "the function gives nothing (0 or NaN) whatever it is asked",
        .handout = equation(9)});
   return f.allFinite() && f[0] > 0;

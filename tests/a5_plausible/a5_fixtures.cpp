@@ -100,10 +100,11 @@ double chi_square(const std::vector<int>& found, const std::vector<double>& expe
 }
 
 bool gives_numbers(double found, const std::string& scene, int equation_number) {
-  expect_true(std::isfinite(found), "a number", show(found),
-              {.scene = "asked first, because this test's own answer is \"nothing\": " + scene,
-               .slip = "the function gives no number (NaN or infinity) whatever it is asked",
-               .handout = equation(equation_number)});
+  expect_true(
+      std::isfinite(found), "a number", show(found),
+      {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
+       .slip = "the function gives no number (NaN or infinity) whatever it is asked",
+       .handout = equation(equation_number)});
   return std::isfinite(found);
 }
 

@@ -139,7 +139,21 @@ TEST(Causes, EveryTestThatIsNotRightHasOneAndTheCostliestIsFirst) {
   EXPECT_EQ(causes[1].says, "the (1 + e) is missing");
   EXPECT_EQ(points_lost(causes[1], tests), 10.0);
   EXPECT_EQ(causes[1].places, std::vector<std::string>{"a1.cpp:3"});
+  EXPECT_EQ(causes[1].code, std::vector<std::string>{"     3  double collision_impulse(int a) {\n"
+                                                     "     4    return f();\n     5  }\n"});
   EXPECT_EQ(causes[2].kind, Cause::Kind::kNotWritten);
+}
+
+TEST(Causes, TheLineOfACrashIsMarked) {
+  std::string source;
+  for (int i = 1; i <= 9; ++i) source += "line " + std::to_string(i) + "\n";
+  EXPECT_EQ(lines_around(source, 2),
+            "     1  line 1\n->   2  line 2\n     3  line 3\n     4  line 4\n     5  line 5\n");
+  EXPECT_EQ(lines_around(source, 9).substr(0, 15), "     6  line 6\n");
+  // a bracket in a comment ends nothing, and a function without an end ends with the file
+  EXPECT_EQ(lines_of_function("void f() {  // }\n  g();\n}\nint x;\n", 1),
+            "     1  void f() {  // }\n     2    g();\n     3  }\n");
+  EXPECT_EQ(lines_of_function("void f() {\n", 1), "     1  void f() {\n");
 }
 
 TEST(Causes, ADefinitionIsNeitherACallNorADeclarationNorAComment) {

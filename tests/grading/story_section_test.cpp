@@ -14,7 +14,7 @@ constexpr const char* kStory = R"(
   read:     handouts/a1_impulse.md#eq-a1-9
   x-ray:    j = -(1 + e) u_n / k   (A1.9)
             r_a                       (1, 0, -1) m
-            k_a                       1 1/kg   <- what was found comes out with: I^-1 of the body
+            k_a                       1 1/kg   <- what was found comes out with I^-1 of the body
             r_b                       (6, 3, 0) m
             n                         (0, 0, 1)
             j                         4 N s expected, 6 N s found)";
@@ -28,7 +28,7 @@ TEST(Story, IsTakenApart) {
   EXPECT_EQ(parts.equation, "j = -(1 + e) u_n / k   (A1.9)");
   ASSERT_EQ(parts.terms.size(), 5u);
   EXPECT_EQ(parts.terms[1].value, "1 1/kg");
-  EXPECT_EQ(parts.terms[1].mark, "what was found comes out with: I^-1 of the body");
+  EXPECT_EQ(parts.terms[1].mark, "what was found comes out with I^-1 of the body");
   EXPECT_EQ(parts.terms[4].value, "4 N s expected, 6 N s found");
 }
 

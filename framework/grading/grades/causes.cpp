@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -97,6 +99,19 @@ void add_rest(const std::vector<ScoredTest>& tests, std::vector<Cause>& causes) 
   }
 }
 
+constexpr int kMostLines = 40;   // of a function that is shown
+constexpr int kLinesBeside = 3;  // before and after the line of a crash
+
+// "   12  text"; the marked line has an arrow.
+std::string numbered_lines(const std::string& source, int first, int last, int marked) {
+  std::istringstream in(source);
+  std::string text, line;
+  for (int number = 1; std::getline(in, line) && number <= last; ++number)
+    if (number >= first)
+      text += fmt::format("{}{:>4}  {}\n", number == marked ? "->" : "  ", number, line);
+  return text;
+}
+
 // "a1_impulse.cpp:26" of a crash in the function, as its story says; empty: none does.
 std::string place_of_crash(const Cause& cause, const std::string& function,
                            const std::vector<ScoredTest>& tests) {
@@ -135,6 +150,27 @@ int line_of_definition(const std::string& source, const std::string& function) {
   return 0;
 }
 
+std::string lines_of_function(const std::string& source, int line) {
+  const std::string code = code_of(source);
+  std::size_t at = 0;
+  for (int i = 1; i < line && at != std::string::npos; ++i) at = code.find('\n', at) + 1;
+  at = code.find('{', at);
+  int depth = 0, last = line;
+  for (; at < code.size(); ++at) {
+    if (code[at] == '{') ++depth;
+    if (code[at] == '}' && --depth == 0) break;
+  }
+  if (at < code.size())
+    last =
+        1 + static_cast<int>(std::count(code.begin(), code.begin() + static_cast<long>(at), '\n'));
+  return numbered_lines(source, line, std::min(last, line + kMostLines - 1), 0) +
+         (last >= line + kMostLines ? "       ...\n" : "");
+}
+
+std::string lines_around(const std::string& source, int line) {
+  return numbered_lines(source, line - kLinesBeside, line + kLinesBeside, line);
+}
+
 double points_lost(const Cause& cause, const std::vector<ScoredTest>& tests) {
   double lost = 0.0;
   for (const std::string& name : cause.tests)
@@ -162,6 +198,12 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
       cause.places.push_back(!crash.empty() ? crash
                              : line > 0     ? fmt::format("{}:{}", file, line)
                                             : "");
+      const int crashed =
+          crash.starts_with(file + ":") ? std::atoi(crash.c_str() + file.size() + 1) : 0;
+      cause.code.push_back(cause.kind == Cause::Kind::kNotWritten ? ""
+                           : crashed > 0                          ? lines_around(source, crashed)
+                           : line > 0                             ? lines_of_function(source, line)
+                                                                  : "");
     }
   std::stable_sort(causes.begin(), causes.end(), [&](const Cause& a, const Cause& b) {
     return points_lost(a, tests) > points_lost(b, tests);

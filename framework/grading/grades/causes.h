@@ -23,4 +23,11 @@ double points_lost(const Cause& cause, const std::vector<ScoredTest>& tests);
 /// The line, from 1, where a function is defined; 0 where it is not found.
 int line_of_definition(const std::string& source, const std::string& function);
 
+/// A function's lines with their numbers, from the line where it is defined to its last bracket, at
+/// most forty.
+std::string lines_of_function(const std::string& source, int line);
+
+/// Some lines before and after this one, which has an arrow, with their numbers.
+std::string lines_around(const std::string& source, int line);
+
 }  // namespace tumble::grading

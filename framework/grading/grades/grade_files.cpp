@@ -133,6 +133,7 @@ Json json_of_causes(const std::vector<Cause>& causes) {
                     {"or_else", c.or_else},
                     {"functions", c.functions},
                     {"places", c.places},
+                    {"code", c.code},
                     {"tests", c.tests},
                     {"same_numbers", c.same_numbers}});
   return list;
@@ -141,8 +142,10 @@ Json json_of_causes(const std::vector<Cause>& causes) {
 std::vector<Cause> causes_in(const Json& json) {
   std::vector<Cause> causes;
   for (const Json& c : json) {
-    Cause cause{Cause::Kind::kUnknown, c.at("says"),  c.at("or_else"),     c.at("functions"),
-                c.at("places"),        c.at("tests"), c.at("same_numbers")};
+    Cause cause{Cause::Kind::kUnknown, c.at("says"),
+                c.at("or_else"),       c.at("functions"),
+                c.at("places"),        c.value("code", std::vector<std::string>()),
+                c.at("tests"),         c.at("same_numbers")};
     for (std::size_t i = 0; i < kCauseKinds.size(); ++i)
       if (c.at("kind") == kCauseKinds[i]) cause.kind = static_cast<Cause::Kind>(i);
     causes.push_back(std::move(cause));

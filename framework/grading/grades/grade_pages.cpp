@@ -54,7 +54,7 @@ void add_tiles(report::Page& page, const Grade& grade) {
 
 report::Table table_of_tests(const Grade& grade, const std::vector<const ScoredTest*>& tests) {
   report::Table table;
-  table.columns = {{"Test"}, {"Verdict"}, {"Points", true}, {"of", true}, {"Visibility"}};
+  table.columns = {{"Test"}, {"Verdict"}, {"Points", true}, {"of", true}, {""}};
   for (const ScoredTest* test : tests) {
     const Verdict verdict = test->result.verdict;
     const bool is_judged = grade.state == GradeState::kJudged;
@@ -271,8 +271,9 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   if (!view.is_alone) links.push_back({"All submissions", "../index.html"});
   if (!grade.causes.empty()) links.push_back({"Mend first", "#mend-first"});
   if (!view.bench.own.empty()) links.push_back({"Try the code", "#try"});
-  links.insert(links.end(), {{"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
+  links.insert(links.end(), {{"Tests", "#tests"}, {"Stories", "#stories"}});
   if (!grade.cost.scene.empty()) links.push_back({"What accuracy costs", "#cost"});
+  links.push_back({"Scenes", "#scenes"});
   if (!view.handout.empty()) links.push_back({"Handout", view.handout});
   page.links(links);
   add_tiles(page, grade);

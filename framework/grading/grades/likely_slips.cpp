@@ -18,7 +18,9 @@ constexpr double kSharedNumber = 0.25;  // of a number that every slip gives
 constexpr double kContradiction = 1.0;
 constexpr double kOtherNumber = 0.1;     // against it: another mistake may be in the same test
 constexpr double kLeastByNumbers = 0.4;  // evidence: below it the slip is not offered
-constexpr double kLeastByTests = 2.0;    // tests, where no number agrees: one alone proves nothing
+// A function in which this part of the explained tests end, of those in the first one, is named.
+constexpr std::size_t kLeastShare = 4;
+constexpr double kLeastByTests = 2.0;  // tests, where no number agrees: one alone proves nothing
 constexpr double kSameEvidence = 1e-9;
 constexpr std::size_t kMostEquals = 2;
 
@@ -98,7 +100,8 @@ class Matching {
     }
     std::stable_sort(functions.begin(), functions.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (const auto& [count, function] : functions) likely.functions.push_back(function);
+    for (const auto& [count, function] : functions)
+      if (kLeastShare * count >= functions.front().first) likely.functions.push_back(function);
     return likely;
   }
 

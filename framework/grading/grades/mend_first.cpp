@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -27,26 +28,40 @@ std::size_t failing(const Grade& grade) {
 std::string evidence_of(const Cause& cause, std::size_t failing) {
   const std::size_t n = cause.tests.size();
   switch (cause.kind) {
-    case Cause::Kind::kSlip:
-      if (cause.same_numbers == 0)
-        return fmt::format(
-            "Perhaps: it would explain {} of the {} that fail, though with other numbers.", n,
-            counted(failing, "test"));
-      return fmt::format(
-          "{}: it explains {} of the {} that {}; in {} of them this slip gives the same answer.",
-          2 * cause.same_numbers >= n ? "Likely" : "Perhaps", n, counted(failing, "test"),
-          failing == 1 ? "fails" : "fail",
-          cause.same_numbers == n ? "all" : std::to_string(cause.same_numbers));
+    case Cause::Kind::kSlip: {
+      const std::string fails =
+          fmt::format("A file with this mistake fails {} of the {} that this file fails", n,
+                      counted(failing, "test"));
+      if (cause.same_numbers == 0) return fails + ", though with other answers.";
+      return fmt::format("{}, and {} the same wrong answer as this file.", fails,
+                         n == 1 ? "gives there"
+                         : cause.same_numbers == n
+                             ? "gives in all of them"
+                             : fmt::format("gives in {} of them", cause.same_numbers));
+    }
     case Cause::Kind::kNotWritten:
       return fmt::format("{} not attempted for it.",
                          n == 1 ? "One test is" : counted(n, "test") + " are");
     case Cause::Kind::kUnknown:
-      return fmt::format("{} of the {} that {} called it last.", n, counted(failing, "test"),
-                         failing == 1 ? "fails" : "fail");
+      return fmt::format("In {} of the {} that {} it was the last function called.", n,
+                         counted(failing, "test"), failing == 1 ? "fails" : "fail");
     default:
       return fmt::format("{} of the {} that {} {} in this way.", n, counted(failing, "test"),
                          failing == 1 ? "fails" : "fail", n == 1 ? "ends" : "end");
   }
+}
+
+// "Likely mistake in collision_impulse: e where (1 + e) belongs": whether the words are of the
+// mistake or of its remedy must be plain.
+std::string title_of(const Cause& cause) {
+  if (cause.kind != Cause::Kind::kSlip) return cause.says;
+  const bool is_likely = cause.same_numbers > 0 && 2 * cause.same_numbers >= cause.tests.size();
+  return fmt::format("{} mistake{}: {}", is_likely ? "Likely" : "Possible",
+                     cause.functions.empty() ? "" : " in " + cause.functions.front(), cause.says);
+}
+
+std::string points_in_words(double points) {
+  return points_text(points) + (points == 1.0 ? " point" : " points");
 }
 
 std::string places_of(const Cause& cause) {
@@ -76,35 +91,35 @@ const ScoredTest* test_to_show(const Cause& cause, const Grade& grade) {
   return best;
 }
 
-// The scene to look at: the submission's run goes wrong in it, and calls a function of the cause.
-const SceneMedia* scene_to_show(const Cause& cause, const Grade& grade) {
-  const SceneMedia* best = nullptr;
-  bool is_best_wrong = false;
+// The scene to look at: the submission's run goes wrong in it, and calls a function of the cause;
+// no other cause has shown it.
+const SceneMedia* scene_to_show(const Cause& cause, const Grade& grade,
+                                std::set<std::string>& seen) {
   for (const SceneMedia& scene : grade.media) {
     const bool is_its = std::any_of(
         cause.functions.begin(), cause.functions.end(), [&](const std::string& function) {
           return std::find(scene.functions.begin(), scene.functions.end(), function) !=
                  scene.functions.end();
         });
-    if (!is_its || scene.picture.empty()) continue;
+    if (!is_its || scene.picture.empty() || seen.contains(scene.picture)) continue;
     const bool is_wrong =
         !scene.story.empty() ||
         std::any_of(scene.checks.begin(), scene.checks.end(),
                     [](const engines::CheckResult& check) { return !check.passed; });
-    if (best != nullptr && (is_best_wrong || !is_wrong)) continue;
-    best = &scene;
-    is_best_wrong = is_wrong;
+    if (!is_wrong) continue;
+    seen.insert(scene.picture);
+    return &scene;
   }
-  return best;
+  return nullptr;
 }
 
 void add_cause(report::Page& page, const Cause& cause, std::size_t number, const Grade& grade,
-               const PageView& view) {
+               const PageView& view, std::set<std::string>& seen) {
   page.begin(report::Part::kCard, "", fmt::format("cause-{}", number));
-  page.heading(fmt::format("{}. {} ({})", number, plain_name(cause.says),
-                           points_text(points_lost(cause, grade.tests)) + " points"),
+  page.heading(fmt::format("{}. {} ({})", number, plain_name(title_of(cause)),
+                           points_in_words(points_lost(cause, grade.tests))),
                3);
-  if (const SceneMedia* scene = scene_to_show(cause, grade))
+  if (const SceneMedia* scene = scene_to_show(cause, grade, seen))
     page.figures({{std::filesystem::path("media") / scene->picture,
                    {},
                    scene->title + ": submission left, reference right",
@@ -114,6 +129,14 @@ void add_cause(report::Page& page, const Cause& cause, std::size_t number, const
     page.paragraph(fmt::format("As well possible: {}.", fmt::join(cause.or_else, "; or ")));
   if (const std::string places = places_of(cause); !places.empty())
     page.paragraph("Look at " + plain_name(places) + ".");
+  for (std::size_t i = 0; i < cause.code.size(); ++i) {
+    if (cause.code[i].empty()) continue;
+    const bool is_short = cause.kind == Cause::Kind::kCrash;  // the lines around it
+    if (!is_short)
+      page.begin(report::Part::kFold, plain_name(cause.functions[i]) + " of this file");
+    page.preformatted(plain_text(cause.code[i]));
+    if (!is_short) page.end();
+  }
   const ScoredTest* shown = test_to_show(cause, grade);
   if (shown != nullptr && !shown->result.story.empty() && cause.kind != Cause::Kind::kNotWritten) {
     page.paragraph("For example, " + shown->item.title + ":", Look::kMuted);
@@ -151,8 +174,9 @@ void add_mend_first(report::Page& page, const Grade& grade, const PageView& view
       "comparing the tests that fail, and the answers that came, with known slips: read it as a "
       "hint, not as a verdict.",
       Look::kMuted);
+  std::set<std::string> seen;  // pictures
   for (std::size_t i = 0; i < grade.causes.size(); ++i)
-    add_cause(page, grade.causes[i], i + 1, grade, view);
+    add_cause(page, grade.causes[i], i + 1, grade, view, seen);
   page.end();
 }
 

@@ -67,8 +67,24 @@ std::optional<Vector3d> vector_in(const std::string& value) {
   return v;
 }
 
-// The handout's places in a text, as links to the page of the handout.
-std::vector<report::Cell> handout_links(const std::string& text, const PageView& view) {
+// "handouts/a1_impulse.md#eq-a1-9" as a reader of a page calls it.
+std::string name_of_place(const std::string& anchor) {
+  const auto after = [&](const std::string& begin) {
+    return anchor.starts_with(begin) ? anchor.substr(begin.size()) : "";
+  };
+  if (std::string number = after("eq-"); !number.empty()) {
+    std::replace(number.begin(), number.end(), '-', '.');
+    number.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(number.front())));
+    return "equation (" + number + ") of the handout";
+  }
+  if (const std::string hint = after("hint-"); !hint.empty())
+    return "the hint '" + hint + "' of the handout";
+  return anchor.empty() ? "the handout" : "the handout, '" + anchor + "'";
+}
+
+// The handout's places in a text, as links to the page of the handout; in the text they are called
+// as a reader would.
+std::vector<report::Cell> handout_links(std::string& text, const PageView& view) {
   std::vector<report::Cell> links;
   constexpr std::string_view kFolder = "handouts/";
   for (std::size_t at = text.find(kFolder); at != text.npos && !view.handout.empty();
@@ -81,8 +97,11 @@ std::vector<report::Cell> handout_links(const std::string& text, const PageView&
     const std::string named = text.substr(at, end - at);
     const std::size_t hash = named.find('#');
     const std::string stem = std::filesystem::path(named.substr(0, hash)).stem().string();
-    if (stem == view.handout_name)
-      links.push_back({named, view.handout + (hash == named.npos ? "" : named.substr(hash))});
+    if (stem != view.handout_name) continue;
+    const std::string anchor = hash == named.npos ? "" : named.substr(hash),
+                      said = name_of_place(anchor.empty() ? "" : anchor.substr(1));
+    links.push_back({said, view.handout + anchor});
+    text.replace(at, named.size(), said);
   }
   return links;
 }
@@ -148,9 +167,9 @@ std::optional<report::Arms> arms_of(const std::vector<StoryTerm>& terms) {
 }
 
 void add_story(report::Page& page, const std::string& story, const PageView& view) {
-  const std::string text = plain_text(story);
-  StoryParts parts = parts_of_story(text);
+  std::string text = plain_text(story);
   const std::vector<report::Cell> links = handout_links(text, view);
+  StoryParts parts = parts_of_story(text);
   if (parts.fields.empty() && parts.equation.empty()) return page.preformatted(parts.before, links);
   for (report::Field& field : parts.fields) field.links = links;
   page.begin(report::Part::kStory);

@@ -65,7 +65,7 @@ std::string xray_in_words(const Xray& xray, bool is_answered) {
       is_marked = true;
     }
     if (variant != xray.variants.end() && variant->term == i)
-      text += "   <- what was found comes out with: " + variant->says;
+      text += "   <- what was found comes out with " + variant->says + " in its place";
   }
   return text + line_of(xray.answer, shown(xray.expected, xray.unit) + " expected, " +
                                          (is_answered ? shown(xray.found, xray.unit) + " found"
