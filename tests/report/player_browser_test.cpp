@@ -182,6 +182,85 @@ TEST_F(PlayerInBrowser, KeysPlayStepAndJump) {
             "0.0000 true 0.5");  // plays from the start
 }
 
+// The part of the time that slider and curves show, a curve that is hidden, values under the
+// pointer, views, a body found by its name.
+TEST_F(PlayerInBrowser, AReaderLooksCloser) {
+  const std::string script = R"(
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const { player, picture } = tumble, said = [], byId = id => document.getElementById(id);
+      player.zoom(0.25, 0.4);
+      said.push(player.from.toFixed(3), player.until.toFixed(3), Number(byId('scrub').min).toFixed(3));
+      player.goTo(0.7);
+      said.push(player.until >= 0.7 && player.until - player.from < 0.2001);
+      player.zoom(Infinity);
+      said.push(player.isZoomed);
+      const plot = document.querySelector('.curve'), count = () => plot.querySelectorAll('svg.plot path').length;
+      said.push(count());
+      plot.querySelector('.entry').click();
+      said.push(count());
+      const box = plot.querySelector('svg.plot').getBoundingClientRect();
+      plot.querySelector('svg.plot').dispatchEvent(new PointerEvent('pointermove',
+        { clientX: box.left + box.width * (66 + 404 / 2) / 480, clientY: box.top + 20 }));
+      said.push(plot.querySelector('.tip').textContent.split(' ')[0]);
+      picture.look('top');
+      said.push(picture.camera.position.clone().sub(picture.orbit.target).normalize().z.toFixed(3));
+      picture.look('right');
+      said.push(picture.camera.position.clone().sub(picture.orbit.target).normalize().x.toFixed(3));
+      player.shown.xray = true; picture.draw();
+      const material = picture.stages[0].groups[0].mesh.material;
+      said.push(material.opacity < 0.5 && !material.depthWrite);
+      player.shown.xray = false; player.shown.wires = true; picture.draw();
+      said.push(material.opacity === 1 && material.wireframe);
+      window.dispatchEvent(new KeyboardEvent('keydown', { key: '/' }));
+      const field = document.activeElement;
+      field.value = 'BO'; field.dispatchEvent(new Event('input'));
+      said.push(document.querySelector('.found').textContent);
+      field.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }));
+      said.push(player.about.bodies[player.chosen].name);
+      document.body.dataset.said = said.join(' '); };
+    wait();)";
+  const std::string elements = browser.elements(
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3");
+  EXPECT_EQ(body_data(elements, "error"), "");
+  EXPECT_EQ(body_data(elements, "said"),
+            "0.300 0.500 0.300 true "  // a quarter of 0.8 s, with 0.4 s where it was
+            "false "                   // all of it
+            "3 2 0.4 "                 // of three curves one is hidden; the middle of 0.8 s
+            "1.000 1.000 true true "   // from above, from the right; seen through; edges
+            "box box");
+}
+
+TEST_F(PlayerInBrowser, AReaderTakesTheCurvesTheMotionAndThePictureAlong) {
+  const std::string script = R"(
+    const wait = async () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const { player, picture, files } = tumble, said = [];
+      player.choose(0);
+      const lines = files.tableText(player).trim().split('\n'), head = lines[0].split(','), at = name => head.indexOf(name);
+      said.push(lines.length, Number(lines[31].split(',')[at('ball <1>: x [m]')]).toFixed(3), Number(lines[31].split(',')[at('energy: total [J]')]).toFixed(3));
+      const bytes = await files.gltfBytes(player, picture), words = new Uint32Array(bytes.slice(0, 16)), text = new TextDecoder().decode(bytes.slice(20, 20 + words[3]));
+      const file = JSON.parse(text), data = bytes.slice(28 + words[3]), numbers = i => { const a = file.accessors[i], v = file.bufferViews[a.bufferView];
+        return new Float32Array(data, (v.byteOffset || 0) + (a.byteOffset || 0), a.count * (a.type === 'SCALAR' ? 1 : a.type === 'VEC3' ? 3 : 4)); };
+      said.push(words[0].toString(16), words[2] === bytes.byteLength, file.nodes.filter(n => n.mesh !== undefined).length, file.animations[0].channels.length);
+      const ball = file.nodes.findIndex(n => n.name && n.name.startsWith('ball')), move = file.animations[0].channels.find(c => c.target.node === ball && c.target.path === 'translation');
+      const sampler = file.animations[0].samplers[move.sampler];
+      said.push(numbers(sampler.input)[30].toFixed(3), [0, 1, 2].map(i => numbers(sampler.output)[90 + i].toFixed(3)).join(' '));
+      const picked = await files.pictureBlob(picture);
+      said.push(picked.type, picked.size > 2000);
+      document.body.dataset.said = said.join(' '); };
+    wait().catch(error => { document.body.dataset.said = error.message; });)";
+  const std::string elements = browser.elements(
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3");
+  EXPECT_EQ(body_data(elements, "error"), "");
+  const Frame frame = thrown_run().frames[30];
+  const Vector3d place = frame.poses[0].com_world;
+  EXPECT_EQ(
+      body_data(elements, "said"),
+      // a line a frame and the head; glTF (the bytes "glTF"), three bodies, of which two move
+      fmt::format("50 {:.3f} {:.3f} 46546c67 true 3 4 {:.3f} {:.3f} {:.3f} {:.3f} image/png true",
+                  place.x(), frame.kinetic_energy + frame.potential_energy, frame.time, place.x(),
+                  place.y(), place.z()));
+}
+
 TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
   Trajectory wrong = thrown_run();
   wrong.events[0].impulse = 9.0;

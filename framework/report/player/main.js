@@ -325,7 +325,7 @@ async function main() {
   readHash(player, tabs);
   if (picture) picture.draw();
   document.body.dataset.ready = performance.now().toFixed(0);
-  window.tumble = { player, picture };   // for the browser's console
+  window.tumble = { player, picture, files: { tableText, gltfBytes, pictureBlob, videoBlob } };   // for the browser's console
   runLoop(player, picture);
 }
 

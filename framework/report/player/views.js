@@ -40,7 +40,9 @@ class Triad {
     g.textBaseline = 'middle';
     g.fillStyle = color;
     g.fillText(name, 32, 32);
-    return new THREE.CanvasTexture(canvas);
+    const texture = new THREE.CanvasTexture(canvas);
+    texture.encoding = THREE.sRGBEncoding;
+    return texture;
   }
 
   // In the lower left corner, as the picture's camera sees it.
