@@ -189,12 +189,14 @@ TEST_F(PlayerInBrowser, AReaderLooksCloser) {
     const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
       const { player, picture } = tumble, said = [], byId = id => document.getElementById(id);
       player.zoom(0.25, 0.4);
-      said.push(player.from.toFixed(3), player.until.toFixed(3), Number(byId('scrub').min).toFixed(3));
+      said.push(player.from.toFixed(3), player.until.toFixed(3),
+        Number(byId('scrub').min).toFixed(3));
       player.goTo(0.7);
       said.push(player.until >= 0.7 && player.until - player.from < 0.2001);
       player.zoom(Infinity);
       said.push(player.isZoomed);
-      const plot = document.querySelector('.curve'), count = () => plot.querySelectorAll('svg.plot path').length;
+      const plot = document.querySelector('.curve'),
+        count = () => plot.querySelectorAll('svg.plot path').length;
       said.push(count());
       plot.querySelector('.entry').click();
       said.push(count());
@@ -235,15 +237,24 @@ TEST_F(PlayerInBrowser, AReaderTakesTheCurvesTheMotionAndThePictureAlong) {
     const wait = async () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
       const { player, picture, files } = tumble, said = [];
       player.choose(0);
-      const lines = files.tableText(player).trim().split('\n'), head = lines[0].split(','), at = name => head.indexOf(name);
-      said.push(lines.length, Number(lines[31].split(',')[at('ball <1>: x [m]')]).toFixed(3), Number(lines[31].split(',')[at('energy: total [J]')]).toFixed(3));
-      const bytes = await files.gltfBytes(player, picture), words = new Uint32Array(bytes.slice(0, 16)), text = new TextDecoder().decode(bytes.slice(20, 20 + words[3]));
-      const file = JSON.parse(text), data = bytes.slice(28 + words[3]), numbers = i => { const a = file.accessors[i], v = file.bufferViews[a.bufferView];
-        return new Float32Array(data, (v.byteOffset || 0) + (a.byteOffset || 0), a.count * (a.type === 'SCALAR' ? 1 : a.type === 'VEC3' ? 3 : 4)); };
-      said.push(words[0].toString(16), words[2] === bytes.byteLength, file.nodes.filter(n => n.mesh !== undefined).length, file.animations[0].channels.length);
-      const ball = file.nodes.findIndex(n => n.name && n.name.startsWith('ball')), move = file.animations[0].channels.find(c => c.target.node === ball && c.target.path === 'translation');
-      const sampler = file.animations[0].samplers[move.sampler];
-      said.push(numbers(sampler.input)[30].toFixed(3), [0, 1, 2].map(i => numbers(sampler.output)[90 + i].toFixed(3)).join(' '));
+      const lines = files.tableText(player).trim().split('\n'), head = lines[0].split(','),
+        value = (line, name) => Number(lines[line].split(',')[head.indexOf(name)]).toFixed(3);
+      said.push(lines.length, value(31, 'ball <1>: x [m]'), value(31, 'energy: total [J]'));
+      const bytes = await files.gltfBytes(player, picture),
+        words = new Uint32Array(bytes.slice(0, 16)), length = words[3],
+        text = new TextDecoder().decode(bytes.slice(20, 20 + length));
+      const file = JSON.parse(text), data = bytes.slice(28 + length), numbers = i => {
+        const a = file.accessors[i], v = file.bufferViews[a.bufferView];
+        return new Float32Array(data, (v.byteOffset || 0) + (a.byteOffset || 0),
+          a.count * { SCALAR: 1, VEC3: 3, VEC4: 4 }[a.type]); };
+      const { channels, samplers } = file.animations[0];
+      said.push(words[0].toString(16), words[2] === bytes.byteLength,
+        file.nodes.filter(n => n.mesh !== undefined).length, channels.length);
+      const ball = file.nodes.findIndex(n => n.name && n.name.startsWith('ball')),
+        move = channels.find(c => c.target.node === ball && c.target.path === 'translation'),
+        sampler = samplers[move.sampler], places = numbers(sampler.output);
+      said.push(numbers(sampler.input)[30].toFixed(3),
+        [0, 1, 2].map(i => places[90 + i].toFixed(3)).join(' '));
       const picked = await files.pictureBlob(picture);
       said.push(picked.type, picked.size > 2000);
       document.body.dataset.said = said.join(' '); };
