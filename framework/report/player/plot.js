@@ -213,7 +213,7 @@ class TimePlot {
     if (lines.length === 0) return;
     const share = this.x(at) / kFrame.width, isRight = share > 0.55;
     this.hover.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
-    this.tip.replaceChildren(html('div', {}, `${short(at, 7)} s`), ...lines.slice(0, 8));
+    this.tip.replaceChildren(html('div', {}, `${short(at, 6)} s`), ...lines.slice(0, 8));
     this.tip.style.left = isRight ? '' : `calc(${(100 * share).toFixed(2)}% + .5rem)`;
     this.tip.style.right = isRight ? `calc(${(100 * (1 - share)).toFixed(2)}% + .5rem)` : '';
   }
