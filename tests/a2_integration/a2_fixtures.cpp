@@ -420,8 +420,8 @@ bool asked_first(bool came, const std::string& scene, const std::string& expecte
   expect_true(
       came, expected, "nothing of the kind",
       {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
-       .slip =
-           "the function gives nothing (0, NaN, no impact, its own argument) whatever it is asked",
+       .slip = "the function gives nothing (0, NaN, no impact, its own argument) where there is an "
+               "answer, or its status says so",
        .handout = equation(equation_number)});
   return came;
 }

@@ -80,7 +80,7 @@ bool something_is_held() {
       f.allFinite() && f[0] > 0, "a force", "none",
       {.scene =
            "this test's own answer is \"nothing\", so this is asked before it: a ball on the floor",
-       .slip = "the function gives nothing (0 or NaN) whatever it is asked",
+       .slip = "the function gives nothing (0 or NaN) where there is an answer",
        .handout = equation(9)});
   return f.allFinite() && f[0] > 0;
 }

@@ -97,7 +97,7 @@ TEST(SpringForce, IsZeroWhereTheAnchorsCoincide) {
     if (!(a3_module().spring_force(spring, kNear, kFar).norm() > 10)) {
       expect_true(false, "a force", "none",
                   {.scene = "asked first: the same spring, 5 m long",
-                   .slip = "the function gives nothing (0 or NaN) whatever it is asked",
+                   .slip = "the function gives nothing (0 or NaN) where there is an answer",
                    .handout = equation(3)});
       return;
     }

@@ -103,7 +103,7 @@ bool gives_numbers(double found, const std::string& scene, int equation_number) 
   expect_true(
       std::isfinite(found), "a number", show(found),
       {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
-       .slip = "the function gives no number (NaN or infinity) whatever it is asked",
+       .slip = "the function gives no number (NaN or infinity) where there is one",
        .handout = equation(equation_number)});
   return std::isfinite(found);
 }
