@@ -171,6 +171,7 @@ Object.assign(Bench.prototype, {
 
 async function openBench(root) {
   const say = words => { root.textContent = words; };
+  say('The code is being started ...');   // instead of what a browser without scripts shows
   try {
     const worker = URL.createObjectURL(new Blob([await opened('bench-worker').then(bytes => new TextDecoder().decode(bytes))], { type: 'text/javascript' }));
     const [own, right] = await Promise.all([opened('bench-own'), opened('bench-right')]);
