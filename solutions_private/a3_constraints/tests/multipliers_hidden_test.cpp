@@ -32,6 +32,15 @@ TEST(ConstraintMultipliers, FulfilRandomSystems) {
         rig, rig.multipliers(), 1e-11,
         "C'' is not what is wanted: a term of the right-hand side, or a side of a row");
   }
+  // Bodies of finite mass that no torque turns: they couple their rows all the same.
+  for (int i = 0; i < 10; ++i) {
+    Rig rig = random_rig(random, 6, 2);
+    rig.scene += "; every other body does not turn (inverse inertia 0)";
+    for (std::size_t k = 1; k < rig.bodies.size(); k += 2)
+      rig.bodies[k].inverse_inertia_world.setZero();
+    expect_fulfilled(rig, rig.multipliers(), 1e-10,
+                     "a body that can be shifted, though not turned, couples its rows");
+  }
 }
 
 TEST(ConstraintMultipliers, FindAChainInAnyOrder) {
