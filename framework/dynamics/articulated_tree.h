@@ -6,7 +6,7 @@
 /// its parent, but at a hinge or a weld; so that no joint has angles with a singular posture:
 ///   free    centre c, unit quaternion q; v, omega         a body that hangs on nothing
 ///   ball    q; omega                                      one point of it is a point of the parent
-///   rod     u, q; u', omega                               p_own = p_parent + L u, |u| = 1     (R.1)
+///   rod     u, q; u', omega                               p_own = p_parent + L u, |u| = 1 (R.1)
 ///   hinge   theta; theta'                                 turns about an axis of the parent
 ///   weld    nothing
 /// y holds all places, then all velocities in the same order, as many of them as places (a

@@ -82,7 +82,8 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
   gap: .15rem .9rem; margin: 0; } .fields dt { color: var(--soft); }
 .fields dd { margin: 0; white-space: pre-wrap; overflow-wrap: anywhere; }
 .story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
-.story td.bad { min-width: 13rem; } .story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
+.story td.bad { min-width: 13rem; }
+.story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
 .story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
@@ -105,7 +106,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
   .plot-figure svg { min-width: 35rem; } .plot-figure.small svg { min-width: 0; }
-  .story table, .story tbody, .story tr, .story td { display: block; } .story tr { padding: .2rem 0; }
+  .story table, .story tbody, .story tr, .story td { display: block; }
+  .story tr { padding: .2rem 0; }
   .story td { padding: 0; border: 0; } .story td:first-child { color: var(--soft); }
   .story { padding: .5rem .6rem; } .fields { gap: .15rem .6rem; font-size: .93rem; }
   .story .plot-figure { float: none; margin: .4rem auto; }

@@ -19,7 +19,8 @@ std::string player_scene_text(const scene::Scene& scene, const std::filesystem::
 /// One source of the page, such as "stage.js"; empty where there is no such file.
 std::string_view player_source(std::string_view name);
 
-/// three.js, its controls and its exporter of glTF, from Debian's package. @throws UserError where it is missing
+/// three.js, its controls and its exporter of glTF, from Debian's package. @throws UserError where
+/// it is missing
 std::string three_js(const std::filesystem::path& folder = "/usr/share/javascript/three");
 
 }  // namespace tumble::report

@@ -16,8 +16,10 @@ Xray impulse(double found) {
 
 TEST(Xray, MarksTheTermWhoseVariantGivesTheAnswerThatCame) {
   const std::string words = xray_in_words(impulse(6.0));
-  EXPECT_NE(words.find("1 + e                     1.5   <- what was found comes out with 1 in its place\n"),
-            std::string::npos)
+  EXPECT_NE(
+      words.find(
+          "1 + e                     1.5   <- what was found comes out with 1 in its place\n"),
+      std::string::npos)
       << words;
   EXPECT_NE(words.find("9 N s expected, 6 N s found"), std::string::npos) << words;
   EXPECT_EQ(words.find("<-"), words.rfind("<-"));

@@ -16,8 +16,8 @@ struct Cause {
   std::vector<std::string> places;  // by function: "a1_impulse.cpp:97"; empty where not found
   // by function: its lines, with their numbers; around the line of a crash; empty where not found
   std::vector<std::string> code;
-  std::vector<std::string> tests;   // that it explains, in the rubric's order
-  std::size_t same_numbers = 0;     // of these
+  std::vector<std::string> tests;  // that it explains, in the rubric's order
+  std::size_t same_numbers = 0;    // of these
 };
 
 }  // namespace tumble::grading

@@ -2,7 +2,7 @@
 ///
 ///   x-ray:    j = -(1 + e) (n . u) / k   (A1.9)
 ///             n . u                      -3 m/s
-///             1 + e                      1.5                 <- what was found comes out with 1 in its place
+///             1 + e                      1.5   <- what was found comes out with 1 in its place
 ///             j                          9 N s expected, 6 N s found
 ///
 /// An assignment describes its equations where its hidden tests are (solutions_private): the terms
