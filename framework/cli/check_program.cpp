@@ -169,9 +169,11 @@ ExitCode check_own_tests(const Command& command, const CheckWords& words, const 
                          const fs::path& header) {
   const fs::path program = command.build / "bin" / ("own_tests_" + words.id),
                  tests = fs::absolute(words.own_tests);
-  for (const char* header : {"/usr/include/gtest/gtest.h", "/usr/include/fmt/format.h"})
-    if (!fs::exists(header))
-      throw UserError("--my-tests", std::string("there is no ") + header + " on this machine",
+  // of the packages that a file of tests is linked with (compiler/compile.cpp)
+  for (const char* needed :
+       {"/usr/include/gtest/gtest.h", "/usr/include/fmt/format.h", "/usr/include/openssl/sha.h"})
+    if (!fs::exists(needed))
+      throw UserError("--my-tests", std::string("there is no ") + needed + " on this machine",
                       "apt install libgtest-dev libfmt-dev libssl-dev");
   if (!fs::exists(program))
     throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <sstream>
 #include <thread>
@@ -98,13 +99,13 @@ class Rounds {
   bool is_done(int number) const { return job_.is_done({number, shards_}); }
 
   [[noreturn]] void refuse() const {
-    std::string said = said_by(todo_.front());
-    if (said.empty()) said = missing_path_;
-    throw UserError(
-        log_of(todo_.front()).string(),
-        "no shard finished a " + job_.unit +
-            (said.empty() ? ", and this one printed nothing" : "; this one said: " + said),
-        "Every machine needs the course and the files of this work under these paths.");
+    const std::string said = said_by(todo_.front());
+    throw UserError(log_of(todo_.front()).string(),
+                    "no shard finished a " + job_.unit +
+                        (!said.empty()              ? "; this one said: " + said
+                         : !scheduler_said_.empty() ? "; " + scheduler_said_
+                                                    : ", and this one printed nothing"),
+                    "Every machine needs the course and the files of this work under these paths.");
   }
 
   std::vector<LostShard> rest() const {
@@ -247,11 +248,23 @@ class Rounds {
     if (outcome.code == 127)
       throw UserError(words.front(), "is not on this machine",
                       "Debian: apt-get install " + package + ".");
-    std::istringstream lines(outcome.printed);  // of ranks that began no shard
-    for (std::string line; missing_path_.empty() && std::getline(lines, line);)
-      if (line.find(kNoPath) != std::string::npos) missing_path_ = printable(line);
-    if (outcome.code != 0 && job_.finished() == 0 && !outcome.printed.empty())
-      notice(words.front() + ": " + last_line_of(outcome.printed));
+    if (job_.finished() > 0) return;
+    scheduler_said_ = telling_line_of(outcome.printed);
+    if (!scheduler_said_.empty()) scheduler_said_ = words.front() + " said: " + scheduler_said_;
+  }
+
+  // That a machine does not see the files; else the first line with words: what comes later is of
+  // its consequences.
+  static std::string telling_line_of(const std::string& printed) {
+    std::istringstream lines(printed);
+    std::string first;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find(kNoPath) != std::string::npos) return printable(line);
+      if (first.empty() && std::any_of(line.begin(), line.end(),
+                                       [](unsigned char c) { return std::isalpha(c) != 0; }))
+        first = printable(line);
+    }
+    return first;
   }
 
   void run_by_parallel() {
@@ -298,7 +311,7 @@ class Rounds {
   bool attached_ = false;
   std::string job_id_;
   int silent_ = 0;
-  std::string missing_path_;  // what a machine said that does not see the files
+  std::string scheduler_said_;  // why it began no shard
   std::size_t reported_ = static_cast<std::size_t>(-1);
   const Clock::time_point start_ = Clock::now();
   Clock::time_point next_look_ = start_;
@@ -314,7 +327,8 @@ Cluster cluster_of(const std::string& word) {
   if (word == "slurm") return Cluster::kSlurm;
   if (word == "parallel") return Cluster::kParallel;
   if (word == "mpi") return Cluster::kMpi;
-  throw UserError("--on", "is '" + word + "'", names_of_clusters() + ".");
+  throw UserError("--on", "is '" + word + "'",
+                  names_of_clusters() + "; without --on all is done on this machine.");
 }
 
 std::vector<LostShard> run_on(const ClusterJob& job) {

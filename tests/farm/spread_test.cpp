@@ -167,6 +167,19 @@ TEST_P(OnCluster, AJobThatFinishesNothingIsRefused) {
   }
 }
 
+TEST_P(OnCluster, AHostThatIsNotThereIsNamed) {
+  if (run_program({"ssh", "-V"}, Output::kDropped).code != 0)
+    GTEST_SKIP() << "ssh is not here: apt-get install openssh-client";
+  job.hosts = "no-such-host-here";
+  try {
+    make_on(parts(), work, job);
+    FAIL() << "nothing was thrown";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("no-such-host-here"), std::string::npos)
+        << error.what();
+  }
+}
+
 // mpirun ends all ranks when one is lost, unless it is told otherwise.
 TEST_P(OnCluster, ALostRankCostsItsShardOnly) {
   if (GetParam() != Cluster::kMpi) GTEST_SKIP() << "GNU parallel has no ranks";
