@@ -99,7 +99,8 @@ void add_rest(const std::vector<ScoredTest>& tests, std::vector<Cause>& causes) 
   }
 }
 
-constexpr int kMostLines = 40;   // of a function that is shown
+constexpr int kMostLines = 40;  // of a function that is shown
+constexpr std::size_t kMostColumns = 160;
 constexpr int kLinesBeside = 3;  // before and after the line of a crash
 
 // "   12  text"; the marked line has an arrow.
@@ -108,7 +109,8 @@ std::string numbered_lines(const std::string& source, int first, int last, int m
   std::string text, line;
   for (int number = 1; std::getline(in, line) && number <= last; ++number)
     if (number >= first)
-      text += fmt::format("{}{:>4}  {}\n", number == marked ? "->" : "  ", number, line);
+      text += fmt::format("{}{:>4}  {}{}\n", number == marked ? "->" : "  ", number,
+                          line.substr(0, kMostColumns), line.size() > kMostColumns ? "..." : "");
   return text;
 }
 

@@ -43,8 +43,8 @@ class Player {
   // The shown part moves on with the time.
   keepInWindow() {
     const size = this.until - this.from;
-    if (this.time > this.until) this.until = Math.min(this.end, this.time + 0.8 * size);
-    else if (this.time < this.from) this.until = Math.max(size, this.time + 0.2 * size);
+    if (this.time >= this.from && this.time <= this.until) return;
+    this.until = this.time > this.until ? Math.min(this.end, this.time + 0.8 * size) : Math.max(size, this.time + 0.2 * size);
     this.from = this.until - size;
   }
 
