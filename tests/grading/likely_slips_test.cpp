@@ -154,6 +154,7 @@ TEST(Causes, TheLineOfACrashIsMarked) {
   EXPECT_EQ(lines_of_function("void f() {  // }\n  g();\n}\nint x;\n", 1),
             "     1  void f() {  // }\n     2    g();\n     3  }\n");
   EXPECT_EQ(lines_of_function("void f() {\n", 1), "     1  void f() {\n");
+  EXPECT_EQ(lines_around("a;\r\n", 1), "->   1  a;\n");
   // a line of a megabyte is not a page of one
   EXPECT_LT(lines_around(std::string(1 << 20, 'x'), 1).size(), 200u);
 }

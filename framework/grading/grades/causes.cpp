@@ -108,9 +108,11 @@ std::string numbered_lines(const std::string& source, int first, int last, int m
   std::istringstream in(source);
   std::string text, line;
   for (int number = 1; std::getline(in, line) && number <= last; ++number)
-    if (number >= first)
+    if (number >= first) {
+      if (line.ends_with('\r')) line.pop_back();  // of a file from Windows
       text += fmt::format("{}{:>4}  {}{}\n", number == marked ? "->" : "  ", number,
                           line.substr(0, kMostColumns), line.size() > kMostColumns ? "..." : "");
+    }
   return text;
 }
 
