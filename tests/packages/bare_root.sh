@@ -6,6 +6,7 @@ bare_root() {
   local mirror=${TUMBLE_DEBIAN_MIRROR:-http://deb.debian.org/debian}
   debootstrap --variant=minbase --include=ca-certificates bookworm "$1" "$mirror" >"$1.log" 2>&1 || { tail -n 20 "$1.log" >&2; exit 1; }
   rm -f "$1.log"
+  chmod 755 "$1"   # a folder of mktemp is open to root alone, and so would be /
   # The host's way to the archive: proxies, names, certificates.
   cp -r /etc/apt/apt.conf.d "$1/etc/apt/" 2>/dev/null || true
   local file
