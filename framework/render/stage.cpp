@@ -35,6 +35,16 @@ double round_length(double x) {
   return 10.0 * decade;
 }
 
+// A flat ball, sunk into the surface.
+Instance pip_on(const BodyPose& pose, const scene::Pip& pip) {
+  constexpr double kThickness = 0.05;  // of its radius: enough that the surface does not hide it
+  const Vector3d black(0.01, 0.01, 0.01);
+  const Quaterniond turn =
+      pose.world_from_body * Quaterniond::FromTwoVectors(Vector3d::UnitZ(), pip.normal_body);
+  return placed(pose.com_world + pose.world_from_body * pip.point_body, turn.toRotationMatrix(),
+                pip.radius_m * Vector3d(1, 1, kThickness), black);
+}
+
 std::size_t stride_of(const Trajectory& run) {
   return std::max<std::size_t>(1, run.frames.size() / kExtentFrames);
 }
@@ -100,6 +110,7 @@ void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size
   } else if (const auto* box = std::get_if<Box>(&shape)) {
     actor.geometry = kBoxGeometry;
     actor.scale = box->half_extents_body;
+    if (spec.drawn_as_die) actor.pips = scene::pips_of_die(box->half_extents_body);
   } else if (const auto* solid = std::get_if<MeshSolid>(&shape)) {
     actor.geometry = geometry_of(solid->mesh_body);
   } else if (std::holds_alternative<Ellipsoid>(shape)) {
@@ -266,6 +277,8 @@ void Stage::add_bodies(const Frame& frame, Drawing& drawing) const {
             : actor.geometry;
     (actor.pass == Pass::kGlass ? glass : solid)[static_cast<std::size_t>(geometry)]
         .instances.push_back(instance);
+    for (const scene::Pip& pip : actor.pips)
+      solid[kBall + 1].instances.push_back(pip_on(pose, pip));
   }
   for (auto* batches : {&solid, &glass})
     for (Batch& batch : *batches)

@@ -11,6 +11,7 @@
 #include "framework/render/drawing.h"
 #include "framework/render/links.h"
 #include "framework/render/picture_options.h"
+#include "framework/scene/die.h"
 #include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -25,6 +26,7 @@ struct Actor {
   double opacity = 1.0;
   bool quartered = false;
   bool immovable = false;
+  std::vector<scene::Pip> pips{};
   // of its bounding ball about the origin; infinite for planes
   double radius_m = 0.0;
 };

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "framework/effects/registry.h"
+#include "framework/scene/die.h"
 
 namespace tumble::report {
 namespace {
@@ -44,11 +45,23 @@ class Meshes {
   std::deque<TriangleMesh> made_;
 };
 
+/// A die's pips are given as the box itself is drawn: in half edges.
+Json box_json(const Box& box, bool is_die) {
+  Json entry{{"kind", "box"}, {"half", triple(box.half_extents_body)}};
+  if (!is_die) return entry;
+  entry["pips"] = Json::array();
+  for (const scene::Pip& pip : scene::pips_of_die(box.half_extents_body))
+    entry["pips"].push_back(
+        {{"point", triple(pip.point_body.cwiseQuotient(box.half_extents_body))},
+         {"normal", triple(pip.normal_body)},
+         {"radii", triple(Vector3d::Constant(pip.radius_m).cwiseQuotient(box.half_extents_body))}});
+  return entry;
+}
+
 Json shape_json(const Shape& shape, const scene::BodySpec& spec, Meshes& meshes) {
   if (const auto* sphere = std::get_if<Sphere>(&shape))
     return {{"kind", "sphere"}, {"radius", sphere->radius}};
-  if (const auto* box = std::get_if<Box>(&shape))
-    return {{"kind", "box"}, {"half", triple(box->half_extents_body)}};
+  if (const auto* box = std::get_if<Box>(&shape)) return box_json(*box, spec.drawn_as_die);
   if (const auto* solid = std::get_if<MeshSolid>(&shape))
     return {{"kind", "mesh"}, {"mesh", meshes.index_of(solid->mesh_body)}};
   if (std::holds_alternative<Ellipsoid>(shape))

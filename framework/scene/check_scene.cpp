@@ -75,6 +75,8 @@ void check_body(const BodySpec& body, const Refuse& refuse) {
   if (body.immovable && !body.omega_world_rad_s.isZero(0))
     refuse("angular_velocity_rad_s", "it is immovable and spins",
            "An immovable body does not turn: delete angular_velocity_rad_s.");
+  if (body.drawn_as_die && !std::holds_alternative<BoxSpec>(body.shape))
+    refuse("drawn_as", "only a box can be drawn as a die", "Give it \"shape\": {\"box\": ...}.");
 }
 
 void check_ellipsoids(const Scene& scene, const Refuse& refuse) {

@@ -105,6 +105,7 @@ BodySpec read_body(const json& value, const Document& document, const std::strin
   read(value, "friction", spec.friction);
   read(value, "collides", spec.collides);
   if (value.contains("color")) spec.color = read_color(value.at("color"));
+  spec.drawn_as_die = value.contains("drawn_as");  // the one word that the schema allows
   check_body(spec, [&](const std::string& key, const std::string& problem,
                        const std::string& remedy) {
     document.refuse(value.contains(key.substr(0, key.find('/'))) ? pointer + '/' + key : pointer,

@@ -73,6 +73,7 @@ struct BodySpec {
   // collides with immovable bodies only, where the other body has it too
   bool passes_movable = false;
   std::optional<Vector3d> color;  // linear RGB in [0, 1]
+  bool drawn_as_die = false;      // pips on a box, see die.h
   // JSON pointer of its entry, for messages; empty: made in memory
   std::string pointer{};
 };

@@ -1,5 +1,6 @@
 // Marks of a drawing: the scale bar where it is visible, paths with their corners.
 #include <algorithm>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +52,31 @@ TEST(Stage, ScaleBarIsWhereNoWallHidesIt) {
   const Stage stage(scene, run, as_shown());
   ASSERT_TRUE(stage.has_scale_bar());
   EXPECT_FALSE(hides(surface, pose, view.eye_world, middle_of_bar(stage)));
+}
+
+// The body's +z has six pips and the opposite side one, wherever the body has turned to.
+TEST(Stage, ADieShowsItsPipsOnTheFacesTheyBelongTo) {
+  constexpr double kHalf = 0.1, kRoundOff = 1e-6;  // m; pictures are of single precision
+  scene::Scene scene = falling_ball();
+  scene.bodies[0].shape = scene::BoxSpec{Vector3d::Constant(kHalf)};
+  scene.bodies[0].drawn_as_die = true;
+  Trajectory run = ball_at(1.0);
+  BodyPose& pose = run.frames[0].poses[0];
+  pose.world_from_body = Quaterniond(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
+  std::map<std::pair<int, bool>, int> pips;  // by axis and side
+  for (const Batch& batch : Stage(scene, run, as_shown()).moment(0).drawing.batches)
+    for (const Instance& instance : batch.instances) {
+      if (batch.geometry != kBall + 1) continue;
+      const float* m = instance.world_from_local;
+      const Vector3d place =
+          pose.world_from_body.conjugate() * (Vector3d(m[3], m[7], m[11]) - pose.com_world);
+      for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(std::abs(place[axis]) - kHalf) < kRoundOff) ++pips[{axis, place[axis] > 0}];
+    }
+  ASSERT_EQ(pips.size(), 6u);
+  EXPECT_EQ((pips[{2, true}]), 6);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_EQ((pips[{axis, true}] + pips[{axis, false}]), 7) << "axis " << axis;
 }
 
 // A ball moves along x and reverses after 1003 steps; the path shows every twelfth of 2006 frames,

@@ -55,6 +55,13 @@ TEST(SceneRefusals, AUnitInTheValueIsFoundAndTheNumberExpected) {
                {"/bodies/0/mass_kg", "found the text \"2 kg\"", "expected a number above 0 [kg]"});
 }
 
+TEST(SceneRefusals, OnlyABoxIsDrawnAsADie) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "drawn_as": "die")"))),
+               {"/bodies/0/drawn_as", "only a box"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "drawn_as": "dye")"))),
+               {"/bodies/0/drawn_as", "die"});
+}
+
 TEST(SceneRefusals, ANegativeMassSaysWhatAMassIs) {
   expect_words(refusal(scene_with(body_with(R"("mass_kg": -2)"))),
                {"/bodies/0/mass_kg", "found -2", "above 0"});

@@ -108,7 +108,28 @@ function geometryOf(shape, meshes, isQuartered, segments) {
   if (shape.kind === 'sphere') return ballGeometry(isQuartered, segments);
   if (shape.kind === 'mesh') return meshGeometry(meshes[shape.mesh]);
   const flat = shape.kind === 'box' ? new THREE.BoxBufferGeometry(2, 2, 2).toNonIndexed() : new THREE.PlaneBufferGeometry(2, 2).toNonIndexed();
-  return geometryFrom(flat.attributes.position.array, flat.attributes.normal.array, Array.from(flat.attributes.position.array, () => 1));
+  const { position, normal } = flat.attributes, pips = (shape.pips || []).map(pipGeometry);
+  const joined = (own, key) => [].concat(Array.from(own), ...pips.map(pip => pip[key]));
+  return geometryFrom(joined(position.array, 'positions'), joined(normal.array, 'normals'), joined(Array.from(position.array, () => 1), 'shades'));
+}
+
+// A dark disc on a face of a box whose half edges are 1, a little above it.
+function pipGeometry(pip) {
+  const kSides = 14, kLift = 1.004, axis = pip.normal.findIndex(x => x !== 0), sign = pip.normal[axis], positions = [], normals = [], shades = [];
+  const corner = (k, reach) => {
+    const point = pip.point.slice(), angle = 2 * Math.PI * k / kSides * sign, [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    point[axis] *= kLift;
+    point[u] += reach * pip.radii[u] * Math.cos(angle);
+    point[v] += reach * pip.radii[v] * Math.sin(angle);
+    return point;
+  };
+  for (let k = 0; k < kSides; ++k)
+    for (const point of [corner(0, 0), corner(k, 1), corner(k + 1, 1)]) {
+      positions.push(...point);
+      normals.push(...pip.normal);
+      shades.push(0.02, 0.02, 0.02);
+    }
+  return { positions, normals, shades };
 }
 
 function scaleOf(body, sight) {

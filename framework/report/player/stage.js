@@ -55,14 +55,14 @@ class Stage {
     this.about.bodies.forEach((body, i) => {
       if (i === this.floor) return;
       const isQuartered = !body.immovable && body.shape.kind === 'sphere' && body.shape.radius > 0, color = colorOf(body, i), glass = this.isGlass(i);
-      const key = JSON.stringify([body.shape.kind, body.shape.mesh, isQuartered, color, glass]);
+      const key = JSON.stringify([body.shape.kind, body.shape.mesh, body.shape.pips, isQuartered, color, glass]);
       if (!groups.has(key)) groups.set(key, { body, color, glass, isQuartered, members: [] });
       groups.get(key).members.push(i);
     });
     this.groups = [...groups.values()];
     const geometries = new Map();
     const made = (shape, isQuartered, segments) => {
-      const key = JSON.stringify([shape.kind, shape.mesh, isQuartered, segments]);
+      const key = JSON.stringify([shape.kind, shape.mesh, shape.pips, isQuartered, segments]);
       if (!geometries.has(key)) geometries.set(key, geometryOf(shape, meshes, isQuartered, segments));
       return sameGeometry(geometries.get(key));
     };
