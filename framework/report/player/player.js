@@ -156,7 +156,7 @@ class Controls {
     byId('line').addEventListener('dblclick', () => player.zoom(Infinity));
     scrub.addEventListener('input', () => player.goTo(Number(scrub.value)));
     this.addOptions();
-    this.addSaving();
+    this.addSavingAndKeys();
     this.addDifference();
     window.addEventListener('keydown', event => this.key(event));
     new ResizeObserver(() => this.drawMarks()).observe(byId('marks'));
@@ -177,10 +177,9 @@ class Controls {
       box.addEventListener('change', () => { this.player.shown[name] = box.checked; this.player.changed(); });
       byId('options').append(html('label', {}, box, swatch, ` ${text}`));
     }
-    byId('options').append(html('p', { className: 'keys' }, 'Keys: space play and pause · ← → a frame, with shift ten · ↑ ↓ speed · N P next and previous event · Home End · + − more and less of the time, or the wheel on the slider, and with the control key on a curve; double click: all of it · F follow · / find a body · 1 to 6 views, R that of the scene · drag turn, right drag or two fingers shift, wheel or pinch nearer.'));
   }
 
-  addSaving() {
+  addSavingAndKeys() {
     const box = html('p', { className: 'saving' }, 'Save ');
     const add = (text, title, act) => {
       const button = html('button', { title }, text);
@@ -194,6 +193,7 @@ class Controls {
     }
     add('CSV', 'All curves; of a chosen body its motion, too', () => saveTable(this.player));
     byId('options').append(box);
+    byId('options').append(html('p', { className: 'keys' }, 'Keys: space play and pause · ← → a frame, with shift ten · ↑ ↓ speed · N P next and previous event · Home End · + − more and less of the time, or the wheel on the slider, and with the control key on a curve; double click: all of it · F follow · / find a body · 1 to 6 views, R that of the scene · drag turn, right drag or two fingers shift, wheel or pinch nearer.'));
   }
 
   addDifference() {
