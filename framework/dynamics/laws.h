@@ -65,7 +65,7 @@ struct Laws {
   std::function<VectorXd(const MatrixXd& A, const VectorXd& b)> contact_forces;
   /// Impulses of contacts with friction. Empty: the framework's own solve_contacts.
   std::function<ContactSolution(const ContactProblem&, const ContactOptions&)> friction_impulses;
-  /// Whether a collision that came in this slowly is the beginning of a persistent contact.
+  /// Whether a collision would rebound so slowly that it is the beginning of a persistent contact.
   std::function<bool(double approach_speed, double restitution, double restitution_threshold)>
       ends_in_contact;
 

@@ -4,6 +4,11 @@
 
 namespace tumble {
 
+bool is_driven(const scene::PrescribedMotion& motion) {
+  return !motion.velocity_m_s.isZero(0.0) ||
+         (motion.angular_frequency_rad_s != 0.0 && !motion.amplitude_m.isZero(0.0));
+}
+
 Vector3d prescribed_position(const WorldBody& body, double time) {
   const scene::PrescribedMotion& m = body.motion;
   Vector3d position = body.com_at_0_world + m.velocity_m_s * time;

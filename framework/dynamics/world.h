@@ -53,6 +53,8 @@ struct World {
   std::vector<std::pair<int, int>> apart;
 };
 
+/// Whether an immovable body with this law of its own ever moves.
+bool is_driven(const scene::PrescribedMotion& motion);
 /// Place of an immovable body at a time: start + v t + A sin(w t). [m]
 Vector3d prescribed_position(const WorldBody& body, double time);
 /// Its velocity, exact. [m/s]

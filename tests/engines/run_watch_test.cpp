@@ -138,12 +138,15 @@ TEST(RunWatch, AFaultIsACheckThatFailed) {
 /// A ball at a height that moves sideways first at one speed, then at another, and has gone `lift`
 /// up between two looks 1/60 s apart.
 std::vector<RunFault> told_of_ball(double radius, double mass, double height, double speed,
-                                   double then, double lift) {
-  const World world = build_world(
-      scene_of({ball("ball", radius, mass, {0, 0, height}, Vector3d::Zero())}, 1.0, kGravity));
+                                   double then, double lift,
+                                   const std::vector<scene::BodySpec>& others = {}) {
+  std::vector<scene::BodySpec> bodies{ball("ball", radius, mass, {0, 0, height}, Vector3d::Zero())};
+  bodies.insert(bodies.end(), others.begin(), others.end());
+  const World world = build_world(scene_of(bodies, 1.0, kGravity));
   const auto states = [&](double z, double v) {
     return std::vector<RigidBodyState>{
-        {Vector3d(0, 0, z), Quaterniond::Identity(), Vector3d(mass * v, 0, 0), Vector3d::Zero()}};
+        {Vector3d(0, 0, z), Quaterniond::Identity(), Vector3d(mass * v, 0, 0), Vector3d::Zero()},
+        {Vector3d(0, 0, -9), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()}};
   };
   engines::EnergyWatch watch(1e-5, 1.0 / 60, true);  // a rest speed far below what moves here
   EXPECT_FALSE(watch.look(0.0, world, states(height, speed)));
@@ -167,6 +170,18 @@ TEST(EnergyRises, IsComparedWithWhatMovesNotWithWeight) {
 TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
   EXPECT_EQ(told_of_ball(0.5, 1e4, 1e4, 0.1, 0.11, 0.0).size(), 1u);
   EXPECT_EQ(told_of_ball(1e-3, 1e-3, 1e9, 1e-3, 1e-3, std::nextafter(1e9, 2e9) - 1e9).size(), 0u);
+}
+
+// A law of its own that moves nothing drives nothing: an amplitude without a frequency.
+TEST(EnergyRises, IsToldBesideABodyThatOnlyMightHaveMoved) {
+  scene::BodySpec floor = ball("floor", 1.0, 1.0, {0, 0, -9}, Vector3d::Zero());
+  floor.mass_kg.reset();
+  floor.immovable = true;
+  floor.motion.emplace();
+  floor.motion->amplitude_m = {0, 0, 0.1};
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0, {floor}).size(), 1u);
+  floor.motion->angular_frequency_rad_s = 5.0;
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0, {floor}).size(), 0u);
 }
 
 // ---- Runs that cannot be trusted ---------------------------------------------------------------

@@ -32,9 +32,9 @@ struct RunCounters {
   // states_kept: the most at any time
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;
-  // of processes; fewer are let go where the run ends on some
+  // island segments of processes; fewer are let go where the run ends on some
   std::uint64_t passages_begun = 0, passages_let_go = 0;
-  // of threads: see named()
+  // of threads, each with a region of its own (at home): see named()
   std::uint64_t impacts_at_home = 0, impacts_across = 0, least_of_a_thread = 0;
   // of threads; events that had to wait for global virtual time; of one body at any time
   std::uint64_t rounds = 0, held_back = 0, most_states = 0;
@@ -64,9 +64,8 @@ struct RunCounters {
 /// opens, a force that is switched, a callback, rest. What lies in contact when a run begins is
 /// none, nor is sleep. A change between sliding and sticking or rolling is a discontinuity, too, by
 /// the lecture's definition (it changes the equations of motion). It is counted apart, as
-/// "sliding_changes": no engine here ends a step of all bodies for it (the contact problem of one
-/// island finds it), and only retroactive detection reports it, so one sum of both would differ
-/// from engine to engine in the same motion.
+/// "sliding_changes": only retroactive detection reports it (and ends its step there, where it
+/// locates it), so one sum of both would differ from engine to engine in the same motion.
 class DiscontinuityCount final : public PassingSink {
  public:
   explicit DiscontinuityCount(TrajectorySink& sink) : PassingSink(sink) {}

@@ -71,9 +71,9 @@ struct ContactConstants {
   /// the same in large islands, where points come and go, and the sum of a pair's impulses is worth
   /// more than where each acted
   double warm_start_within_in_large_island = 0.5;
-  /// bodies, or contacts, of an island: so many are solved to the last digit, and their ends of
-  /// sliding are located in time. Larger: slower. Smaller: stacks of a few bodies lose their order.
-  std::size_t few = 12;
+  /// contacts of an island: so many are solved to the last digit, and their ends of sliding are
+  /// located in time. Larger: slower. Smaller: stacks of a few bodies lose their order.
+  std::size_t few_contacts = 12;
   /// contacts of an island: more are too many for the dense matrix of the laws' contact_forces, and
   /// are solved by a few sweeps in_step. Larger: the time goes with the third power. Smaller: less
   /// of a run is by the laws.
@@ -83,6 +83,9 @@ struct ContactConstants {
   /// impacts of one island in a step: more make it a large one. Larger: a collapsing stack takes
   /// long. Smaller: small stacks lose the order of their impacts.
   int most_located_impacts = 8;
+  /// bodies of an island: it is never a large one. Larger: slower. Smaller: stacks of a few bodies
+  /// lose their order.
+  std::size_t few_bodies = 12;
   /// of the island's speed: approach and slip left. Larger: more corrections. Smaller: slower.
   double solved_in_large_island = 1e-5;
   /// of the island's speed: what sweeps leave at the worst of hundreds of contacts (0.28 in the

@@ -1,8 +1,8 @@
 /// Where bodies touch: manifolds, gaps and margins of pairs, from places alone. It keeps nothing
 /// but caches of the narrow phase.
 ///
-/// Contacts are kept a margin apart, ContactConstants::margin of the smaller body: gaps are never
-/// negative.
+/// Contacts are kept a margin apart, ContactConstants::margin of the smaller body and the rounding
+/// of the bodies' places: gaps are never negative.
 #pragma once
 
 #include <limits>

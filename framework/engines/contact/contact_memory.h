@@ -47,8 +47,8 @@ struct ContactMemory {
   double searched_from = -kInfinity;  // were looked for since [s], and how often
   int searches = 0;
   std::optional<SlidingSearch> sliding_search;
-  // Progress: how often the step was cut since, and sweeps of the solver, for impulses and for
-  // corrections.
+  // Progress: how often the step was cut since, and sweeps of the solver for impulses and for
+  // corrections, without those of large islands.
   double cut_since = -kInfinity;  // [s]
   long cuts = 0;
   std::uint64_t sweeps = 0;

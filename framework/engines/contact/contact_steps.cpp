@@ -105,7 +105,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
                                                  [&](const auto& c) { return !smooth(c); }));
   if (!frictionless || !problem.rows.empty() || problem.contacts.size() > kContact.many_contacts) {
     ContactOptions options;
-    if (problem.contacts.size() > kContact.few) options.tolerance = kContact.solved;
+    if (problem.contacts.size() > kContact.few_contacts) options.tolerance = kContact.solved;
     // what stands has to be found to the last digit
     if (speed(island) > kContact.moving * restitution_threshold_) options.enough = kContact.solved;
     if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep &&
@@ -235,7 +235,7 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
                                                           const std::vector<StepContact>& contacts,
                                                           const ContactSolution& solution,
                                                           double h) {
-  if (contacts.size() > kContact.few) return std::nullopt;
+  if (contacts.size() > kContact.few_contacts) return std::nullopt;
   const Pair* stopping = nullptr;
   double least = 1.0, stopping_impulse = 0.0, available = 0.0;
   for (std::size_t i = 0; i < contacts.size();) {

@@ -23,7 +23,7 @@ namespace tumble::engines {
 
 bool PersistentContacts::is_large(const ContactIsland& island) const {
   if (!island.linked.empty()) return false;
-  if (!locates()) return island.bodies.size() > kContact.few;
+  if (!locates()) return island.bodies.size() > kContact.few_bodies;
   const bool in_large_island =
       std::any_of(island.bodies.begin(), island.bodies.end(),
                   [&](int body) { return memory_.in_large_island.contains(body); });
@@ -37,7 +37,7 @@ void PersistentContacts::report_large_islands() {
       "they rest (large_island_steps): right to first order in the step. "
       "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every impact at its instant, and "
       "takes longer",
-      kContact.few, kContact.most_located_impacts);
+      kContact.few_bodies, kContact.most_located_impacts);
   if (std::find(counters_.notices.begin(), counters_.notices.end(), words) ==
       counters_.notices.end())
     counters_.notices.push_back(words);
@@ -47,7 +47,7 @@ void PersistentContacts::report_large_islands() {
 // from now on, until it rests or separates.
 bool PersistentContacts::becomes_large(const ContactIsland& island) {
   if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() ||
-      island.bodies.size() <= kContact.few)
+      island.bodies.size() <= kContact.few_bodies)
     return false;
   if (!(moving_.time() < memory_.impacts_counted_from + memory_.longest_step)) {
     memory_.impacts_counted_from = moving_.time();

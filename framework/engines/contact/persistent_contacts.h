@@ -9,12 +9,16 @@
 /// 2. Contact impulses, spread evenly over the step, keep what touches from approaching:
 ///    v' = v_free + M^-1 J^T p,  x' = x_free + h/2 M^-1 J^T p,  exact for constant forces. Bodies
 ///    that rotate meet their contacts at the middle of the step, and fit the surfaces at its end.
-///    The laws' contact_forces solves islands without friction, the framework's solve_contacts
-///    those with friction or links, and large ones.
-/// 3. A contact that becomes active within the step faster than the threshold ends the step there,
-///    and its impact is perfectly inelastic; a slower one closes its gap by the step's end. A large
+///    Where a point becomes active within the step, x' = x + h v' instead, so that the path does
+///    not go below the surface and come back. The laws' contact_forces solves islands without
+///    friction and links, of at most ContactConstants::many_contacts contacts; the laws'
+///    friction_impulses, or where it is empty the framework's solve_contacts, all others.
+/// 3. A contact that becomes active within the step faster than ten times the threshold, where
+///    impacts are located, ends the step just before it; its perfectly inelastic impact is the
+///    first thing of the next. A slower one closes its gap by the step's end. A large
 ///    island that would cut a step many times for that is solved in steps until it rests, unless
-///    the scene says "located". A pair that stops sliding ends the step there.
+///    the scene says "located": v' acts from the middle of the step on, x' = x + h v'
+///    (large_islands.cpp). A pair that stops sliding ends the step there.
 /// 4. Position correction removes the overlaps that rotation leaves.
 ///
 /// Parts: contact_memory.h (what is kept from step to step), contact_geometry.h (where bodies
@@ -61,9 +65,14 @@ class PersistentContacts {
   bool lasts(Pair pair) const { return memory_.persistent.contains(pair); }
   const std::set<Pair>& lasting() const { return memory_.persistent; }
 
-  /// Gives the bodies in contact their paths for the step that has begun.
+  /// Gives the bodies in contact their paths for the step that has begun. It may change committed
+  /// velocities, by impulses at the step's start, and send their events, before the step is
+  /// committed.
   /// @param candidates  pairs whose boxes meet, sorted
-  /// @return an earlier target to begin the step again with: where a contact stops sliding
+  /// @return a target to begin the step again with; nothing: all have their paths. The same target
+  /// where impulses have acted at the step's start; an earlier one where a point becomes active, a
+  /// contact stops sliding, a body turns too far, or a shorter step may mend an overlap or a gain
+  /// of energy.
   std::optional<double> advance(const std::vector<Pair>& candidates);
   /// Whether nothing is in contact in this step.
   bool empty() const { return points_.empty(); }

@@ -1,8 +1,9 @@
 /// Position correction: removes the overlaps that rotation, rounding and errors of solvers leave.
 ///
-/// The correction is minimal in the kinetic (mass) metric, so that no gap stays below its margin
-/// and no rod or joint opens; velocities stay. Gaps are a linear complementarity problem, rows are
-/// equalities: the contact solver answers both.
+/// The correction is minimal in the kinetic (mass) metric, with mass ratios above 1e4 taken as 1e4;
+/// no rod or joint opens, and velocities stay. It begins where a gap is below half its margin (in
+/// large islands a tenth) and takes it to the margin. Gaps are a linear complementarity problem,
+/// rows are equalities: the contact solver answers both, of large islands by a few sweeps.
 #pragma once
 
 #include <map>
@@ -26,7 +27,7 @@ class PositionCorrection {
  public:
   using Pair = ContactGeometry::Pair;
 
-  /// @param memory  counts the sweeps of the step
+  /// @param memory  counts the sweeps of the step, but for those of large islands
   PositionCorrection(MovingWorld& moving, const ContactGeometry& geometry, ContactMemory& memory,
                      double restitution_threshold, RunCounters& counters)
       : moving_(moving),

@@ -11,7 +11,7 @@
 /// size is that of the laws' collision_impulse for the free bodies, times K_free / K_held, so that
 /// the normal velocity after the links' reactions has the restitution. Friction is solved together
 /// with the normal impulse (dynamics/point_impact.h), so that both laws hold afterwards and no
-/// impact creates energy.
+/// impact creates energy; what push_apart does is no impact.
 #pragma once
 
 #include <functional>

@@ -31,7 +31,7 @@ class StepStages {
   virtual ~StepStages() = default;
   /// Begins a step, which gives every body the path that it would take without the others.
   virtual void begin(double target) = 0;
-  /// Begins it again with an earlier target, because a contact changes there.
+  /// Begins it again: with an earlier target, or with the same after impulses at its start.
   /// @return false: the step ends where it began
   virtual bool begin_again(double target) = 0;
   /// Wakes bodies that something moving comes near to.
@@ -41,7 +41,7 @@ class StepStages {
   virtual bool wake(ImpactDetection::Pair) { return false; }
   /// All paths are known, up to `reached`, where the world goes next.
   virtual void before_commit(double) {}
-  /// An impulse of an impact.
+  /// An impulse of respond(). Impacts within persistent contacts go to the sink alone.
   virtual void impact(const Event& event) = 0;
 };
 
@@ -71,7 +71,9 @@ class WorldStep {
     /// Pairs that may take part in that impact.
     const std::vector<Pair>& around() const { return near.empty() ? searched : near; }
   };
-  /// Takes the world towards `target`: to there, or to the first impact before it.
+  /// Takes the world towards `target`: to there, to the first impact before it, or to an earlier
+  /// time that bodies which turn far, or contacts, ask for (moving().time() says which). Call it
+  /// again until the target is reached.
   /// @throws StoppedRun where a state is not a number afterwards
   Taken take(double target, StepStages& stages);
 
@@ -80,8 +82,7 @@ class WorldStep {
   /// @param pairs      sorted; the trigger is among them
   /// @param is_in_step whether a step has just ended here, so that the contacts it kept apart are
   /// those that touch
-  /// @throws StoppedRun where bodies still approach however often impulses act, or where a state is
-  /// not a number afterwards
+  /// @throws StoppedRun where bodies still approach however often impulses act
   void respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step, StepStages& stages);
 
   void require_numbers() const;

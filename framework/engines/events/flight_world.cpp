@@ -33,11 +33,6 @@ std::string recipe_of(const scene::BodySpec& body, int index) {
   return fmt::format("alone {}", index);
 }
 
-bool is_driven(const scene::PrescribedMotion& m) {
-  return !m.velocity_m_s.isZero(0.0) ||
-         (m.angular_frequency_rad_s != 0.0 && !m.amplitude_m.isZero(0.0));
-}
-
 }  // namespace
 
 std::string unfollowed_entry(const scene::Scene& scene) {

@@ -176,7 +176,8 @@ void RetroactiveRun::before_commit(double reached) {
   if (reached < target_) ++counters_.synchronisations;
 }
 
-// Steps until the target is reached, each no longer than to the first impact in it.
+// Steps until the target is reached; each ends there, at the first impact in it, or where bodies
+// that turn far, or contacts, have cut it.
 void RetroactiveRun::advance_to(double target) {
   target_ = target;
   int idle = 0;
@@ -187,7 +188,8 @@ void RetroactiveRun::advance_to(double target) {
     if (step.how != WorldStep::Taken::How::kCommitted) continue;
     if (has_sleepers()) note_touching(step.near);
     if (!built::kCollision || !step.impact) continue;
-    // All bodies have gone back to the impact.
+    // The step was committed no farther than the impact: free bodies by a shorter step of their
+    // method, all others on their smooth paths.
     ++counters_.rollbacks;
     world_step_.respond(step.around(), *step.impact, true, *this);
     idle = moving_.time() > before ? 0 : idle + 1;
@@ -198,7 +200,7 @@ void RetroactiveRun::advance_to(double target) {
   }
 }
 
-// On rods between heavy ones, or between joints.
+// Reports bodies that are too light for the step: on rods between heavy ones, or between joints.
 void RetroactiveRun::report_light_bodies() {
   const RunCounters before = counters_;  // what is looked at must not show in what a run counts
   const LinkForces at_start = moving_.measure_links(moving_.states(), 0.0, {});

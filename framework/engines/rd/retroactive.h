@@ -1,8 +1,9 @@
 /// Retroactive detection with a fixed step: step all bodies, find the earliest discontinuity, roll
 /// all back to it, go on.
 ///
-/// Source: B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000, sec. 2. No committed state
-/// has a negative gap.
+/// Overlaps that are left at a commit are removed; frames record the smallest gap.
+///
+/// Source: B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000, sec. 2.
 #pragma once
 
 #include "framework/engines/base/run_options.h"

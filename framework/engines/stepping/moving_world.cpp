@@ -108,12 +108,6 @@ bool MovingWorld::may_collide(int a, int b) const {
                                                      std::pair(std::min(a, b), std::max(a, b)));
 }
 
-bool MovingWorld::is_driven(int body) const {
-  const scene::PrescribedMotion& m = world_.bodies[body].motion;
-  return !m.velocity_m_s.isZero(0.0) ||
-         (m.angular_frequency_rad_s != 0.0 && !m.amplitude_m.isZero(0.0));
-}
-
 double MovingWorld::look() {
   double next = std::numeric_limits<double>::infinity();
   for (LinkedBodies& group : linked_) next = std::min(next, group.look(time_, states_));

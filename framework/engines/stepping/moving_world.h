@@ -29,7 +29,8 @@
 
 namespace tumble::engines {
 
-/// A body that lies still on an immovable support and is left alone until something touches it.
+/// A ball at rest relative to an immovable support, which may move evenly; it may spin. It is left
+/// alone until something touches it.
 struct Rest {
   int support;
   Vector3d offset_from_support_world;  // [m]
@@ -80,7 +81,7 @@ class MovingWorld {
     return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body);
   }
   /// Whether an immovable body moves by a law of its own.
-  bool is_driven(int body) const;
+  bool is_driven(int body) const { return tumble::is_driven(world_.bodies[body].motion); }
   bool resting(int body) const { return rests_[body].has_value(); }
   void put_to_rest(int body, int support);
   /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked
@@ -144,7 +145,8 @@ class MovingWorld {
     return paths_[body].smooth;
   }
 
-  /// Begins a step from the committed time: works out the motion's bounds and where all come out.
+  /// Begins a step from the committed time: works out where all come out. The motion's bounds are
+  /// worked out where motion() asks for them.
   void begin_step(double target);
   /// Begins the step under way again, because some bodies ask for an earlier target or have got
   /// other velocities. Nothing is integrated for a body that flies alone and has kept its state:

@@ -243,7 +243,7 @@ std::optional<StepLimit> judge_rods(const World& world,
 
 namespace {
 
-// 10^ so much over the run; what a step does, and how large one may be.
+// Natural logarithm of the growth over the run; what a step does, and how large one may be.
 double growth_over(const StepsOfARun& steps, double amplification) {
   return std::log(amplification) * steps.duration / steps.step;
 }
@@ -428,10 +428,7 @@ void EnergyWatch::take_in(const World& world) {
 
 std::optional<Runaway> EnergyWatch::look(double time, const World& world,
                                          const std::vector<RigidBodyState>& states) {
-  const auto driven = [](const WorldBody& b) {
-    return b.immovable() &&
-           !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0));
-  };
+  const auto driven = [](const WorldBody& b) { return b.immovable() && is_driven(b.motion); };
   if (!has_meters_) take_in(world);
   if (std::any_of(meters_.begin(), meters_.end(),
                   [](const auto& meter) { return meter->is_unlimited(); }))

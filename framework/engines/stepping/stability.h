@@ -141,8 +141,8 @@ struct Runaway {
 /// wrong law's.
 class EnergyWatch {
  public:
-  /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for
-  /// [m/s];
+  /// @param restitution_threshold  of impacts that do not bounce [m/s]: the energy of so slow a
+  /// motion is not asked for
   /// @param step  of the run [s]
   /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else
   /// worlds with effects that bring energy in go unwatched
