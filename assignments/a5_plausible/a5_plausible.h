@@ -107,8 +107,9 @@ double log_acceptance(double log_target_from, double log_target_to, double log_f
 /// @param proposal    as for propose
 /// @param state       x and its log_target, which is not computed again
 /// @param draws       choice and normals: of the proposal;  u: uniform, in [0, 1)
-/// @return where the chain is now: x (n), its log_target, and whether the proposal was accepted.
-///         An impossible place is never entered, also not with u == 0
+/// @return where the chain is now: x (n), its log_target, and whether this proposal was accepted
+///         (state.accepted is about the one before). An impossible place is never entered, also
+///         not with u == 0
 /// Source: Hastings, section 2.   Tests: MetropolisStep.*
 /// Hints: handouts/a5_plausible.md#hint-metropolis-step
 ChainState metropolis_step(const LogDensity& log_target, const Proposal& proposal,
@@ -134,7 +135,7 @@ VectorXd autocorrelation(const VectorXd& chain, int most_lag);
 ///   var_plus = (N - 1)/N W + B/N                                                            (A5.8)
 ///   rho_t = 1 - (W - N/(N - 1) mean of the halves' c_t) / var_plus,   c_t of (A5.7)
 ///   P_k = rho_2k + rho_(2k+1);  k = 0, 1, ... while P_k > 0 and 2k + 1 < N;
-///       then P_k <- min(P_k, P_(k-1))
+///       then P_k <- min(P_k, P_(k-1)), with P_(k-1) as it has become
 ///   tau = -1 + 2 sum of P_k, at least 1/log10(S);   S_eff = S / tau
 /// @param chains  at least one, all of the same length >= 4
 /// @return > 0;  NaN where all numbers of all halves are equal
@@ -142,7 +143,8 @@ VectorXd autocorrelation(const VectorXd& chain, int most_lag);
 /// Hints: handouts/a5_plausible.md#hint-effective-sample-size
 double effective_sample_size(const std::vector<VectorXd>& chains);
 
-/// Whether chains have found the same distribution: near 1 where they have, above 1.01 where not.
+/// Whether chains have found the same distribution: below 1.01 is wanted; above it they have not,
+/// or are too short to show it.
 /// Halves, W and var_plus as in (A5.8), but of scores z instead of the numbers themselves:
 ///   z = normal_quantile((r - 3/8) / (S + 1/4))                                              (A5.9)
 /// r is the rank of a number among all S numbers of all halves, from 1; equal numbers share the
@@ -158,7 +160,7 @@ double effective_sample_size(const std::vector<VectorXd>& chains);
 double split_r_hat(const std::vector<VectorXd>& chains);
 
 /// The mean of what chains have sampled, with its Monte Carlo error.
-///   mean, deviation (divisor S - 1): of all numbers of all chains
+///   mean, deviation (divisor their count - 1): of all numbers of all chains, whole
 ///   standard_error = deviation / sqrt(effective_samples)                                   (A5.10)
 /// @param chains  as for effective_sample_size
 /// @return effective_samples by (A5.8);  NaN, and so the error, where it is not known. An error of

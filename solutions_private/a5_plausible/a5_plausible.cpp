@@ -18,6 +18,13 @@ double log_sum(double a, double b) {
   return larger == -kInfinity ? -kInfinity : larger + std::log1p(std::exp(smaller - larger));
 }
 
+bool have_one_sign(double a, double b) { return (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0); }
+
+/// ln(to / from) of numbers of one sign, of which no quotient overflows.
+double log_ratio(double to, double from) {
+  return std::log(std::abs(to)) - std::log(std::abs(from));
+}
+
 /// (A5.4), one of the two proposals: sizes `factor` times as large.
 double log_step(const Proposal& proposal, double factor, const VectorXd& from, const VectorXd& to) {
   double log_density = 0.0;
@@ -29,8 +36,8 @@ double log_step(const Proposal& proposal, double factor, const VectorXd& from, c
       continue;
     }
     const bool multiplies = move.kind == MoveKind::kMultiply;
-    if (multiplies && !(to[i] / from[i] > 0.0)) return -kInfinity;
-    const double z = (multiplies ? std::log(to[i] / from[i]) : to[i] - from[i]) / size;
+    if (multiplies && !have_one_sign(to[i], from[i])) return -kInfinity;
+    const double z = (multiplies ? log_ratio(to[i], from[i]) : to[i] - from[i]) / size;
     log_density -= 0.5 * z * z + std::log(size) + kLogRootTwoPi;
     if (multiplies) log_density -= std::log(std::abs(to[i]));
   }

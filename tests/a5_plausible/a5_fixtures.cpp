@@ -50,7 +50,9 @@ std::string acceptance_slip(const std::string& otherwise) {
   if (is(downhill, 0) && is(uphill, -1))
     return "pi(x) and pi(x') are exchanged: what is more probable is to be accepted";
   if (is(uphill, 1)) return "the min with 0 is forgotten: no probability is above 1";
-  if (is(downhill, -0.5)) return "Barker's or a square-root rule: ln a is the whole difference";
+  if (is(downhill, -0.5)) return "a square-root rule: ln a is the whole difference";
+  if (is(downhill, -std::log1p(std::exp(1.0))))
+    return "Barker's rule, pi' / (pi + pi'): ln a is the difference, and never above 0";
   if (is(hard_back, 0) && is(hard_forth, 0))
     return "Hastings' correction is forgotten: ln q(x | x') - ln q(x' | x)";
   if (is(hard_back, 0) && is(hard_forth, -1))

@@ -120,7 +120,9 @@ TEST(LogAcceptance, DoesNotSeeAConstantInTheDensity) {
 
 // ln pi = -x: an exponential density on x > 0.
 double exponential(const VectorXd& x) { return x.size() == 1 && x[0] > 0 ? -x[0] : -kInfinity; }
-ChainState at(double x, double log_target) { return {vector({x}), log_target, false}; }
+ChainState at(double x, double log_target, bool accepted = false) {
+  return {vector({x}), log_target, accepted};
+}
 double place(const ChainState& state) { return state.x.size() == 1 ? state.x[0] : kUnset; }
 
 TEST(MetropolisStep, AsksForOneDensity) {
@@ -146,11 +148,11 @@ TEST(MetropolisStep, AsksForOneDensity) {
 TEST(MetropolisStep, MovesOrStays) {
   // From 2 to 3: a = exp(-1) = 0.3679.
   const Proposal proposal{{add(0.5)}, 0.0, 1.0};
-  const auto step = [&](double uniform) {
-    return student().metropolis_step(exponential, proposal, at(2, -2),
+  const auto step = [&](double uniform, bool accepted_before) {
+    return student().metropolis_step(exponential, proposal, at(2, -2, accepted_before),
                                      draws_with(vector({2}), 0.9, uniform));
   };
-  const ChainState moved = step(0.36), stayed = step(0.37);
+  const ChainState moved = step(0.36, false), stayed = step(0.37, true);
   const auto story = [](const std::string& uniform, const std::string& slip) {
     return Story{.scene = "ln pi = -x, from x = 2 to 3, so a = 0.3679; u = " + uniform,
                  .slip = slip,
@@ -174,7 +176,7 @@ TEST(MetropolisStep, MovesOrStays) {
   expect_answer(stayed.log_target, -2, 0, "",
                 story("0.37", "ln pi of the rejected proposal is kept"));
   expect_true(!stayed.accepted, "not accepted", "accepted",
-              story("0.37", "whether the proposal was accepted"));
+              story("0.37", "whether this proposal was accepted, and not the one before it"));
 }
 
 TEST(MetropolisStep, NeverEntersAnImpossiblePlace) {

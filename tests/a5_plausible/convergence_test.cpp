@@ -122,6 +122,25 @@ TEST(EffectiveSampleSize, SumsPairsWhileTheyArePositiveAndFall) {
        .handout = equation(8)});
 }
 
+TEST(EffectiveSampleSize, HoldsPairsDownByTheSmallestBefore) {
+  // Pairs 1.646, 0.608, 0.158, 0.336, 0.720: the last two count as 0.158 each.
+  const std::vector<VectorXd> chains = {
+      vector({2, 1, 2, 4, 3, 4, 6, 7, 5, 4, 6, 4, 3, 1, 0, 0, 0, 2, 3, 5}),
+      vector({1, 3, 2, 1, 3, 2, 3, 1, 2, 1, 1, 1, 1, 2, 1, 3, 1, 0, 0, 0})};
+  const double found = student().effective_sample_size(chains);
+  expect_answer(
+      found, 8.978543156725223, kRoundoff * 200, "samples",
+      {.scene = "two chains of 20 whose pairs fall, and then rise twice",
+       .slip =
+           likely(found,
+                  {{8.31297415455831, "P_(k-1) is the one that has been held down, not as it was"},
+                   {6.737884314747263,
+                    "a pair that is larger than the one before it counts as that "
+                    "one: P_k <- min(P_k, P_(k-1))"}},
+                  "see SumsPairsWhileTheyArePositiveAndFall first"),
+       .handout = equation(8)});
+}
+
 TEST(EffectiveSampleSize, LeavesOutTheMiddleOfAnOddNumber) {
   const std::vector<VectorXd> chains = {vector({0, 1, 3, 2, 7, 4, 3, 5, 2}),
                                         vector({1, 2, 2, 4, 0, 6, 5, 3, 4})};
@@ -182,13 +201,22 @@ TEST(EffectiveSampleSize, OfChainsThatStandStill) {
                  {.scene = "three chains of ten times 0.1",
                   .slip = "0 / 0, or the rounding of a mean taken for a variance",
                   .handout = equation(8)});
-  // rho_t = 1 at every lag: tau = -1 + 2 * 10 of halves of 10, so 40 / 19.
-  const std::vector<VectorXd> apart = {VectorXd::Constant(20, 0.1), VectorXd::Constant(20, 0.3)};
-  expect_answer(student().effective_sample_size(apart), 40.0 / 19, kRoundoff * 40, "samples",
-                {.scene = "one chain of twenty times 0.1, one of twenty times 0.3",
-                 .slip = "c_t of a half that stands still is 0, and not unknown: what is known is "
-                         "between the halves",
-                 .handout = equation(8)});
+  // rho_t = 1 at every lag: five whole pairs of halves of 10, and of 11, so tau = -1 + 2 * 10.
+  for (const int length : {20, 22}) {
+    const std::vector<VectorXd> apart = {VectorXd::Constant(length, 0.1),
+                                         VectorXd::Constant(length, 0.3)};
+    const double found = student().effective_sample_size(apart), samples = 2.0 * length;
+    expect_answer(
+        found, samples / 19, kRoundoff * 40, "samples",
+        {.scene = "one chain of 0.1 alone, one of 0.3, " + std::to_string(length) + " numbers each",
+         .slip = likely(found,
+                        {{samples / 21,
+                          "the last lag of halves of an odd length "
+                          "has no partner: whole pairs count"}},
+                        "c_t of a half that stands still is 0, and not unknown: what is "
+                        "known is between the halves"),
+         .handout = equation(8)});
+  }
 }
 
 // ---- R-hat ----
@@ -211,6 +239,28 @@ TEST(SplitRHat, OfTwoShortChains) {
                        {1.3475380546485851, "scores are those of (r - 3/8) / (S + 1/4)"},
                        {1.35205007368549, "scores are those of (r - 3/8) / (S + 1/4)"}},
                       "ranks from 1 among all numbers, their scores, W and var_plus of these"),
+       .handout = equation(9)});
+}
+
+TEST(SplitRHat, FoldsAboutTheMedianOfAll) {
+  // One centre, far from 0 and not the mean; the second chain is wider. Only the folded part sees
+  // it: R of the numbers themselves is 0.877.
+  const double found = student().split_r_hat(
+      {vector({9, 11, 8, 12, 8.5, 11.5, 9.5, 10.5}), vector({2, 18, 4, 40, 3, 17, 1, 19})});
+  expect_answer(
+      found, 1.826160123181032, 1e-13, "",
+      {.scene = "chains 9, 11, 8, 12, 8.5, 11.5, 9.5, 10.5 and 2, 18, 4, 40, 3, 17, 1, 19",
+       .slip = likely(
+           found,
+           {{1.7097278871735966, "folded about the mean: |x - median|"},
+            {0.8768595012101837, "the larger of two parts counts: that of |x - median|, too"},
+            {1.7435874808173923, "of an even number the median is the mean of the middle two"},
+            {1.7383055406435597, "of an even number the median is the mean of the middle two"},
+            {1.857766972257367, "the scores are folded: the numbers are, and then ranked"},
+            {1.7589704936717692, "the scores are folded: the numbers are, and then ranked"},
+            {1.321675985696764, "the folded numbers are ranked, too"},
+            {1.877861993175163, "one median, of all numbers of all halves"}},
+           "R(|x - median of all S numbers|), of scores like R(x)"),
        .handout = equation(9)});
 }
 
@@ -302,7 +352,7 @@ TEST(MonteCarloAnswer, OfTwoShortChains) {
                  .slip = slip,
                  .handout = equation(10)};
   };
-  const double deviation = std::sqrt(655.0 / 240);  // 16 numbers: 185 - 47^2 / 16 over 15
+  const double deviation = std::sqrt(655.0 / 240);  // 16 numbers: 179 - 47^2 / 16 over 15
   expect_answer(found.mean, 2.9375, kRoundoff * 3, "(mean)", story("the mean of all numbers"));
   expect_answer(found.deviation, deviation, kRoundoff * 5, "(deviation)",
                 story(likely(found.deviation,

@@ -26,7 +26,7 @@ TEST(LogPrior, FallsWithTheSquareOfTheDistance) {
             {std::exp(-4.5) - 1, "the density itself is returned where its logarithm belongs"},
             {(std::exp(-4.5) - 1) / (0.5 * std::sqrt(2 * M_PI)),
              "the density itself is returned where its logarithm belongs"},
-            {-3.125, "the mean is forgotten"}},
+            {-16.5, "the mean is forgotten"}},
            "-1/2 ((x - mean) / deviation)^2"),
        .handout = equation(1)});
 }

@@ -35,11 +35,13 @@ TEST(Propose, AddsAndMultiplies) {
 }
 
 TEST(Propose, TakesWideStepsWithTheirShare) {
-  const Proposal proposal{{add(0.5)}, 0.25, 10.0};
-  const auto step = [&](double choice) {
-    const VectorXd x = student().propose(proposal, vector({1}), draws_with(vector({2}), choice));
-    return x.size() == 1 ? x[0] : kUnset;
+  const Proposal proposal{{add(0.5), multiply(0.1)}, 0.25, 10.0};
+  const auto step_of = [&](double choice, Eigen::Index number) {
+    const VectorXd x =
+        student().propose(proposal, vector({1, 1}), draws_with(vector({2, 2}), choice));
+    return x.size() == 2 ? x[number] : kUnset;
   };
+  const auto step = [&](double choice) { return step_of(choice, 0); };
   const auto story = [](const std::string& choice, const std::string& slip) {
     return Story{.scene =
                      "x = 1, size 0.5, z = 2; wide steps of 10 times the size have the share "
@@ -61,6 +63,14 @@ TEST(Propose, TakesWideStepsWithTheirShare) {
                 story("0.9", "a usual step where choice >= wide_share"));
   expect_answer(step(0.25), 2, kRoundoff * 2, "",
                 story("0.25", "wide where choice < wide_share, so that a share of 0 means never"));
+  const double wide_factor = step_of(0.1, 1);
+  expect_answer(
+      wide_factor, std::exp(2.0), kRoundoff * 20, "(the second number)",
+      story("0.1; a second number, x = 1, is multiplied, size 0.1",
+            likely(wide_factor,
+                   {{std::exp(0.2), "wide steps are for numbers that are multiplied, too"},
+                    {10 * std::exp(0.2), "the factor stands in the exponent, exp(f s z)"}},
+                   "x exp(f s z)")));
 }
 
 TEST(Propose, LeavesNumbersOfSize0) {
@@ -88,8 +98,8 @@ TEST(LogProposal, IsTheDensityOfTheStep) {
        .slip = likely(
            found,
            {{-2,
-             "what normalises the density is forgotten: it counts here, "
-             "because two proposals of different size are mixed"},
+             "what normalises the density is forgotten: two proposals of "
+             "different size are mixed"},
             {-2 - kLogRootTwoPi, "the size is forgotten in what normalises: ln q has - ln s"},
             {-2 - std::log(0.5), "ln sqrt(2 pi) is forgotten"},
             {-4 - std::log(0.5) - kLogRootTwoPi, "the factor 1/2 is forgotten"},
@@ -160,6 +170,20 @@ TEST(LogProposal, MixesTheTwoProposals) {
                                  0.25 * std::exp(log_normal(0.4, 10) + std::log(10.0))),
                         "the wide proposal is normalised with the usual size"}},
                       "ln((1 - w) q_1 + w q_f)"),
+       .handout = equation(4)});
+  // Of a number that is multiplied.
+  const double z = std::log(5.0);
+  const double of_both =
+      std::log(0.75 * std::exp(log_normal(z, 1)) + 0.25 * std::exp(log_normal(z / 10, 10))) - z;
+  const double multiplied =
+      student().log_proposal({{multiply(1)}, 0.25, 10.0}, vector({1}), vector({5}));
+  expect_answer(
+      multiplied, of_both, kRoundoff * 10, "",
+      {.scene = "from 1 to 5 by multiplication, size 1, and 10 with the share 0.25",
+       .slip =
+           likely(multiplied,
+                  {{log_normal(z, 1) - z, "wide steps are for numbers that are multiplied, too"}},
+                  "the same mixture, with z = ln(to / from) / (f s) and the Jacobian"),
        .handout = equation(4)});
   // Only one of the two.
   expect_answer(student().log_proposal({{add(1)}, 0.0, 10.0}, vector({1}), vector({5})), usual,

@@ -124,8 +124,9 @@ double log_proposal(const Proposal& proposal, const VectorXd& from, const Vector
     }
     double step = to[i] - from[i];
     if (proposal.moves[static_cast<std::size_t>(i)].kind == MoveKind::kMultiply) {
-      if (!(to[i] * from[i] > 0)) return kMinusInfinity;
-      step = std::log(to[i] / from[i]);
+      const bool keeps_its_sign = (to[i] > 0 && from[i] > 0) || (to[i] < 0 && from[i] < 0);
+      if (!keeps_its_sign) return kMinusInfinity;
+      step = std::log(std::abs(to[i])) - std::log(std::abs(from[i]));
       constants += std::log(std::abs(to[i]));
     }
     squares += (step / sizes[i]) * (step / sizes[i]);
