@@ -50,7 +50,8 @@ VectorXd euler_step(const OdeFunction& f, double t, const VectorXd& y, double h)
 ///   k3 = f(t + h/2, y + (h/2) k2)     k4 = f(t + h, y + h k3)
 ///   y(t + h) ~ y + (h/6) (k1 + 2 k2 + 2 k3 + k4)                                            (A2.2)
 /// Order 4: halving h divides the error by 16. Exact for f = f(t) a polynomial of degree 3 or less.
-/// It does not conserve energy; the loss per unit of time shrinks with h^5.
+/// It does not conserve energy; the drift per unit of time shrinks with h^4 (of an undamped linear
+/// oscillation with h^5).
 /// @param f  called exactly four times, in the order k1, k2, k3, k4
 /// @param t, y, h  as for euler_step
 /// @return the state at t + h, (n)
@@ -166,9 +167,9 @@ EulerAngles euler_angles_from_rotation(const Matrix3d& world_from_body);
 //   kNotConverged  the search ended with a larger bracket; here the only cause is a g that gave NaN
 //                  (there is no limit of iterations). time and residual are those of the last a
 //                  (t_low, where g(t_high) is NaN), or NaN where g(t_low) is NaN
-// residual is g(time); evaluations counts the calls of g. An end that is exactly 0 is an impact:
-// t_low is tested first. An even number of crossings inside the interval cannot be seen from its
-// ends: the caller chooses the interval.
+// residual is g(time); evaluations counts the calls of g. An end that is exactly 0 is an impact,
+// unless g(t_low) < 0: t_low is tested first. An even number of crossings inside the interval
+// cannot be seen from its ends: the caller chooses the interval.
 
 /// Time of impact by bisection: halve the bracket, keep the half where the sign changes.
 ///   m = a + (b - a) / 2;   g(m) >= 0: a = m,  otherwise b = m;   until b - a <= tolerance  (A2.11)

@@ -62,8 +62,8 @@ Vector3d anchor_velocity(const Body& body, const Vector3d& point_body);
 /// @param a, b    p: point_world [m];  v: velocity_world [m/s]
 /// @return F on A, (3), world frame [N]; exactly 0 where the anchors coincide (p_a == p_b): there
 ///         is no direction
-/// @post  finite, and right to round-off, for every length from 1e-200 to 1e+150 m: |d|^2 is
-///        neither.  For L0 = 0 and c = 0 F = k d
+/// @post  finite, and right to round-off, for every length from 1e-200 to 1e+200 m, where a plain
+///        |d|^2 underflows or overflows.  For L0 = 0 and c = 0 F = k d
 /// Source: Witkin, "Particle system dynamics", SIGGRAPH course notes 1997, eq. 2.
 /// Tests: SpringForce.*
 /// Hints: handouts/a3_constraints.md#hint-spring
@@ -95,7 +95,8 @@ ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b
 /// The C'' that returns a drifting constraint like a critically damped spring, without overshoot.
 ///   C'' = -(2 / T) C' - C / T^2                                                             (A3.6)
 /// Then C(t) = (C0 + (C0' + C0 / T) t) exp(-t / T). It is not physical: a short T stabilises better
-/// and puts more of the error into the motion; T below the integrator's step is unstable.
+/// and puts more of the error into the motion; T far below the integrator's step h is unstable
+/// (below h/2 for Euler, below 0.36 h for RK4).
 /// @param value            C [m]
 /// @param rate             C' [m/s]
 /// @param time_constant_s  T > 0 [s]
@@ -117,8 +118,8 @@ double baumgarte_acceleration(double value, double rate, double time_constant_s)
 /// @post  C'' is C''_wanted, to round-off. Redundant rows (a rod twice) share its force in any way:
 ///        the sum of J^T lambda is right. Contradictory rows cannot all hold: lambda is some finite
 ///        answer. Never NaN.
-/// Cost: 1,000 rods in a chain within a tenth of a second. Right to 1e-8 where masses differ by
-/// 1e6, in chains of up to 100.
+/// Cost: 1,000 rods in a chain within a tenth of a second. Right to 1e-8 of the largest where one
+/// mass is 1e6 times the others, in chains of up to 100; to 1e-6 where such masses alternate.
 /// Source: Witkin, section 3; Baraff96, sections 3 and 7.   Tests: ConstraintMultipliers.*
 /// Hints: handouts/a3_constraints.md#hint-multipliers
 VectorXd constraint_multipliers(const std::vector<Constraint>& rows,
@@ -152,9 +153,9 @@ VectorXd constraint_correction(const std::vector<Constraint>& rows,
 /// @param b  (m): acceleration apart without contact forces [m/s^2]; < 0: the bodies would
 ///           penetrate. Where a gap is left that may still close, b is larger by what it allows:
 ///           contacts that are redundant in A may differ in b
-/// @pre   some f solves (A3.9); it does for every A = J M^-1 J^T with b = J u' (u' any
-///        acceleration) or anything larger
-/// @return f, (m) [N]. It need not be unique; a = A f + b is, to 1e-10 of the largest |b|. A
+/// @pre   some f solves (A3.9); it does for every A = J M^-1 J^T with b = J u' or anything larger,
+///        where u' is any acceleration in which bodies of infinite mass rest
+/// @return f, (m) [N]; empty for m = 0. It need not be unique; a = A f + b is, to 1e-10 of the largest |b|. A
 ///         contact with A_ii = 0 (nothing there can move) has f_i = 0, whatever its b
 /// Source: Baraff94, sections 2-4; Cottle, chapters 3 and 4.   Tests: ContactForces.*
 /// Hints: handouts/a3_constraints.md#hint-contact

@@ -20,7 +20,7 @@ namespace tumble {
 /// What happens, in the order in which it does at one instant and in one microstep.
 enum class WorkKind : std::uint8_t { kCallback = 1, kCollision = 2, kGroup = 3, kRedraw = 4 };
 
-/// Generation of a redraw: a frame shows what has happened at its instant, so it comes last.
+/// Microstep of a redraw: a frame shows what has happened at its instant, so it comes last.
 constexpr std::uint32_t kLastMicrostep = std::numeric_limits<std::uint32_t>::max();
 
 /// When and where something happens. No two things of a run have the same stamp.
@@ -39,10 +39,8 @@ struct ScheduledEvent {
   // found)
   Stamp stamp;
   // nothing that this event may still change lies before it [s]: of a check the time up to which
-  // its
+  // its bodies were verified disjoint, of a callback its own time, of a redraw infinity
   double safe_time = kUnset;
-  // bodies were verified disjoint, of a callback its own
-  // time, of a redraw infinity
   // processes that must have come to stamp.time, ascending; walls are none. Of a redraw empty: all
   std::vector<std::int32_t> receivers;
 };

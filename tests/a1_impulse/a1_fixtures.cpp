@@ -236,7 +236,8 @@ Encounter scaled(const Encounter& e, double length, double mass, double time) {
 }
 
 std::vector<Units> changes_of_unit() {
-  constexpr double kSmall = 0x1p-30, kLarge = 0x1p30;  // 1e-9 and 1e9
+  // 1e-18 and 1e18: what is called small in a program is larger
+  constexpr double kSmall = 0x1p-60, kLarge = 0x1p60;
   return {{kSmall, 1, 1}, {kLarge, 1, 1}, {1, kSmall, 1},
           {1, kLarge, 1}, {1, 1, kSmall}, {1, 1, kLarge}};
 }

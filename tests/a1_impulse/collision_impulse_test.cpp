@@ -110,6 +110,17 @@ TEST(ImpulseWithoutRotation, DrivenWallsMoveToo) {
                         "inverse masses or relative velocity"),
          .handout = equation("8")});
   }
+  Body lowered = wall({0, 0, 1});
+  lowered.velocity_world = {0, 0, -1};
+  const std::string slip =
+      "infinite mass on both sides: the denominator is 0, and no impulse can do anything";
+  expect_near(student().collision_impulse_without_rotation({{0, 0, 0}, kUp}, lowered,
+                                                           wall({0, 0, -1}), 0.5),
+              0.0, 0.0, "N s",
+              {.scene = "a driven wall (infinite mass, 1 m/s) meets another wall",
+               .slip = slip,
+               .handout = equation("8"),
+               .no_number = slip});
 }
 
 TEST(ImpulseWithoutRotation, IsRightInEveryUnit) {

@@ -123,14 +123,17 @@ TEST(RayTriangle, MissesWhenParallel) {
 }
 
 TEST(RayTriangle, FindsATriangleOfAMicrometre) {
-  const double s = 0x1p-20;  // m
-  const Triangle tiny{kRightAngled.a_world * s, kRightAngled.b_world * s, kRightAngled.c_world * s};
-  const auto found = student().intersect_ray_triangle(straight_down(0.5 * s, 0.75 * s), tiny);
-  expect_hit(found, 2.0, {0.5, 0.125, 0.375},
-             {.scene = "the triangle shrunk to 4 micrometres",
-              .slip = "an absolute epsilon on the determinant: it grows with the square of the "
-                      "triangle's size, so 1e-9 is not small",
-              .handout = kHandout});
+  // The second has a determinant of 6.6e-24: DBL_EPSILON is not small beside it, either.
+  for (const double s : {0x1p-20, 0x1p-40}) {  // m
+    const Triangle tiny{kRightAngled.a_world * s, kRightAngled.b_world * s,
+                        kRightAngled.c_world * s};
+    const auto found = student().intersect_ray_triangle(straight_down(0.5 * s, 0.75 * s), tiny);
+    expect_hit(found, 2.0, {0.5, 0.125, 0.375},
+               {.scene = "the triangle shrunk to " + show(4 * s) + " m",
+                .slip = "an absolute epsilon on the determinant: it grows with the square of the "
+                        "triangle's size, so neither 1e-9 nor DBL_EPSILON is small",
+                .handout = kHandout});
+  }
 }
 
 TEST(RayTriangle, FindsATriangleSeenNearlyEdgeOn) {

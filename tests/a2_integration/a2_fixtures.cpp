@@ -316,7 +316,7 @@ void expect_nan_noticed(const RootResult& found, const Approach& approach, const
   const Story story{.scene = approach.scene,
                     .slip =
                         "NaN is not noticed: it compares as neither >= 0 nor < 0, so ask for it "
-                        "(std::isnan) at every look, the two ends included",
+                        "(std::isnan) at every call of the gap, the two ends included",
                     .handout = equation(10)};
   expect_true(found.status == RootStatus::kNotConverged, "status kNotConverged",
               "status " + show(found.status) + ", time " + show(found.time) + " s", story);
@@ -419,7 +419,7 @@ bool asked_first(bool came, const std::string& scene, const std::string& expecte
                  int equation_number) {
   expect_true(
       came, expected, "nothing of the kind",
-      {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
+      {.scene = "before this test a simpler case is asked, which must have an answer: " + scene,
        .slip = "the function gives nothing (0, NaN, no impact, its own argument) where there is an "
                "answer, or its status says so",
        .handout = equation(equation_number)});

@@ -38,7 +38,7 @@ TEST(EulerStep, AsksForOneSlopeAtTheStart) {
 }
 
 TEST(EulerStep, IsOfOrderOne) {
-  // The orders of the exact method from 256 to 2048 steps are 0.986 to 0.996; a method of order 2
+  // The orders of the exact method from 128 to 1024 steps are 0.986 to 0.996; a method of order 2
   // shows 1.98 or more.
   const auto found = observed_orders(a2_module().euler_step, logistic, 0.0, vector({10}), 0.5,
                                      vector({kLogisticAtHalf}), 128, 3);

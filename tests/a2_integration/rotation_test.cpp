@@ -34,7 +34,7 @@ TEST(Renormalize, RepairsASmallDriftWithoutTurningAround) {
 
 TEST(Renormalize, RepairsAnyLength) {
   const Quaterniond q(0.2, 0.4, -0.8, 0.4);
-  for (const double length : {1 + 1e-9, 1 - 0x1p-40, 0x1p-30, 0x1p30}) {
+  for (const double length : {1 + 1e-9, 1 - 0x1p-40, 0x1p-60, 0x1p60}) {
     const Quaterniond given(length * q.coeffs()), found = a2_module().renormalize(given);
     const Slips<Quaterniond> slips = {{Quaterniond::Identity(),
                                        "an absolute threshold: only the zero quaternion has no "
@@ -110,7 +110,7 @@ TEST(Orthonormalize, RepairsAnyDrift) {
                  .handout = equation(7),
                  .iterates = true});
   }
-  for (const double size : {0x1p-30, 0x1p30}) {
+  for (const double size : {0x1p-60, 0x1p60}) {
     const Matrix3d R = third_turn().toRotationMatrix(),
                    found = a2_module().orthonormalize(size * (R + 1e-3 * drift)),
                    plain = a2_module().orthonormalize(R + 1e-3 * drift);

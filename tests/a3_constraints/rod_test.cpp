@@ -144,11 +144,10 @@ TEST(RodRow, DrivenBodiesMoveToo) {
   }
 }
 
-// A rod of nanometres, and one of a million kilometres: powers of two, so that answers scale
-// exactly.
+// A rod of 1e-30 m, and one of 1e30 m: powers of two, so that answers scale exactly.
 TEST(RodRow, IsRightAtEveryLength) {
   const ConstraintRow plain = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0);
-  for (const double size : {0x1p-30, 0x1p30}) {
+  for (const double size : {0x1p-100, 0x1p100}) {
     Body a = body_a(), b = body_b();
     a.com_world *= size, b.com_world *= size;
     a.velocity_world = size * Vector3d(1, -2, 0.5);
@@ -165,6 +164,8 @@ TEST(RodRow, IsRightAtEveryLength) {
     expect_near(Vector3d(row.jacobian_a.tail<3>() / size), Vector3d(kArmA.cross(n)),
                 kRodRoundoff * 10, "(r_a x n, in that unit)", story);
     expect_near(row.rate / size, -1.0, kRodRoundoff * 10, "(C', in that unit)", story);
+    expect_near(row.velocity_product / size, 0.85, kRodRoundoff * 10, "(J' u, in that unit)",
+                story);
   }
 }
 
@@ -196,7 +197,7 @@ TEST(RodRow, AccelerationOfASwingingPoint) {
                   "leaves the circle"},
                  {-18, "the sign of the velocity product"},
                  {20, "|d'|^2 / |d|: only the motion across the rod counts, take (n . d')^2 off"},
-                 {36, "the velocity product is divided by the length twice, or not at all"},
+                 {36, "the velocity product is divided by the length twice"},
                  {9, "the division by |d| is forgotten"}},
              "(|d'|^2 - (n . d')^2) / |d|"),
          .handout = equation(5)});
@@ -271,7 +272,7 @@ TEST(Baumgarte, PullsBack) {
                  {-10 * c.rate - 100 * c.value, "the 2 is forgotten: it swings over without"},
                  {-20 * c.rate - 10 * c.value, "T is not squared under C"},
                  {-0.2 * c.rate - 0.01 * c.value, "T is multiplied, not divided by"},
-                 {-100 * c.value - 100 * c.rate, "T is squared under C' as well"}},
+                 {-100 * c.value - 200 * c.rate, "T is squared under C' as well"}},
              "-(2 / T) C' - C / T^2"),
          .handout = equation(6)});
   }

@@ -44,19 +44,19 @@ TEST(NextCheckTime, IsAtMostTenStepsAhead) {
 }
 
 TEST(NextCheckTime, IsRightInEveryUnit) {
-  // A gap in nanometres that closes at nanometres per second, and one of a million kilometres: s is
-  // the same, in powers of two exactly.
+  // A gap of 1e-30 m that closes at as many metres per second, and one of 1e30 m: s is the same, in
+  // powers of two exactly.
   const bool plain = std::abs(a4_module().next_check_time(2.0, 2.0, 1.0, 2.0, kStep) - 3.0) < 1e-12;
   const std::string slip = plain
                                ? "an absolute threshold: only a gap of exactly 0, or a speed and "
                                  "an acceleration of exactly 0, are cases of their own"
                                : "the same in metres is wrong, too: see the tests before this one";
-  for (const double unit : {0x1p-40, 0x1p40}) {
+  for (const double unit : {0x1p-100, 0x1p100}) {
     expect_next(2.0 * unit, 1.0 * unit, 2.0 * unit, 3.0, slip);
     expect_next(1.0 * unit, 2.0 * unit, 0.0, 2.5, slip);
   }
-  // the textbook form of the root cancels here; s is 1 less 1.4e-14
-  expect_next(1.0, 1.0, 0x1p-45, 3.0, slip);
+  // the textbook form of the root cancels here and gives 0.9992; s is 1 less 5e-15
+  expect_next(1.0, 1.0, 1e-14, 3.0, slip);
 }
 
 // ---- Collision checks --------------------------------------------------------------------------
@@ -72,6 +72,8 @@ TEST(OnCollisionCheck, DisjointBodiesAreSafeUpToNow) {
       .slip =
           found.next.safe_time == 0.25
               ? "the safe time stands still: the same interval would be looked at again and again"
+          : found.next.safe_time == 0.5
+              ? "the next look is due at next_check_time, counted from the time of this one"
               : "safe up to the time of the check, no farther: what comes after it was not looked "
                 "at",
       .handout = equation(3)};
@@ -106,6 +108,11 @@ TEST(OnCollisionCheck, AnImpactSendsBothBackToIt) {
                .slip = "an impact in the past is an impact: this is what rollback is for",
                .handout = story.handout});
   expect_rollbacks(found.rollbacks, {back(A, contact), back(B, contact)}, story);
+  expect_times(found.next, collision_check(A, B, 0.25, 0.5), 0.375, 0.375,
+               {.scene = story.scene,
+                .slip = "the next check is this one with its two times replaced: its microstep is "
+                        "the check's, not the impact's",
+                .handout = story.handout});
 }
 
 TEST(OnCollisionCheck, AWallIsNotSentBack) {

@@ -57,7 +57,31 @@ TEST(OnGroupCheck, AGroupStaysWhileItsContactsHold) {
   expect_true(!found.changes && found.rollbacks.empty(), "the group stays, nobody goes back",
               std::string(found.changes ? "it changes, " : "it stays, ") + show(found.rollbacks),
               story);
+  expect_true(found.groups.empty(), "no groups: nothing changes", show(found.groups), story);
   expect_times(found.next, event, 1.5, 1.625, story);
+}
+
+// What opens may be a contact with a wall, and the group stays one; the check may be of a later
+// microstep.
+TEST(OnGroupCheck, AWallMayBeWhatOpens) {
+  ScheduledEvent event = group_check({A, B}, 1.0, 1.5);
+  event.stamp.microstep = 3;
+  const GroupDecision found =
+      a4_module().on_group_check(event, {{A, B, kInfinity}, {B, kWall, 1.25}}, 0.125);
+  Stamp opened = event.stamp;
+  opened.time = 1.25;
+  const Story story{
+      .scene =
+          "A and B are looked at in [1, 1.5] s, microstep 3; B leaves the wall at 1.25 s, and "
+          "A and B touch for ever",
+      .slip =
+          "a contact with a wall opens, too: all go back to the stamp of the check with the "
+          "time of the opening, even where the group stays one",
+      .handout = equation(5)};
+  expect_true(found.changes, "the group changes", "it stays", story);
+  expect_groups(found.groups, {{A, B}}, story);
+  expect_rollbacks(found.rollbacks, {back(A, opened), back(B, opened)}, story);
+  expect_times(found.next, event, 1.25, 1.25, story);
 }
 
 TEST(OnGroupCheck, AGroupSplitsWhereAContactOpens) {

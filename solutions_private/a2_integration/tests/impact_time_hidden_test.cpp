@@ -61,6 +61,42 @@ void expect_conventions(const Finder& find) {
                 10);
   expect_impact(find(line(2), 1e-6, high), line(2), high, 0.0, 0.0,
                 "a gap of exactly 0 at t_high is an impact there, where no other was seen", 10);
+  // Both ends: t_low decides, whether by its sign or by its 0.
+  Looks arriving_looks, both_looks;
+  Approach both = line(0);
+  both.scene = "gap = t (2 - t) in [0, 2] s, 0 at both ends";
+  both.gap = [](double t) { return t * (2 - t); };
+  both.gap_rate = [](double t) { return 2 - 2 * t; };
+  const Approach arriving{"gap = t - 2 in [0, 2] s, which overlaps until the gap is 0 at t_high",
+                          [](double t) { return t - 2; },
+                          [](double) { return 1.0; },
+                          0.0,
+                          2.0,
+                          kUnset};
+  expect_impact(find(both, 1e-6, both_looks), both, both_looks, 0.0, 0.0,
+                "t_low is tested first: a gap of exactly 0 there is the impact", 10);
+  expect_no_impact(find(arriving, 1e-6, arriving_looks), arriving_looks, arriving.scene,
+                   "g(t_low) < 0 is overlap from the start, whatever g(t_high) is");
+}
+
+// At 2^20 s doubles are 2^-32 s apart, more than the tolerance: the bracket ends at two neighbours,
+// after 33 halvings of 2 s. @param most  calls, the two ends included, by the header's bound
+void expect_last_bracket(const Finder& find, int most) {
+  const double start = 0x1p20, spacing = 0x1p-32;
+  const Approach late{
+      "gap = 0.3 - (t - 2^20) in [2^20, 2^20 + 2] s, where doubles are 2.3e-10 s "
+      "apart",
+      [start](double t) { return 0.3 - (t - start); },
+      [](double) { return -1.0; },
+      start,
+      start + 2,
+      start + std::floor(0.3 / spacing) * spacing};
+  Looks looks;
+  const std::string slip =
+      "the tolerance is below the distance of two doubles: stop when no double lies inside the "
+      "bracket, not only when the bracket is small enough";
+  expect_impact(find(late, 1e-12, looks), late, looks, 0.0, 0.0, slip, 10);
+  expect_few(looks, most, late.scene, slip);
 }
 
 TEST(ImpactTimeBisection, KeepsTheConventionsOfTheEnds) { expect_conventions(bisect); }
@@ -73,6 +109,7 @@ TEST(ImpactTimeBisection, EndsAtTheLastBracketForTolerance0) {
                   "tolerance 0: stop when the middle is one of the ends", 11);
     expect_few(looks, 70, approach.scene, "tolerance 0: stop when the middle is one of the ends");
   }
+  expect_last_bracket(bisect, 44);
 }
 
 TEST(ImpactTimeNewton, FindsTheLastDigitForTolerance0) {
@@ -86,6 +123,7 @@ TEST(ImpactTimeNewton, FindsTheLastDigitForTolerance0) {
                "tolerance 0: stop when no double lies inside the bracket, and bisect where it does "
                "not shrink");
   }
+  expect_last_bracket(newton, 10 + 4 * 35);
 }
 
 TEST(ImpactTimeNewton, DoesNotCycle) {

@@ -95,7 +95,7 @@ TEST(Rk4Step, BringsAPlanetHomeWithOrderFour) {
 }
 
 TEST(Rk4Step, SymmetricTopPrecessesAtItsOwnRate) {
-  // Disc, moments 1, 1, 2, w = (0.4, 0.3, 5) rad/s: w turns about the axis at -5 rad/s of phase;
+  // Disc, moments 1, 1, 2, w = (0.4, 0.3, 5) rad/s: w turns about the axis at 5 rad/s of phase;
   // the value at 1 s is exact.
   const OdeFunction disc = [](double, const VectorXd& w) {
     const Vector3d moments(1, 1, 2), omega = w;
