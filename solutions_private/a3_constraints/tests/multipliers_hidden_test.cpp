@@ -62,8 +62,8 @@ TEST(ConstraintMultipliers, FindAChainInAnyOrder) {
        .handout = equation(7)});
 }
 
-// Small pivots are no redundant rows: 50 links of 1 kg above 50 of 1,000 t, listed from below, and a
-// gram beside a ton.
+// Small pivots are no redundant rows: 50 links of 1 kg above 50 of 1,000 t, listed from below, and
+// a gram beside a ton.
 void expect_no_light_row_is_left_out() {
   constexpr int kHalf = 50, kLinks = 2 * kHalf;
   std::vector<double> masses(kLinks, 1.0);
