@@ -148,14 +148,14 @@ VectorXd constraint_correction(const std::vector<Constraint>& rows,
 /// Forces of resting contacts without friction: they push only, and only where the bodies do not
 /// separate.
 ///   f >= 0,   a = A f + b >= 0,   f . a = 0                                                 (A3.9)
-/// @param A  (m,m), symmetric, positive SEMI-definite: how contact j's force accelerates contact i
+/// @param A  (m,m), m >= 1, symmetric, positive SEMI-definite: how contact j's force accelerates contact i
 ///           apart [1/kg]. Singular as soon as contacts are redundant (a table on four legs)
 /// @param b  (m): acceleration apart without contact forces [m/s^2]; < 0: the bodies would
 ///           penetrate. Where a gap is left that may still close, b is larger by what it allows:
 ///           contacts that are redundant in A may differ in b
 /// @pre   some f solves (A3.9); it does for every A = J M^-1 J^T with b = J u' or anything larger,
 ///        where u' is any acceleration in which bodies of infinite mass rest
-/// @return f, (m) [N]; empty for m = 0. It need not be unique; a = A f + b is, to 1e-10 of the largest |b|. A
+/// @return f, (m) [N]. It need not be unique; a = A f + b is, to 1e-10 of the largest |b|. A
 ///         contact with A_ii = 0 (nothing there can move) has f_i = 0, whatever its b
 /// Source: Baraff94, sections 2-4; Cottle, chapters 3 and 4.   Tests: ContactForces.*
 /// Hints: handouts/a3_constraints.md#hint-contact

@@ -114,10 +114,6 @@ TEST(ContactForces, CarryAHeavyBoxOnALightOne) {
 }
 
 TEST(ContactForces, AreRightInEveryUnit) {
-  expect_true(forces_of(MatrixXd(0, 0), VectorXd(0)).size() == 0, "no forces", "some",
-              {.scene = "no contacts at all",
-               .slip = "m = 0 is no special case: the answer is empty, too",
-               .handout = equation(9)});
   // A gram and a ton beside each other, each on its own contact.
   const VectorXd apart =
       forces_of(Vector2d(1e3, 1e-3).asDiagonal().toDenseMatrix(), Vector2d::Constant(-kGravity));
