@@ -59,19 +59,27 @@ void print_mutants(const std::vector<AuditResult>& results) {
   }
 }
 
-void print_tests(const grading::Rubric& rubric, const std::vector<AuditResult>& results) {
+/// @param catching_only  leave out tests that catch nothing, and count them
+void print_tests(const grading::Rubric& rubric, const std::vector<AuditResult>& results,
+                 bool catching_only) {
   const auto catches = grading::catches_of(results);
   std::size_t widest = 0;
   for (const auto& item : rubric.items) widest = std::max(widest, item.test.size());
   fmt::print("\n{:<{}}  catches  alone\n", "test", widest);
+  int idle = 0;
   for (const auto& item : rubric.items) {
     const auto found = catches.find(item.test);
     const grading::Catches none, &of_test = found == catches.end() ? none : found->second;
+    if (catching_only && of_test.count == 0) {
+      ++idle;
+      continue;
+    }
     std::string alone;
     for (const std::string& slip : of_test.alone) alone += (alone.empty() ? "" : ", ") + slip;
     fmt::print("{:<{}}  {:>7}  {}\n", item.test, widest, of_test.count,
                of_test.count == 0 ? "none of these slips" : alone);
   }
+  if (idle > 0) fmt::print("{} others: none of these slips\n", idle);
 }
 
 void print_json(const std::vector<AuditResult>& results) {
@@ -207,7 +215,7 @@ void audit(Context& context, const AuditWords& words) {
     print_json(results);
   } else {
     print_mutants(results);
-    print_tests(grading::rubric_of(course, words.id), results);
+    print_tests(grading::rubric_of(course, words.id), results, !words.only.empty());
     if (words.only.empty() && words.mutants.empty())
       print_functions(results, context.registry.find(words.id).functions);
     fmt::print(
