@@ -23,6 +23,7 @@ struct GradeWords {
   bool no_media = false;
   std::string code_in_pages;  // empty: by no_media
   std::string sandbox, accepted_sandbox, policy;
+  bool no_policy = false;
   std::string shard, on, hosts;
   int shards = 0;
 };
@@ -106,10 +107,24 @@ void refuse_contradictions(const GradeWords& words) {
                     "Leave it out; SBATCH_PARTITION and SBATCH_NODELIST choose machines.");
 }
 
+/// A gradebook that had due dates and penalties must not lose them because a word was forgotten.
+void refuse_to_drop_policy(const GradeWords& words, const fs::path& out) {
+  if (!words.policy.empty() || words.no_policy || !grading::has_settings(out)) return;
+  const fs::path before = grading::settings_of(out).policy;
+  if (before.empty()) return;
+  throw UserError(
+      out.string(),
+      "its last grading went by " + before.string() +
+          ", and none is given now: the gradebook would lose due dates, late days and "
+          "penalties",
+      "Add --policy " + before.string() + ", or --no-policy to go without from now on.");
+}
+
 void grade(Context& context, const GradeWords& words) {
   refuse_contradictions(words);
   const fs::path out =
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
+  refuse_to_drop_policy(words, out);
   GradingRequest request{words.id, words.folder, out, words.sandbox, words.policy, {}};
   request.options.jobs = words.jobs > 0 ? words.jobs : default_jobs();
   if (!words.shard.empty()) request.options.shard = farm::shard_of(words.shard);
@@ -178,6 +193,8 @@ void add_grade(CLI::App& app, Context& context) {
           "Due dates, late days, penalties, attempts, groups and the roster; the gradebook then "
           "has points before and after, and why")
       .type_name("FILE.json");
+  verb.flag("--no-policy", words->no_policy,
+            "Grade without one into a folder whose last grading had one");
   verb.option("--sandbox", words->sandbox,
               "namespaces, landlock or bare; default: the strongest that this machine has (tumble "
               "doctor)")

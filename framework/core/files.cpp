@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 #include <fcntl.h>
@@ -118,6 +119,7 @@ std::optional<std::string> read_plain_file(const std::filesystem::path& file,
   while (got < text.size()) {
     const ssize_t n = ::read(fd, text.data() + got, text.size() - got);
     if (n < 0 && errno == EINTR) continue;
+    if (n < 0) why = std::string("cannot be read to its end: ") + std::strerror(errno);
     if (n <= 0) break;
     got += static_cast<std::size_t>(n);
   }

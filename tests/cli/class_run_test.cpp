@@ -158,6 +158,26 @@ class Lowering : public OtherRubric {
   double before = 0.0;
 };
 
+TEST_F(Grading, APolicyIsNotDroppedBecauseAWordWasForgotten) {
+  put("ada/a1_impulse.cpp", text_of(kStub));
+  write_whole(root / "roster.csv", "name,id\nada,7\n");
+  write_whole(root / "policy.json",
+              R"({"due": {"a1": "2026-10-12T23:59:00+02:00"}, "roster": "roster.csv"})");
+  const std::string policy = (root / "policy.json").string();
+  const ProgramOutcome first = grade("out", {"--no-media", "--policy", policy});
+  ASSERT_TRUE(fs::exists(root / "out/gradebook.csv")) << first.printed;
+  const std::string gradebook = text_of(root / "out/gradebook.csv");
+
+  const ProgramOutcome forgotten = grade("out");
+  EXPECT_EQ(forgotten.code, 2) << forgotten.printed;
+  EXPECT_TRUE(says(forgotten, "--no-policy")) << forgotten.printed;
+  EXPECT_EQ(text_of(root / "out/gradebook.csv"), gradebook);
+
+  EXPECT_NE(grade("out", {"--no-media", "--no-policy"}).code, 2);
+  EXPECT_NE(text_of(root / "out/gradebook.csv"), gradebook);
+  EXPECT_NE(grade("out").code, 2) << "the last grading had none";
+}
+
 TEST_F(Lowering, NeedsAYes) {
   const ProgramOutcome again = grade("out");
   EXPECT_TRUE(says(again, "not lowered: blaise")) << again.printed;

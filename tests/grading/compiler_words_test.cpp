@@ -93,6 +93,18 @@ TEST_F(CompilerWords, OnlyWarningsOfTheStudentsFileAreShown) {
   EXPECT_EQ(compiler_warnings("", mine), "");
 }
 
+// A file may print what looks like a compiler's line, with a number that no line has.
+TEST_F(CompilerWords, NumbersBeyondEveryLineAreNoPlaces) {
+  const fs::path mine = write("mine.cpp", "static_assert(false);\n");
+  const std::string said =
+      "mine.cpp:99999999999999:1: error: boo\nmine.cpp:1:99999999999999: error: boo\n"
+      "mine.cpp:99999999999999:1:   required from here\n"
+      "mine.cpp:1:1: error: static assertion failed\n";
+  const std::string story = compiler_story(said, mine);
+  EXPECT_NE(story.find("mine.cpp:1:1: error: static assertion failed"), std::string::npos) << story;
+  EXPECT_EQ(story.find("99999999999999"), std::string::npos) << story;
+}
+
 // A hostile file causes very long lines: they are cut, because a regex would recurse too deep.
 TEST_F(CompilerWords, LinesOfAMegabyteDoNoHarm) {
   const std::string longest(1u << 20, 'a');

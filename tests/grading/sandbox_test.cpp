@@ -89,6 +89,17 @@ TEST_F(SandboxEnds, WallTimeCpuTimeAndOutputAreLimited) {
   EXPECT_EQ(run("exec yes").ending, Ending::kOutputLimit);
 }
 
+// Work between naps does not begin the count anew.
+TEST_F(SandboxEnds, NapsAddUp) {
+  SandboxJob job =
+      shell("while :; do sleep 0.2; i=0; while [ $i -lt 3000 ]; do i=$((i+1)); done; done");
+  job.limits.wall_s = 120.0;
+  job.limits.stall_s = 60.0;
+  EXPECT_EQ(job.limits.idle_s, 0.0);
+  job.limits.idle_s = 2.0;
+  EXPECT_EQ(Sandbox::start(job).wait().ending, Ending::kStalled);
+}
+
 TEST_F(SandboxEnds, ManySpinningProcessesEndAtTheWallLimit) {
   SandboxJob job = shell("for i in 1 2 3 4 5 6; do sh -c 'while :; do :; done' & done; wait");
   job.limits.wall_s = 0.5;

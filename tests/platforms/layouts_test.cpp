@@ -123,6 +123,16 @@ TEST_F(Layouts, OfCanvasNamesStudents) {
   EXPECT_LAYOUT(files, (Told{"doejane_12 | 12 | int a;\n", "roejohn_22 | 22 | int b;\n"}));
 }
 
+// The name of the file is the student's: it chooses nobody else's number.
+TEST_F(Layouts, ANumberIsThePlatformsAndNotTheStudents) {
+  EXPECT_LAYOUT((Files{{"evemiller_5_777_x_999_assignsubmission_file_a9_thing.cpp", "int e;\n"}}),
+                (Told{"evemiller_5 | 5 | int e;\n"}));
+  EXPECT_LAYOUT(
+      (Files{{"Eve Miller_5_assignsubmission_file_x_999_assignsubmission_file_a9_thing.cpp",
+              "int e;\n"}}),
+      (Told{"Eve Miller_5 | 5 | int e;\n"}));
+}
+
 TEST_F(Layouts, OfFoldersOfStudents) {
   const Files files = {{"ada/a9_thing.cpp", "int a;\n"}, {"blaise/x/a9_thing.cpp", "int b;\n"}};
   EXPECT_LAYOUT(files, (Told{"ada |  | int a;\n", "blaise |  | int b;\n"}));

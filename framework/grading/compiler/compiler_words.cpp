@@ -1,6 +1,7 @@
 #include "framework/grading/compiler/compiler_words.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cctype>
 #include <iterator>
 #include <optional>
@@ -72,6 +73,18 @@ class Reader {
     return eigen == std::string::npos ? file : file.substr(eigen + 1);
   }
 
+  // Nothing where a number is larger than any line's.
+  std::optional<Place> place_of(const std::string& file, const std::string& line,
+                                const std::string& column) const {
+    Place place{shortened(file), 0, 0};
+    const auto reads = [](const std::string& digits, int& number) {
+      const char* end = digits.data() + digits.size();
+      return std::from_chars(digits.data(), end, number) == std::from_chars_result{end, {}};
+    };
+    if (!reads(line, place.line) || !reads(column, place.column)) return std::nullopt;
+    return place;
+  }
+
   void take(const std::string& line) {
     static const std::regex head(
         R"(^(.+?):(\d+):(?:(\d+):)? (fatal error|error|warning|note): (.*)$)");
@@ -80,15 +93,17 @@ class Reader {
     static const std::regex inlined(R"(^\s+inlined from .* at (.+?):(\d+):(\d+)[,:]?$)");
     std::smatch m;
     if (std::regex_match(line, m, required) || std::regex_match(line, m, inlined)) {
-      const Place place{shortened(m[1]), std::stoi(m[2]), std::stoi(m[3])};
+      const auto place = place_of(m[1], m[2], m[3]);
       // the last one is the nearest to the student's code
-      if (place.file == name_) context_ = place;
+      if (place && place->file == name_) context_ = place;
     } else if (std::regex_match(line, m, head)) {
+      const auto place = place_of(m[1], m[2], m[3].matched ? m[3].str() : "1");
+      if (!place) return;  // a text of the student's that only looks like it
       Diagnostic d;
       d.kind = m[4] == "warning" ? Diagnostic::Kind::kWarning
                : m[4] == "note"  ? Diagnostic::Kind::kNote
                                  : Diagnostic::Kind::kError;
-      d.place = {shortened(m[1]), std::stoi(m[2]), m[3].matched ? std::stoi(m[3]) : 1};
+      d.place = *place;
       d.message = m[5];
       if (d.place.file != name_) d.required_from = context_;
       found_.push_back(d);

@@ -461,9 +461,10 @@ class Finder {
   }
 
   static std::optional<PlatformName> platform_file(const std::string& name) {
+    // Canvas first: its end is the student's own name of the file, which may look like Moodle's.
+    if (auto canvas = canvas_name(name)) return canvas;
     auto moodle = moodle_name(name);
-    if (moodle && !moodle->file.empty()) return moodle;
-    return canvas_name(name);
+    return moodle && !moodle->file.empty() ? moodle : std::nullopt;
   }
 
   void note_refused(const std::string& name, Found& found) const {

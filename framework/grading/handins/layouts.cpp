@@ -95,7 +95,9 @@ std::optional<PlatformName> canvas_name(const std::string& name) {
 }
 
 std::optional<PlatformName> moodle_name(const std::string& name) {
-  static const std::regex pattern(R"(^(.+)_(\d+)_assignsubmission_(?:file|onlinetext)(?:_(.*))?$)");
+  // the first number, which the platform writes: the student chooses the rest
+  static const std::regex pattern(
+      R"(^(.+?)_(\d+)_assignsubmission_(?:file|onlinetext)(?:_(.*))?$)");
   return taken_apart(name, pattern);
 }
 

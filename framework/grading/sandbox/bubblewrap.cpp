@@ -70,8 +70,9 @@ std::vector<std::string> BubblewrapBody::command() const {
   add({"--ro-bind", job.init.string(), kInitInside});
   for (const Bind& bind : job.binds) add({"--ro-bind", bind.from.string(), bind.to});
   add({"--chdir", kTmpInside});
-  // Both are tmpfs without a size limit unless read-only.
-  add({"--remount-ro", "/dev", "--remount-ro", "/"});
+  // Two are tmpfs without a size limit unless read-only; what is written to the third can lower the
+  // priority of the process that measures time (autogroup).
+  add({"--remount-ro", "/dev", "--remount-ro", "/", "--remount-ro", "/proc"});
   add({"--seccomp", std::to_string(kBodyFd), "--as-pid-1", kInitInside,
        std::to_string(job.is_alone ? kInitAndProgram : job.limits.processes)});
   words.insert(words.end(), job.command.begin(), job.command.end());

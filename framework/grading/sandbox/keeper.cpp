@@ -136,8 +136,13 @@ class Keeper {
     if (job_.limits.stall_s <= 0.0 || !shows_children()) return false;
     constexpr double kTick = 0.01;  // s: the kernel's resolution of CPU time
     const double activity = activity_below(child_);
-    if (std::abs(activity - activity_) > kTick) activity_ = activity, active_ = Clock::now();
-    return Clock::now() - active_ > std::chrono::duration<double>(job_.limits.stall_s);
+    const auto now = Clock::now();
+    idle_s_ += std::max(0.0, std::chrono::duration<double>(now - looked_).count() -
+                                 std::max(0.0, activity - seen_));
+    looked_ = now, seen_ = activity;
+    if (job_.limits.idle_s > 0.0 && idle_s_ > job_.limits.idle_s) return true;
+    if (std::abs(activity - activity_) > kTick) activity_ = activity, active_ = now;
+    return now - active_ > std::chrono::duration<double>(job_.limits.stall_s);
   }
 
   bool read_printed(int fd) {
@@ -239,6 +244,9 @@ class Keeper {
   // s of CPU time and delay of all processes inside, when it last grew
   double activity_ = 0.0;
   Clock::time_point active_ = Clock::now();
+  // of all looks: how long in all nothing inside has computed or waited for a core
+  Clock::time_point looked_ = Clock::now();
+  double seen_ = 0.0, idle_s_ = 0.0;
   InitReport ended_{};
   Ending forced_ = Ending::kNotStarted;
   SandboxOutcome outcome_;

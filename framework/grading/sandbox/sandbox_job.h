@@ -17,6 +17,8 @@ struct SandboxLimits {
   double wall_s = 10.0;
   // wall time in which no process inside computes or waits for a core; 0: not limited
   double stall_s = 0.0;
+  // the sum of such times, however often something is computed between them; 0: not limited
+  double idle_s = 0.0;
   std::uint64_t cpu_s = 10;                 // per process; the wall limit bounds the sum
   std::uint64_t memory_bytes = 1ull << 30;  // of address space, per process
   std::uint64_t file_bytes = 64ull << 20;   // per file

@@ -143,7 +143,10 @@ std::filesystem::path Stage::add_file(const std::filesystem::path& from, const s
 
 std::filesystem::path Stage::add_text(const std::string& text, const std::string& name) {
   const auto to = path_ / name;
-  std::ofstream(to, std::ios::binary) << text;
+  std::ofstream out(to, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw UserError(to.string(), "cannot be written", "Is the disk full?");
   hand_over(to, 0444);
   return to;
 }
