@@ -100,6 +100,12 @@ TEST(Standing, BestOfAttemptsIsBestAfterThePenalty) {
   const Standing last = only(apply_policy(policy, {{"ada", "7", "", {}}}, times, grades));
   EXPECT_EQ(last.submission, "second");
   EXPECT_NEAR(*last.after, 63.0, 1e-12);
+  // Which is the last is unknown where a time is missing; nobody is to guess.
+  const Standing unknown =
+      only(apply_policy(policy, {{"ada", "7", "", {}}}, {times[0], {"else", "bo", policy.due_s}},
+                        {scored("first", 70.0), scored("ada", 90.0)}));
+  EXPECT_FALSE(unknown.after);
+  EXPECT_NE(unknown.why.find("ada has no time"), std::string::npos) << unknown.why;
 }
 
 TEST(Standing, AGroupSharesItsSubmissionOnlyWhereGroupsAreOn) {

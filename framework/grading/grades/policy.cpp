@@ -89,6 +89,19 @@ Standing best_of(const Policy& policy, const Person& person, const std::vector<A
   Standing chosen;
   chosen.person = person;
   chosen.why = "nothing was handed in: no score, somebody has to decide";
+  const auto timeless = std::find_if(attempts.begin(), attempts.end(),
+                                     [](const Attempt& attempt) { return !attempt.hand_in; });
+  if (policy.attempt == AttemptThatCounts::kLast && attempts.size() > 1 &&
+      timeless != attempts.end()) {
+    chosen.submission = timeless->grade->name;
+    chosen.folder = timeless->grade->folder;
+    chosen.attempts = attempts.size();
+    chosen.why = fmt::format(
+        "{} has no time, so which of {} attempts is the last is unknown: no score, add its row to "
+        "the file of times",
+        plain_name(chosen.submission), attempts.size());
+    return chosen;
+  }
   const Attempt* counted = nullptr;
   for (const Attempt& attempt : attempts) {
     // A result that may still change leaves open which attempt counts.
