@@ -300,7 +300,7 @@ TEST(Gradescope, TestsCarryScoreAndWhoSeesThem) {
   ASSERT_EQ(json.at("tests").size(), 2u);
   EXPECT_EQ(json["tests"][0].at("visibility"), "visible");
   EXPECT_EQ(json["tests"][0].at("status"), "passed");
-  EXPECT_EQ(json["tests"][1].at("visibility"), "after_published");
+  EXPECT_EQ(json["tests"][1].at("visibility"), "hidden");
   EXPECT_EQ(json["tests"][1].at("score"), 0.0);
   EXPECT_EQ(json["tests"][1].at("max_score"), 40.0);
   EXPECT_EQ(json["tests"][1].at("output"), "wrong\noff by \\xFF <b>");

@@ -244,7 +244,7 @@ std::string gradescope_json(const Grade& grade) {
     entry["status"] = test.result.verdict == Verdict::kRight ? "passed" : "failed";
     entry["output"] = output_of(test);
     entry["tags"] = test.item.level.empty() ? Json::array() : Json::array({test.item.level});
-    entry["visibility"] = test.item.hidden ? "after_published" : "visible";
+    entry["visibility"] = test.item.hidden ? "hidden" : "visible";
     entry["extra_data"] = {{"test", test.item.test}, {"verdict", words(test.result.verdict)}};
     page["tests"].push_back(std::move(entry));
   }
