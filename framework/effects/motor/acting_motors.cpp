@@ -13,7 +13,8 @@ namespace {
 
 // of the largest torque: what the rates of bodies at rest change in it
 constexpr double kSameTorque = 1e-6;
-constexpr double kSameAngle = 1e-9;  // rad: likewise, by a motor's stiffness
+constexpr double kTurn = 2 * std::numbers::pi;  // rad
+constexpr double kSameAngle = 1e-9;             // rad: likewise, by a motor's stiffness
 
 // A motor measures its hinge's angle within a turn: from half a turn between two looks on it is
 // lost. Nothing comes so far that does not overshoot more each time, because the torque that brakes
@@ -56,12 +57,16 @@ double MotorTerms::look(double time, const std::vector<Body>& bodies) {
       ++calls_;
       const HingeMotion hinge = hinge_motion(of(motor).hinge, bodies[motor.a], bodies[motor.b]);
       refuse_lost(of(motor).hinge.name, law, hinge);
+      // The hinge knows its angle within a turn, the motor how far it has come: since the last look
+      // by less than half a turn (refuse_lost).
+      const double turns =
+          motor.next_look > 0.0 ? std::round((motor.angle - hinge.angle) / kTurn) : 0.0;
+      motor.angle = hinge.angle + kTurn * turns;
       const double target =
           law.offset_rad +
-          law.amplitude_rad *
-              std::sin(2 * std::numbers::pi * law.frequency_hz * time + law.phase_rad);
+          law.amplitude_rad * std::sin(kTurn * law.frequency_hz * time + law.phase_rad);
       const double torque =
-          law.stiffness_n_m_rad * (target - hinge.angle) - law.damping_n_m_s_rad * hinge.rate;
+          law.stiffness_n_m_rad * (target - motor.angle) - law.damping_n_m_s_rad * hinge.rate;
       motor.torque = std::clamp(torque, -law.largest_torque_n_m, law.largest_torque_n_m);
       motor.next_look = law.period_s * (std::floor(time / law.period_s * (1 + 1e-12)) + 1);
     }
@@ -72,7 +77,8 @@ double MotorTerms::look(double time, const std::vector<Body>& bodies) {
 
 Memory MotorTerms::memory() const {
   Memory memory;
-  for (const Acts& motor : motors_) memory[motor.entry] = {motor.torque, motor.next_look, 0.0};
+  for (const Acts& motor : motors_)
+    memory[motor.entry] = {motor.torque, motor.next_look, motor.angle};
   return memory;
 }
 
@@ -81,6 +87,7 @@ void MotorTerms::remember(const Memory& memory) {
     const auto held = memory.find(motor.entry);
     motor.torque = held == memory.end() ? 0.0 : held->second[0];
     motor.next_look = held == memory.end() ? 0.0 : held->second[1];
+    motor.angle = held == memory.end() ? 0.0 : held->second[2];
   }
 }
 

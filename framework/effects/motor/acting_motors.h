@@ -24,7 +24,8 @@ class MotorTerms final : public GroupTerms, public Control {
     int entry;               // in the world's list
     int a, b;                // places of its hinge's bodies
     double torque = 0.0;     // that it holds [N m]
-    double next_look = 0.0;  // [s]
+    double next_look = 0.0;  // [s]; 0: it has not looked yet
+    double angle = 0.0;      // of its hinge at its last look, whole turns counted [rad]
   };
   const Motor& of(const Acts& motor) const { return all_[static_cast<std::size_t>(motor.entry)]; }
 

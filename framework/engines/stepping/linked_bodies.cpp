@@ -324,7 +324,8 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   return local;
 }
 
-// The largest error of these rows, over the group's size: its longest rod, its farthest coordinate.
+// The largest error of these rows, over the group's size: its longest rod, its farthest coordinate,
+// and where these are near 0 its largest body.
 double LinkedBodies::open_part(const std::vector<Body>& bodies,
                                const std::vector<Constraint>& rows) const {
   double worst = 0.0, size = 0.0;
@@ -332,7 +333,10 @@ double LinkedBodies::open_part(const std::vector<Body>& bodies,
     worst = std::isnan(c.row.value) ? c.row.value : std::max(worst, std::abs(c.row.value));
   for (const Terms& terms : terms_) size = std::max(size, terms.acting->size());
   for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
-  return worst == 0.0 ? 0.0 : worst / size;
+  if (worst == 0.0 || worst <= kNegligible * size) return worst == 0.0 ? 0.0 : worst / size;
+  for (const int body : bodies_)
+    size = std::max(size, bounding_radius(world_.bodies[static_cast<std::size_t>(body)].shape));
+  return worst / size;
 }
 
 std::vector<ConstrainedBody> LinkedBodies::constrained(const std::vector<Body>& bodies) {
