@@ -54,8 +54,29 @@ ContactProblem PersistentContacts::problem_of(const ContactIsland& island,
         contacts, states, h,
         island.large ? kContact.warm_start_within_in_large_island : kContact.warm_start_within,
         problem);
-  add_island_rows(moving_, island, moving_.states(), moving_.time(), places, false, problem);
+  if (at_once || island.linked.empty())
+    add_island_rows(moving_, island, moving_.states(), moving_.time(), places, false, problem);
+  else
+    add_island_rows(moving_, island, middle_of_step(island, ends), moving_.time() + 0.5 * h, places,
+                    false, problem);
   return problem;
+}
+
+// Rods and joints react to what pushes over a step along the directions that they have in its
+// middle: with those of its start a body on a rod that is pressed to a floor would turn a part of
+// that pressure, in proportion to the step, into energy.
+const std::vector<RigidBodyState>& PersistentContacts::middle_of_step(
+    const ContactIsland& island, const std::vector<RigidBodyState>* ends) {
+  middle_.resize(moving_.states().size());
+  for (const int body : island.bodies) {
+    const RigidBodyState &from = moving_.state(body),
+                         &to = ends ? (*ends)[body] : moving_.path_end(body);
+    middle_[body] = {0.5 * (from.com_world + to.com_world),
+                     from.world_from_body.slerp(0.5, to.world_from_body),
+                     0.5 * (from.momentum_world + to.momentum_world),
+                     0.5 * (from.angular_momentum_world + to.angular_momentum_world)};
+  }
+  return middle_;
 }
 
 // What an earlier attempt at this step has found for the pair, or else the last step.

@@ -142,6 +142,8 @@ class PersistentContacts {
   ContactProblem problem_of(const ContactIsland& island, const StepContacts& contacts,
                             const std::vector<RigidBodyState>& states, double h,
                             const std::vector<RigidBodyState>* ends = nullptr);
+  const std::vector<RigidBodyState>& middle_of_step(const ContactIsland& island,
+                                                    const std::vector<RigidBodyState>* ends);
   void warm_start(const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h,
                   double farthest, ContactProblem& problem) const;
   const std::vector<KnownImpulse>* known_impulses(Pair pair) const;
@@ -222,7 +224,8 @@ class PersistentContacts {
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
-  RunWatch unsolved_;  // what it leaves unsolved, until it is committed
+  std::vector<RigidBodyState> middle_;  // of a linked island's step, by body; others are stale
+  RunWatch unsolved_;                   // what it leaves unsolved, until it is committed
 };
 
 }  // namespace tumble::engines

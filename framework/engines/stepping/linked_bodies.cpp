@@ -325,7 +325,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
 }
 
 // The largest error of these rows, over the group's size: its longest rod, its farthest coordinate,
-// and where these are near 0 its largest body.
+// and where these are near 0 its largest radius of gyration.
 double LinkedBodies::open_part(const std::vector<Body>& bodies,
                                const std::vector<Constraint>& rows) const {
   double worst = 0.0, size = 0.0;
@@ -334,8 +334,10 @@ double LinkedBodies::open_part(const std::vector<Body>& bodies,
   for (const Terms& terms : terms_) size = std::max(size, terms.acting->size());
   for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
   if (worst == 0.0 || worst <= kNegligible * size) return worst == 0.0 ? 0.0 : worst / size;
-  for (const int body : bodies_)
-    size = std::max(size, bounding_radius(world_.bodies[static_cast<std::size_t>(body)].shape));
+  for (const int body : bodies_) {
+    const Inertia& inertia = world_.bodies[static_cast<std::size_t>(body)].inertia;
+    size = std::max(size, std::sqrt(inertia.inertia_body.diagonal().maxCoeff() / inertia.mass));
+  }
   return worst / size;
 }
 
