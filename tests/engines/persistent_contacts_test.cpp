@@ -185,7 +185,7 @@ TEST(LinkedContacts, APuckOnATetherGoesRoundToSecondOrder) {
     scene::Scene scene = with_contact({puck, floor_of(0.0)}, 2.0);
     scene.step_s = step;
     scene.effects.of<effects::RodSpec>().push_back(
-        {"tether", {"", {0, 0, 0.55}}, {"puck", Vector3d::Zero()}, {}});
+        {"tether", {"", {0, 0, 0.55}}, {"puck", Vector3d::Zero()}, std::sqrt(1.25)});
     const Frame end = run_it(scene).frames.back();
     EXPECT_NEAR(end.kinetic_energy, 2.0, 0.01) << step;
     return (end.poses[0].com_world - Vector3d(std::cos(4.0), std::sin(4.0), 0.05)).norm();
@@ -206,7 +206,7 @@ TEST(LinkedContacts, ACartKeepsTheEnergyOfItsPendulumToSecondOrder) {
     scene::Scene scene = with_contact({cart, bob, floor_of(0.0)}, 1.0);
     scene.step_s = step;
     scene.effects.of<effects::RodSpec>().push_back(
-        {"arm", {"cart", {0, 0, 0.8}}, {"bob", Vector3d::Zero()}, {}});
+        {"arm", {"cart", {0, 0, 0.8}}, {"bob", Vector3d::Zero()}, 0.8});
     double worst = 0.0;
     const Trajectory result = run_it(scene);
     for (const Frame& frame : result.frames)
