@@ -107,10 +107,20 @@ void refuse_contradictions(const GradeWords& words) {
                     "Leave it out; SBATCH_PARTITION and SBATCH_NODELIST choose machines.");
 }
 
+/// The policy of the last grading into this folder; empty: it had none, or is no folder of results,
+/// which is for the grading itself to say.
+fs::path policy_before(const fs::path& out) {
+  try {
+    return grading::settings_of(out).policy;
+  } catch (const UserError&) {
+    return {};
+  }
+}
+
 /// A gradebook that had due dates and penalties must not lose them because a word was forgotten.
 void refuse_to_drop_policy(const GradeWords& words, const fs::path& out) {
-  if (!words.policy.empty() || words.no_policy || !grading::has_settings(out)) return;
-  const fs::path before = grading::settings_of(out).policy;
+  if (!words.policy.empty() || words.no_policy) return;
+  const fs::path before = policy_before(out);
   if (before.empty()) return;
   throw UserError(
       out.string(),

@@ -110,8 +110,6 @@ bool holder_lives(int lock) {
 
 std::string draft_name(const std::string& folder) { return kDraft + folder; }
 
-bool has_settings(const fs::path& out) { return fs::exists(out / kManifest); }
-
 RunSettings settings_of(const fs::path& out) {
   const fs::path file = out / kManifest;
   try {

@@ -23,8 +23,6 @@ struct RunSettings {
   std::string code_in_pages = "own";
 };
 
-/// Whether there is a manifest of this grader in it.
-bool has_settings(const std::filesystem::path& out);
 /// The settings of the last grading into a folder of results.
 /// @throws UserError when the folder has no manifest of this grader
 RunSettings settings_of(const std::filesystem::path& out);
