@@ -148,8 +148,9 @@ VectorXd constraint_correction(const std::vector<Constraint>& rows,
 /// Forces of resting contacts without friction: they push only, and only where the bodies do not
 /// separate.
 ///   f >= 0,   a = A f + b >= 0,   f . a = 0                                                 (A3.9)
-/// @param A  (m,m), m >= 1, symmetric, positive SEMI-definite: how contact j's force accelerates contact i
-///           apart [1/kg]. Singular as soon as contacts are redundant (a table on four legs)
+/// @param A  (m,m), m >= 1, symmetric, positive SEMI-definite: how contact j's force accelerates
+///           contact i apart [1/kg]. Singular as soon as contacts are redundant (a table on four
+///           legs)
 /// @param b  (m): acceleration apart without contact forces [m/s^2]; < 0: the bodies would
 ///           penetrate. Where a gap is left that may still close, b is larger by what it allows:
 ///           contacts that are redundant in A may differ in b

@@ -124,9 +124,12 @@ TEST_F(Layouts, OfCanvasNamesStudents) {
 }
 
 // The name of the file is the student's: it chooses nobody else's number.
-TEST_F(Layouts, ANumberIsThePlatformsAndNotTheStudents) {
+TEST_F(Layouts, ANumberIsThatOfCanvasAndNotTheStudents) {
   EXPECT_LAYOUT((Files{{"evemiller_5_777_x_999_assignsubmission_file_a9_thing.cpp", "int e;\n"}}),
                 (Told{"evemiller_5 | 5 | int e;\n"}));
+}
+
+TEST_F(Layouts, ANumberIsMoodlesAndNotTheStudents) {
   EXPECT_LAYOUT(
       (Files{{"Eve Miller_5_assignsubmission_file_x_999_assignsubmission_file_a9_thing.cpp",
               "int e;\n"}}),

@@ -5,8 +5,8 @@
 /// lowest microstep first, then lowest bodies. For equal balls in a row and restitution 1 this is
 /// Newton's cradle.
 ///
-/// It knows two bodies only, and so differs from the impacts of a world (sequential_impacts.h) below
-/// the restitution threshold: balls rest on supports that stand still, not on those that move
+/// It knows two bodies only, and so differs from the impacts of a world (sequential_impacts.h)
+/// below the restitution threshold: balls rest on supports that stand still, not on those that move
 /// evenly; a meeting is a micro-impact only where the body's last impact was with the same partner;
 /// each point of a flat contact is pushed apart, not only the one that approaches fastest; and a
 /// meeting without an impulse is an event of impulse 0.
