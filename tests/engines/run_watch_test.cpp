@@ -322,8 +322,8 @@ TEST(RunWatch, AHingeInTheOriginIsAsGoodAsElsewhere) {
     }
 }
 
-// A motor counts whole turns: k (target - angle) - d rate comes to rest at its target, wherever that
-// is. k, d and the moment 1 kg m^2 make it critically damped within 1 %; after 6 s the rest is
+// A motor counts whole turns: k (target - angle) - d rate comes to rest at its target, wherever
+// that is. k, d and the moment 1 kg m^2 make it critically damped within 1 %; after 6 s the rest is
 // 3.3 (1 + 27) e^-27.
 TEST(Motors, TurnToTargetsBeyondHalfATurn) {
   for (const double target : {3.3, -7.0})
