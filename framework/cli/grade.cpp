@@ -119,7 +119,8 @@ fs::path policy_before(const fs::path& out) {
 
 /// A gradebook that had due dates and penalties must not lose them because a word was forgotten.
 void refuse_to_drop_policy(const GradeWords& words, const fs::path& out) {
-  if (!words.policy.empty() || words.no_policy) return;
+  // a part of a class makes no gradebook: the command that asked for it does
+  if (!words.policy.empty() || words.no_policy || !words.shard.empty()) return;
   const fs::path before = policy_before(out);
   if (before.empty()) return;
   throw UserError(
