@@ -17,7 +17,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
     : laws_(guarded(laws)),
       step_(options.step_s.value_or(scene.step_s)),
       duration_(options.duration_s.value_or(scene.duration_s)),
-      rate_(options.frame_rate_hz),
+      frame_times_(scene, options),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}),
       impacts_(world_, laws_.find_impact_time, step_),
       meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}),
@@ -229,7 +229,7 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   if (links_) links_->measure(frame, flight_of);
   sink_.frame(frame);
   if (on_membership_) report_membership(frame.time, flight_of);
-  ++next_;
+  frame_times_.take();
   if (!callbacks_.empty()) return;  // callbacks may add energy
   if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
     throw StoppedRun(

@@ -6,6 +6,7 @@
 #include "framework/engines/events/flight_impact_detection.h"
 #include "framework/engines/events/link_measures.h"
 #include "framework/engines/events/flight_impact_response.h"
+#include "framework/engines/base/frame_times.h"
 #include "framework/engines/base/run_options.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/stability.h"
@@ -61,10 +62,7 @@ class FlightRun {
   /// Commits a change of islands without an event. @pre keys come in order
   void pass(const EventStamp& key);
   /// The next frame that is not committed yet; infinite when there is none. [s]
-  double next_frame() const {
-    return frame_time(next_) <= duration_ ? frame_time(next_)
-                                          : std::numeric_limits<double>::infinity();
-  }
+  double next_frame() const { return frame_times_.next(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
   /// @throws StoppedRun where energy has run away by then; the frame is recorded
   void commit_frame(const FlightOf& flight_of);
@@ -81,13 +79,13 @@ class FlightRun {
                                        RunCounters& counters) const;
   void require_progress(const EventStamp& key, const Event& event);
   void commit_switches(double until);
-  double frame_time(long k) const { return static_cast<double>(k) / rate_; }
   std::string name(int body) const {
     return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'";
   }
 
   const Laws laws_;  // guarded
-  double step_, duration_, rate_;
+  double step_, duration_;
+  FrameTimes frame_times_;
   double step_of_impacts_ = -1.0;  // of the grid: the one that the last impact fell into
   long impacts_in_step_ = 0;
   FlightWorld world_;
@@ -95,7 +93,6 @@ class FlightRun {
   FlightImpactResponse meetings_;
   TrajectorySink& sink_;
   EventStamp last_{-1.0, 0, StampKind::kCollision, -1, -1};
-  long next_ = 0;
   std::vector<Event> switches_;  // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;

@@ -1,5 +1,7 @@
 #include "framework/engines/judging/measures.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
@@ -17,12 +19,14 @@ int index_of(const std::string& name, const Trajectory& run) {
 
 const Frame* frame_at(double time, const Trajectory& run) {
   if (time == 0.0) return &run.frames.back();
-  // Frames are recorded at multiples of the frame time; rounding shifts them by far less than a
-  // microsecond.
+  // A run of the scene has a frame at the instants of its checks; one of another scene at multiples
+  // of the frame time, which a check may name by six decimals.
   constexpr double kSameInstant = 1e-6;  // s
-  for (const Frame& frame : run.frames)
-    if (std::abs(frame.time - time) <= kSameInstant) return &frame;
-  return nullptr;
+  const auto distance = [&](const Frame& frame) { return std::abs(frame.time - time); };
+  const auto nearest =
+      std::min_element(run.frames.begin(), run.frames.end(),
+                       [&](const Frame& a, const Frame& b) { return distance(a) < distance(b); });
+  return distance(*nearest) <= kSameInstant ? &*nearest : nullptr;
 }
 
 }  // namespace tumble::engines

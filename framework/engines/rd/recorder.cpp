@@ -92,15 +92,13 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
 }
 
 void FrameRecorder::record_before(MovingWorld& moving, double t) {
-  for (; frame_time(next_) < t && frame_time(next_) <= duration_; ++next_)
-    push(moving, frame_time(next_));
+  for (; times_.next() < t; times_.take()) push(moving, times_.next());
 }
 
 void FrameRecorder::record_committed(MovingWorld& moving) {
-  if (frame_time(next_) <= duration_ && frame_time(next_) <= moving.time() + kNegligible / rate_) {
-    push(moving, moving.time());
-    ++next_;
-  }
+  if (times_.next() > moving.time() + times_.slack()) return;
+  push(moving, moving.time());
+  times_.take();
 }
 
 }  // namespace tumble::engines

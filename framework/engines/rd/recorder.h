@@ -1,6 +1,7 @@
 /// Frames of a run, at exact frame times, without touching the committed path.
 #pragma once
 
+#include "framework/engines/base/frame_times.h"
 #include "framework/engines/stepping/moving_world.h"
 
 namespace tumble::engines {
@@ -25,8 +26,7 @@ class SmallestGap {
 
 class FrameRecorder {
  public:
-  FrameRecorder(double rate_hz, double duration, TrajectorySink& sink)
-      : rate_(rate_hz), duration_(duration), sink_(sink) {}
+  FrameRecorder(FrameTimes times, TrajectorySink& sink) : times_(std::move(times)), sink_(sink) {}
 
   /// Frames hold the forces of these contacts, and what they hold apart is apart in frames within a
   /// step, too.
@@ -39,15 +39,13 @@ class FrameRecorder {
   void record_committed(MovingWorld& moving);
 
  private:
-  double frame_time(long k) const { return static_cast<double>(k) / rate_; }
   void push(MovingWorld& moving, double t);
 
-  double rate_, duration_;
+  FrameTimes times_;
   TrajectorySink& sink_;
   PersistentContacts* contacts_ = nullptr;
   const Sleepers* sleepers_ = nullptr;
   SmallestGap smallest_gap_;
-  long next_ = 0;
 };
 
 }  // namespace tumble::engines

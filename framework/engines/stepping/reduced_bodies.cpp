@@ -6,7 +6,9 @@
 // leaves out:
 //   A lambda = -(J u' + J' u),   A = J (response of the tree to J^T)                      (R.6)
 // A has a column for each row, each in time linear in the bodies; redundant rows (four hinges of a
-// plane linkage) make it singular, and the lambda of least norm is taken: the motion is the same.
+// plane linkage, a rod beside a rod) make it singular, and the lambda of least norm is taken: the
+// motion is the same. What is redundant is measured against the row's own response in bodies that
+// nothing else holds, J M^-1 J^T: a rod beside a rod of the tree leaves an A of rounding alone.
 #include <algorithm>
 #include <cmath>
 
@@ -23,12 +25,29 @@ namespace {
 // Rows beside the tree cost the cube of their number; six coordinates a body with a sparse
 // factorisation are cheaper from about here on.
 constexpr std::size_t kMostLoopRows = 60;
-// Of the largest pivot of (R.6): rows that say the same leave 1e-14, and a four-bar linkage that is
-// stretched to 1e-6 rad of its singular posture 1e-12.
+// Of a row's response in free bodies, against the pivots of (R.6): rows that say the same leave
+// 1e-14, and a four-bar linkage that is stretched to 1e-6 rad of its singular posture 1e-12.
 constexpr double kRedundant = 1e-13;
 // Of states against the links: rounding of a hundred bodies after each other is 1e-13, what an
 // impact within a step leaves goes by the fourth power of the step.
 constexpr double kLinksFit = 1e-12;
+
+/// J M^-1 J^T of one end of a row, of a body that nothing else holds.
+double free_response(const Vector6d& jacobian, const Body& body) {
+  const Vector3d turning_body = body.world_from_body.conjugate() * jacobian.tail<3>();
+  return body.inertia.inverse_mass * jacobian.head<3>().squaredNorm() +
+         turning_body.dot(body.inertia.inverse_inertia_body * turning_body);
+}
+
+/// The lambda of least norm of (R.6), in the measure of free responses. @param free  (rows)
+VectorXd solve_with_redundant(const MatrixXd& A, const VectorXd& wanted, const VectorXd& free) {
+  const VectorXd scale = (free.array() > 0.0).select(free.array().rsqrt(), 0.0);
+  const MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  const double largest = scaled.colwise().norm().maxCoeff();
+  if (!(largest > kRedundant)) return VectorXd::Zero(wanted.size());
+  return scale.cwiseProduct(
+      least_squares(scaled, scale.cwiseProduct(wanted), kRedundant / largest));
+}
 
 }  // namespace
 
@@ -169,7 +188,7 @@ void LinkedBodies::close_loops() {
     return static_cast<std::size_t>(place) < bodies_.size();
   };
   MatrixXd A(m, m);
-  VectorXd wanted(m);
+  VectorXd wanted(m), free = VectorXd::Zero(m);
   std::vector<Wrench> push(bodies_.size(), {Vector3d::Zero(), Vector3d::Zero()});
   const auto add = [&](const Constraint& row, double lambda, std::vector<Wrench>& sum) {
     for (const auto& [place, jacobian] :
@@ -188,12 +207,15 @@ void LinkedBodies::close_loops() {
           laws_.baumgarte_acceleration(row.value, row.rate, world_.stabilisation->time_constant_s);
     for (const auto& [place, jacobian] :
          {std::pair{all[static_cast<std::size_t>(loop_rows_[k])].body_a, &row.jacobian_a},
-          std::pair{all[static_cast<std::size_t>(loop_rows_[k])].body_b, &row.jacobian_b}})
+          std::pair{all[static_cast<std::size_t>(loop_rows_[k])].body_b, &row.jacobian_b}}) {
+      if (in_bodies(place))
+        free[k] += free_response(*jacobian, seen_[static_cast<std::size_t>(place)]);
       wanted[k] -=
           in_bodies(place)
               ? jacobian->dot(tree_->acceleration(place))
               : jacobian->head<3>().dot(
                     ends_[static_cast<std::size_t>(place) - bodies_.size()].acceleration_world);
+    }
   }
   for (Eigen::Index column = 0; column < m; ++column) {
     const Constraint& pushing = all[static_cast<std::size_t>(loop_rows_[column])];
@@ -212,7 +234,7 @@ void LinkedBodies::close_loops() {
     }
   }
   ++counters_.constraint_solves;
-  const VectorXd lambda = least_squares(A, wanted, kRedundant);
+  const VectorXd lambda = solve_with_redundant(A, wanted, free);
   for (Eigen::Index k = 0; k < m; ++k)
     add(all[static_cast<std::size_t>(loop_rows_[k])], lambda[k], wrenches_);
   tree_->accelerate(wrenches_);

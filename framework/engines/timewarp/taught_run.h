@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "framework/engines/events/flight_run.h"
+#include "framework/engines/base/frame_times.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/timewarp/taught_groups.h"
 #include "framework/engines/timewarp/taught_logical_process.h"
@@ -119,7 +120,7 @@ class TaughtTimewarp {
   FlightRun run_;
   TrajectorySink& sink_;
   Scheduling decide_;
-  double rate_;
+  FrameTimes redraws_;
   std::vector<TaughtLogicalProcess> processes_;  // by body; unused for walls
   std::vector<Box> boxes_;                       // by body; used for walls
   std::vector<int> place_;                       // by body: index among the processes
@@ -136,8 +137,7 @@ class TaughtTimewarp {
   // the last committed item, frame or event
   Stamp committed_{-1.0, 0, WorkKind::kCallback, -1, -1};
   EventStamp committed_key_{-1.0, 0, StampKind::kCallback, -1, -1};  // the last committed event
-  double drawn_until_ = -1.0;  // redraws up to this time were at the front [s]
-  long next_redraw_ = 0;
+  double drawn_until_ = -1.0;                    // redraws up to this time were at the front [s]
   std::size_t since_gvt_ = 0, since_asked_ = 0;  // events
 };
 

@@ -26,7 +26,7 @@ TaughtTimewarp::TaughtTimewarp(const scene::Scene& scene, const Laws& laws,
       run_(scene, laws, options, watch_),
       sink_(sink),
       decide_(guarded(laws.scheduling, laws.scheduling_source)),
-      rate_(options.frame_rate_hz),
+      redraws_(scene, options),
       queue_(decide_.comes_before) {
   for (int i = 0; i < world().size(); ++i) {
     processes_.emplace_back(world(), i);
@@ -90,17 +90,14 @@ void TaughtTimewarp::work_at(int id) {
   check(id);
 }
 
-// Positions are copied when the frame is committed; here every process has reached its time. The
-// last redraw, at the end, is not a frame.
+// Positions are copied when the frame is committed; here every process has reached its time.
 void TaughtTimewarp::redraw(int id) {
   const double t = queue_.event(id).stamp.time;
   drawn_until_ = std::max(drawn_until_, t);
   queue_.remove(id);
-  if (t >= run_.duration()) return;
-  const double next = static_cast<double>(++next_redraw_) / rate_;
-  queue_.add({{std::min(next, run_.duration()), kLastMicrostep, WorkKind::kRedraw, -1, -1},
-              kInfinity,
-              {}});
+  redraws_.take();
+  if (t < run_.duration())
+    queue_.add({{redraws_.next(), kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
 }
 
 const KeptState& TaughtTimewarp::state_at(int body, double t) {
