@@ -181,6 +181,9 @@ struct Carrier {
   double length;  // 0: at one place [m]
   bool turns;     // bodies turn about the place
   int entry;      // of its effect
+  // from the centre of each end's body to the place, or to the axis about which bodies turn there;
+  // 0 for the world [m]
+  double arm_a = 0.0, arm_b = 0.0;
 };
 
 /// What pulls at bodies at an instant, for what is said of a run that gets out of hand.

@@ -264,6 +264,30 @@ TEST(LargestStep, ALightBodyAboveAHeavyOneIsReportedWithTheLargestStep) {
   }
 }
 
+// A bob on a joint of the world is a pendulum, w^2 = m g d / (I + m d^2), however small its own
+// moment is. With a hinge, d is across the axis: where its point lies far along it, the pendulum is
+// the same, and the bound must not pass over its swing.
+TEST(LargestStep, OfABobOnAJointThatStaysIsThatOfItsPendulum) {
+  const double g = 9.81, m = 1.0, d = 0.5;
+  for (const double moment : {1e-9, 1e-5, 0.1}) {
+    const double largest = kRk4Swing / std::sqrt(m * g * d / (moment + m * d * d));
+    for (const auto kind : {effects::JointKind::kBall, effects::JointKind::kHinge}) {
+      scene::BodySpec bob = ball("bob", 0.01, m, {0, 0, -d}, Vector3d::Zero());
+      bob.inertia_body_kg_m2 = moment * Matrix3d::Identity();
+      scene::Scene scene = scene_of({bob}, 1.0, Vector3d(0, 0, -g));
+      scene.effects.of<effects::JointSpec>().push_back(
+          {"pin", kind, "bob", "", Vector3d::Zero(), Vector3d::UnitY()});
+      EXPECT_EQ(answer(scene, reference_laws(), kUnder * largest), "") << moment;
+      EXPECT_TRUE(holds(answer(scene, reference_laws(), kOver * largest), "swing of body 'bob'"))
+          << moment;
+      if (kind != effects::JointKind::kHinge) continue;
+      scene.effects.of<effects::JointSpec>().front().point_m = {0, 3, 0};
+      EXPECT_TRUE(holds(answer(scene, reference_laws(), kOver * largest), "swing of body 'bob'"))
+          << moment;
+    }
+  }
+}
+
 // A chain's swings across are the eigenvalues of a matrix with three numbers a row: rod i of n
 // carries n - i + 1 links.
 TEST(LargestStep, OfAChainOfAnyLengthIsReported) {

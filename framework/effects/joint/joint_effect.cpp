@@ -243,9 +243,17 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
                         joint.b.body, rows);
   }
   void append_carriers(const World& world, std::vector<Carrier>& carriers) const override {
-    for (std::size_t k = 0; k < held(world).size(); ++k)
-      carriers.push_back({held(world)[k].a, held(world)[k].b, 0.0,
-                          held(world)[k].kind != JointKind::kWeld, static_cast<int>(k)});
+    for (std::size_t k = 0; k < held(world).size(); ++k) {
+      const JointLink& joint = held(world)[k];
+      const auto arm = [&](const Anchor& anchor, const Quaterniond& body_from_joint) {
+        if (anchor.body < 0) return 0.0;
+        if (joint.kind != JointKind::kHinge) return anchor.point_body.norm();
+        return anchor.point_body.cross(body_from_joint * Vector3d::UnitZ()).norm();
+      };
+      carriers.push_back({joint.a, joint.b, 0.0, joint.kind != JointKind::kWeld,
+                          static_cast<int>(k), arm(joint.a, joint.a_from_joint),
+                          arm(joint.b, joint.b_from_joint)});
+    }
   }
 
   std::vector<double> Frame::*measured_as() const override { return &Frame::joint_forces; }

@@ -175,13 +175,18 @@ LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carr
 // For turns by small angles of bodies that hang on each other the energy is at most  1/2 sum_i
 // (sum_k T_k |r_ik|) angle_i^2  and the kinetic one at least  1/2 sum_i I_i angle_i'^2, so that
 // w^2 <= max_i  sum_k T_k |r_ik| / I_i.  A row of equal bars reaches it: neighbours turn to and
-// fro.
+// fro. A body whose joint does not move swings about that, and I_i is its moment there: a small bob
+// is a pendulum.
 std::optional<StepLimit> judge_joints(const World& world,
                                       const std::vector<effects::Carrier>& carriers,
                                       const std::vector<double>& loads, const Laws& laws,
                                       double step) {
   std::vector<double> stiffness(world.bodies.size(), 0.0);
   std::vector<char> turns(world.bodies.size(), 0);
+  std::vector<double> arm_to_fixed(world.bodies.size(), 0.0);  // [m]
+  const auto stays = [&](const Anchor& anchor) {
+    return anchor.body < 0 || world.bodies[static_cast<std::size_t>(anchor.body)].immovable();
+  };
   for (const bool of_joints : {true, false})  // sums in this order
     for (std::size_t k = 0; k < carriers.size(); ++k) {
       if ((carriers[k].length == 0.0) != of_joints) continue;
@@ -189,6 +194,11 @@ std::optional<StepLimit> judge_joints(const World& world,
         if (anchor->body < 0) continue;
         stiffness[static_cast<std::size_t>(anchor->body)] += loads[k] * anchor->point_body.norm();
         if (carriers[k].turns) turns[static_cast<std::size_t>(anchor->body)] = 1;
+        const bool is_a = anchor == &carriers[k].a;
+        if (of_joints && stays(is_a ? carriers[k].b : carriers[k].a))
+          arm_to_fixed[static_cast<std::size_t>(anchor->body)] =
+              std::max(arm_to_fixed[static_cast<std::size_t>(anchor->body)],
+                       is_a ? carriers[k].arm_a : carriers[k].arm_b);
       }
     }
   double squared = 0.0;
@@ -198,8 +208,10 @@ std::optional<StepLimit> judge_joints(const World& world,
     // About an axis across its arm: a slender body does not swing about itself, which is its least
     // moment.
     const Vector3d moments = symmetric_eigen(world.bodies[i].inertia.inertia_body).values;
-    if (!(moments[1] > 0) || !(stiffness[i] / moments[1] > squared)) continue;
-    squared = stiffness[i] / moments[1];
+    const double moment =
+        moments[1] + world.bodies[i].inertia.mass * arm_to_fixed[i] * arm_to_fixed[i];
+    if (!(moment > 0) || !(stiffness[i] / moment > squared)) continue;
+    squared = stiffness[i] / moment;
     fastest = i;
   }
   if (!(squared > 0)) return std::nullopt;
@@ -207,8 +219,9 @@ std::optional<StepLimit> judge_joints(const World& world,
                amplified = amplification(laws, frequency, 0.0, step);
   if (amplified <= 1.0 + kNegligible) return std::nullopt;
   return StepLimit{
-      fmt::format("the swing of body '{}' between its joints ({:.4g} rad/s where they carry most)",
-                  world.bodies[fastest].name, frequency),
+      fmt::format(
+          "the swing of body '{}' between its joints (up to {:.4g} rad/s where they carry most)",
+          world.bodies[fastest].name, frequency),
       amplified, largest_stable_step(laws, frequency, 0.0, step), "longer or fewer links"};
 }
 
