@@ -125,27 +125,39 @@ void story(const Class& all) {
 }
 
 // A page for the student: hidden tests keep their points, and neither name nor story.
-void page(const Class& all) {
-  if (all.words.to.empty())
-    throw UserError("class page", "has no place to write to", "Say --to FOLDER, outside of OUT.");
-  const grading::Grade grade = grading::for_student(grade_called(all));
-  const fs::path to = fs::weakly_canonical(fs::absolute(all.words.to)),
-                 out = fs::weakly_canonical(fs::absolute(all.words.out));
-  if (std::mismatch(out.begin(), out.end(), to.begin(), to.end()).first == out.end())
-    throw UserError(to.string(), "is in the folder of results, which belongs to the grader",
-                    "Name another folder.");
+void write_page(const Class& all, const grading::Grade& whole, const std::string& script,
+                const fs::path& to) {
+  const fs::path out = fs::weakly_canonical(fs::absolute(all.words.out));
+  const grading::Grade grade = grading::for_student(whole);
   grading::PageView view;
   view.is_alone = true;
-  const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
-  view.bench =
-      grading::bench_of(out / grade.folder, grading::page_script(course, all.settings.assignment));
+  view.bench = grading::bench_of(out / grade.folder, script);
   grading::submission_page(all.context.registry.find(all.settings.assignment), grade,
                            version_in_words(kProgramVersion), view)
       .write(to / "index.html");
   if (fs::is_directory(out / grade.folder / "media"))
     fs::copy(out / grade.folder / "media", to / "media",
              fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-  fmt::print("wrote {}\n", (to / "index.html").string());
+}
+
+// The page of one student, or without a name each one's in a folder of its own.
+void page(const Class& all) {
+  if (all.words.to.empty())
+    throw UserError("class page", "has no place to write to", "Say --to FOLDER, outside of OUT.");
+  const fs::path to = fs::weakly_canonical(fs::absolute(all.words.to)),
+                 out = fs::weakly_canonical(fs::absolute(all.words.out));
+  if (std::mismatch(out.begin(), out.end(), to.begin(), to.end()).first == out.end())
+    throw UserError(to.string(), "is in the folder of results, which belongs to the grader",
+                    "Name another folder.");
+  const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
+  const std::string script = grading::page_script(course, all.settings.assignment);
+  if (!all.words.name.empty()) {
+    write_page(all, grade_called(all), script, to);
+    return fmt::print("wrote {}\n", (to / "index.html").string());
+  }
+  const std::vector<grading::Grade> grades = grades_of(all);
+  for (const grading::Grade& grade : grades) write_page(all, grade, script, to / grade.folder);
+  fmt::print("wrote {}, each in a folder of {}\n", number_of(grades.size(), "page"), to.string());
 }
 
 void late(const Class& all) {
@@ -306,7 +318,8 @@ void add_class(CLI::App& app, Context& context) {
   verb.option("results", words->out, "The folder that was given to grade as --out")
       .required()
       .type_name("OUT");
-  verb.option("name", words->name, "For story and page: the submission").type_name("NAME");
+  verb.option("name", words->name, "For story and page: the submission; page without it: every one")
+      .type_name("NAME");
   verb.option("test", words->test, "For story: Suite.Name; default: every test that is not right")
       .type_name("TEST");
   verb.option("--to", words->to, "For page: where it goes, outside of OUT").type_name("FOLDER");
@@ -315,6 +328,7 @@ void add_class(CLI::App& app, Context& context) {
       "story OUT NAME [TEST]    one test of one student with its whole story, also of a hidden "
       "one\n"
       "page OUT NAME --to DIR   the student's page, without names and stories of hidden tests\n"
+      "page OUT --to DIR        every student's page, each in a folder of DIR\n"
       "late OUT                 who is late, without a score or without a time (needs --policy)\n"
       "together OUT             groups, equal files, and files that are alike\n"
       "slips OUT                the ten slips that the most students made\n"

@@ -198,7 +198,63 @@ TEST_F(PolicyFolder, IsReadWithItsTables) {
   EXPECT_EQ(file.hand_ins[0].time_s - file.policy.due_s, 31 * 60);
 }
 
+// 2026-10-13T00:30 is 31 minutes after a1 is due.
+TEST_F(PolicyFolder, AnExtensionIsOneStudentsAndOneAssignments) {
+  const std::string times = R"(, "handed_in": "handed_in.csv", "free_late_days": 0)";
+  put("roster.csv", "name,id\n\"Lovelace, Ada\",7\nbo,8\n");
+  put("handed_in.csv",
+      "submission,student,time\nada,7,2026-10-13T00:30:00+02:00\n"
+      "bo,8,2026-10-13T00:30:00+02:00\n");
+  const auto standings = [&](const std::string& more) {
+    const PolicyFile file = read("{" + due_ + times + more + "}");
+    return apply_policy(file.policy, file.roster, file.hand_ins,
+                        {scored("ada", 80.0), scored("bo", 80.0)});
+  };
+  for (const char* more : {"", R"(, "extensions": {"a2": {"7": "2026-10-19T23:59:00+02:00"}})"}) {
+    EXPECT_EQ(standings(more)[0].after, 72.0) << more;
+    EXPECT_EQ(standings(more)[1].after, 72.0) << more;
+  }
+  for (const char* name : {"7", "Lovelace, Ada"}) {
+    const auto extended = standings(std::string(R"(, "extensions": {"a1": {")") + name +
+                                    R"(": "2026-10-13T00:30:00+02:00"}})");
+    EXPECT_EQ(extended[0].after, 80.0);
+    EXPECT_NE(extended[0].why.find("by an extension"), std::string::npos) << extended[0].why;
+    EXPECT_EQ(extended[1].after, 72.0) << "the other's due date stays";
+  }
+  EXPECT_EQ(standings(R"(, "extensions": {"a1": {"7": "2026-10-13T00:29:59+02:00"}})")[0].after,
+            72.0)
+      << "a second after it";
+}
+
+TEST_F(PolicyFolder, PointsByHandAreWhatIsLeftAfterAllRulesAndSayWhy) {
+  const PolicyFile file = read(
+      "{" + due_ + R"(, "by_hand": {"a1": {"bo": {"points": 66.5, "why": "talked it through"}}}})");
+  const auto judged = apply_policy(file.policy, file.roster, {}, {scored("bo", 80.0)});
+  ASSERT_EQ(judged.size(), 2u);
+  EXPECT_FALSE(judged[0].after);
+  EXPECT_EQ(judged[1].after, 66.5);
+  EXPECT_EQ(judged[1].before, 80.0);
+  for (const char* word : {"66.5 points by hand", "talked it through", "80"})
+    EXPECT_NE(judged[1].why.find(word), std::string::npos) << judged[1].why;
+  const auto nothing = apply_policy(file.policy, file.roster, {}, {});
+  EXPECT_EQ(nothing[1].after, 66.5) << "nothing was handed in, and somebody has decided";
+}
+
 TEST_F(PolicyFolder, WhatItCannotMeanIsNamed) {
+  const auto refused_for = [&](const std::string& more, const char* word) {
+    const std::string said = refusal("{" + due_ + ", " + more + "}");
+    EXPECT_NE(said.find(word), std::string::npos) << said;
+  };
+  refused_for(R"("extensions": {"a1": {"boo": "2026-10-19T23:59:00+02:00"}})", "mean 'bo'");
+  refused_for(R"("extensions": {"bo": "2026-10-19T23:59:00+02:00"}, "by_hand": {"a1": 3})",
+              "by_hand does not name");
+  refused_for(R"("extensions": {"a1": {"bo": "2026-10-11T23:59:00+02:00"}})", "before a1 is due");
+  refused_for(R"("extensions": {"a1": {"bo": "Monday"}})", "no time");
+  refused_for(R"("extensions": {"a1": {"bo": "2026-10-19T23:59:00Z",
+                                       "8": "2026-10-19T23:59:00Z"}})",
+              "twice");
+  refused_for(R"("by_hand": {"a1": {"bo": {"points": 80}}})", "no reason");
+  refused_for(R"("by_hand": {"a1": {"bo": {"points": -1, "why": "late"}}})", "from 0 to");
   EXPECT_NE(refusal("{" + due_ + R"(, "penalty_cap": 40})").find("penalty_cap_percent"),
             std::string::npos);
   EXPECT_NE(refusal("{" + due_ + R"(, "penalty_cap_percent": 140})").find("from 0 to 100"),

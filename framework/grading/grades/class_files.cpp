@@ -30,7 +30,7 @@ std::optional<double> number_in(const Json& json) {
 
 Standing standing_in(const Json& json) {
   Standing standing;
-  standing.person = {json.at("name"), json.at("id"), json.at("group"), {}};
+  standing.person = {json.at("name"), json.at("id"), json.at("group"), {}, {}, {}};
   standing.is_in_roster = json.at("in_roster");
   standing.submission = json.at("submission");
   standing.folder = json.at("folder");

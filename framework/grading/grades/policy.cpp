@@ -52,8 +52,10 @@ std::string reason_of(const Standing& standing) {
     why = fmt::format("{} of {} attempts counts; ", plain_name(standing.submission),
                       standing.attempts);
   if (!standing.is_time_known) return why + "the time of handing in is unknown: no penalty";
-  if (standing.late_days == 0) return why + "in time";
-  why += fmt::format("{} day{} late", standing.late_days, standing.late_days == 1 ? "" : "s");
+  if (standing.late_days == 0)
+    return why + (standing.person.due_s ? "in time, by an extension" : "in time");
+  why += fmt::format("{} day{} late{}", standing.late_days, standing.late_days == 1 ? "" : "s",
+                     standing.person.due_s ? " after an extension" : "");
   if (standing.free_days > 0) why += fmt::format(", {} of them free", standing.free_days);
   return why + (standing.percent > 0.0 ? fmt::format(": -{} %", points_text(standing.percent))
                                        : std::string(": no penalty"));
@@ -67,7 +69,9 @@ Standing standing_of(const Policy& policy, const Person& person, const Attempt& 
   standing.attempts = 1;
   if (attempt.hand_in) {
     standing.is_time_known = true;
-    standing.late_days = late_days(policy, attempt.hand_in->time_s);
+    Policy own = policy;
+    own.due_s = person.due_s.value_or(policy.due_s);
+    standing.late_days = late_days(own, attempt.hand_in->time_s);
     standing.free_days =
         std::min(standing.late_days, person.free_late_days.value_or(policy.free_late_days));
     standing.percent = penalty_percent(policy, standing.late_days, standing.free_days);
@@ -125,6 +129,17 @@ Standing best_of(const Policy& policy, const Person& person, const std::vector<A
   return chosen;
 }
 
+Standing with_points_by_hand(Standing standing) {
+  const std::optional<PointsByHand>& given = standing.person.by_hand;
+  if (!given) return standing;
+  standing.why = fmt::format(
+      "{} points by hand, {}; {}{}", points_text(given->points), plain_name(given->why),
+      standing.after ? fmt::format("the rules give {}: ", points_text(*standing.after)) : "",
+      standing.why);
+  standing.after = given->points;
+  return standing;
+}
+
 Standing of_nobody(const Attempt& attempt) {
   Standing standing;
   standing.person.name = attempt.grade->name;
@@ -173,7 +188,7 @@ std::vector<Standing> apply_policy(const Policy& policy, const std::vector<Perso
                           roster[attempt.person].group == roster[i].group;
       if (attempt.person == i || shares) own.push_back(attempt);
     }
-    standings.push_back(best_of(policy, roster[i], own));
+    standings.push_back(with_points_by_hand(best_of(policy, roster[i], own)));
   }
   for (const Attempt& attempt : attempts)
     if (attempt.person == roster.size()) standings.push_back(of_nobody(attempt));

@@ -1,5 +1,5 @@
-/// What a course's rules make of points: late days, penalties, attempts, groups. Pure functions:
-/// the same rules and facts give the same points.
+/// What a course's rules make of points: late days, penalties, attempts, groups, extensions, points
+/// given by hand. Pure functions: the same rules and facts give the same points.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,18 @@ struct Policy {
   bool groups = false;  // an attempt of one member counts for all members of a group
 };
 
-/// A student of the roster.
+/// Points that a person gives instead of the tests, and what for.
+struct PointsByHand {
+  double points = 0.0;
+  std::string why;
+};
+
+/// A student of the roster, with what is different for this one.
 struct Person {
   std::string name, id, group;        // group may be empty
   std::optional<int> free_late_days;  // left to this student; empty: the policy's
+  std::optional<std::int64_t> due_s;  // an extension; empty: the policy's [s since 1970, UTC]
+  std::optional<PointsByHand> by_hand;
 };
 
 /// When a submission was handed in, and by whom.
@@ -65,7 +73,8 @@ struct Standing {
 
 /// One standing a person of the roster, in its order, then one for each submission of nobody in it.
 /// Nobody gets 0 points for want of a submission, of a time or of an entry: these have no score,
-/// and `why` says so. A submission of unknown time has no penalty.
+/// and `why` says so. A submission of unknown time has no penalty. Points by hand are what is left
+/// after all rules; `why` says them with what the rules would give.
 std::vector<Standing> apply_policy(const Policy& policy, const std::vector<Person>& roster,
                                    const std::vector<HandIn>& hand_ins,
                                    const std::vector<Grade>& grades);

@@ -117,7 +117,8 @@ void refuse_unknown_fields(const fs::path& file, const Json& json) {
   static const std::vector<std::string> kFields = {
       "due",           "roster",         "handed_in",
       "grace_minutes", "free_late_days", "penalty_percent_a_day",
-      "attempt",       "groups",         "penalty_cap_percent"};
+      "attempt",       "groups",         "penalty_cap_percent",
+      "extensions",    "by_hand"};
   for (const auto& [name, value] : json.items())
     if (std::find(kFields.begin(), kFields.end(), name) == kFields.end())
       throw UserError(
@@ -172,6 +173,70 @@ Policy policy_in(const fs::path& file, const Json& json, const std::string& assi
     throw UserError(file.string(), "groups is " + groups.dump() + ", and is true or false");
   policy.groups = groups.get<bool>();
   return policy;
+}
+
+// The entries of this assignment under a field, by the person that each is for.
+std::vector<std::pair<Person*, Json>> for_persons(const fs::path& file, const Json& json,
+                                                  const std::string& field,
+                                                  const std::string& assignment,
+                                                  std::vector<Person>& roster) {
+  std::vector<std::pair<Person*, Json>> found;
+  const Json all = json.value(field, Json::object());
+  const std::string form = "\"" + field + "\": {\"" + assignment + "\": {\"name or id\": ...}}";
+  if (!all.is_object() || (all.contains(assignment) && !all[assignment].is_object()))
+    throw UserError(file.string(), field + " does not name assignments, and students in these",
+                    form);
+  if (!all.contains(assignment)) return found;
+  std::vector<std::string> words;
+  for (const Person& person : roster) words.insert(words.end(), {person.name, person.id});
+  for (const auto& [word, value] : all[assignment].items()) {
+    const auto person = std::find_if(roster.begin(), roster.end(), [&](const Person& one) {
+      return !word.empty() && (one.name == word || one.id == word);
+    });
+    if (person == roster.end())
+      throw UserError(
+          file.string(),
+          field + ": '" + plain_name(word) + "' is not in the roster." + did_you_mean(word, words),
+          form);
+    for (const auto& [other, entry] : found)
+      if (other == &*person)
+        throw UserError(file.string(),
+                        field + ": '" + plain_name(word) + "' stands there twice, by name and id");
+    found.emplace_back(&*person, value);
+  }
+  return found;
+}
+
+void read_extensions(const fs::path& file, const Json& json, const std::string& assignment,
+                     std::int64_t due_s, std::vector<Person>& roster) {
+  for (const auto& [person, value] : for_persons(file, json, "extensions", assignment, roster)) {
+    person->due_s =
+        value.is_string() ? time_of(value.get<std::string>()) : std::optional<std::int64_t>();
+    if (!person->due_s)
+      throw UserError(file.string(), "extensions: " + value.dump() + " is no time with its offset",
+                      kExample);
+    if (*person->due_s < due_s)
+      throw UserError(file.string(), "extensions: " + value.dump() + " of '" +
+                                         plain_name(person->name) + "' is before " + assignment +
+                                         " is due");
+  }
+}
+
+void read_points_by_hand(const fs::path& file, const Json& json, const std::string& assignment,
+                         std::vector<Person>& roster) {
+  constexpr double kMost = 1000.0;
+  for (const auto& [person, value] : for_persons(file, json, "by_hand", assignment, roster)) {
+    const bool is_whole = value.is_object() && value.size() == 2 && value.contains("points") &&
+                          value.contains("why") && value["why"].is_string() &&
+                          !value["why"].get<std::string>().empty();
+    if (!is_whole)
+      throw UserError(file.string(),
+                      "by_hand: " + value.dump() + " of '" + plain_name(person->name) +
+                          "' has no points, or no reason, or more than these",
+                      "{\"points\": 80, \"why\": \"explained it at the blackboard\"}");
+    person->by_hand =
+        PointsByHand{number_in(file, value, "points", 0.0, kMost), value["why"].get<std::string>()};
+  }
 }
 
 fs::path path_in(const fs::path& file, const Json& json, const char* name) {
@@ -255,6 +320,8 @@ PolicyFile read_policy(const fs::path& file, const std::string& assignment) {
   if (roster.empty())
     throw UserError(file.string(), "names no roster", "\"roster\": \"roster.csv\"");
   read.roster = read_roster(roster);
+  read_extensions(file, json, assignment, read.policy.due_s, read.roster);
+  read_points_by_hand(file, json, assignment, read.roster);
   if (!times.empty()) read.hand_ins = read_hand_ins(times);
   return read;
 }
