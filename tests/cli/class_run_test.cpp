@@ -178,6 +178,25 @@ TEST_F(Grading, APolicyIsNotDroppedBecauseAWordWasForgotten) {
   EXPECT_NE(grade("out").code, 2) << "the last grading had none";
 }
 
+TEST_F(Grading, EveryStudentsPageIsOneCommandAndOutsideOfTheResults) {
+  put("ada/a1_impulse.cpp", "int x = ;\n");
+  put("blaise/a1_impulse.cpp", "int y = ;\n");
+  ASSERT_NE(grade("out").code, 2);
+  const ProgramOutcome all =
+      tumble({"class", "page", (root / "out").string(), "--to", (root / "for_students").string()});
+  EXPECT_EQ(all.code, 0) << all.printed;
+  EXPECT_TRUE(says(all, "2 pages")) << all.printed;
+  for (const char* name : {"ada", "blaise"}) {
+    const std::string page = text_of(root / "for_students" / name / "index.html");
+    for (const char* other : {"ada", "blaise"})
+      EXPECT_EQ(page.find(other) != std::string::npos, std::string(other) == name)
+          << other << " on the page of " << name;
+  }
+  EXPECT_EQ(
+      tumble({"class", "page", (root / "out").string(), "--to", (root / "out/in").string()}).code,
+      2);
+}
+
 TEST_F(Lowering, NeedsAYes) {
   const ProgramOutcome again = grade("out");
   EXPECT_TRUE(says(again, "not lowered: blaise")) << again.printed;
