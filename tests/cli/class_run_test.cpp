@@ -179,16 +179,16 @@ TEST_F(Grading, APolicyIsNotDroppedBecauseAWordWasForgotten) {
 }
 
 TEST_F(Grading, EveryStudentsPageIsOneCommandAndOutsideOfTheResults) {
-  put("ada/a1_impulse.cpp", "int x = ;\n");
-  put("blaise/a1_impulse.cpp", "int y = ;\n");
+  put("quentin/a1_impulse.cpp", "int x = ;\n");
+  put("xaver/a1_impulse.cpp", "int y = ;\n");
   ASSERT_NE(grade("out").code, 2);
   const ProgramOutcome all =
       tumble({"class", "page", (root / "out").string(), "--to", (root / "for_students").string()});
   EXPECT_EQ(all.code, 0) << all.printed;
   EXPECT_TRUE(says(all, "2 pages")) << all.printed;
-  for (const char* name : {"ada", "blaise"}) {
+  for (const char* name : {"quentin", "xaver"}) {
     const std::string page = text_of(root / "for_students" / name / "index.html");
-    for (const char* other : {"ada", "blaise"})
+    for (const char* other : {"quentin", "xaver"})
       EXPECT_EQ(page.find(other) != std::string::npos, std::string(other) == name)
           << other << " on the page of " << name;
   }
