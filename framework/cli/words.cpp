@@ -1,13 +1,55 @@
 #include "framework/cli/words.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 namespace tumble::cli {
+namespace {
+
+// The parser's ranges let NaN pass, which is neither below nor above anything.
+std::string refuse_not_finite(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || std::isfinite(value)) return "";  // no number: the parser refuses it
+  return "Value " + text + " is not a finite number";
+}
+
+// The parser reads them as octal: 010 would be 8.
+std::string refuse_leading_zero(const std::string& text) {
+  const std::size_t first = text.find_first_not_of("+-");
+  if (first > 1 || text.size() - first < 2 || text[first] != '0') return "";
+  const std::string digits = text.substr(first);
+  if (!std::all_of(digits.begin(), digits.end(),
+                   [](unsigned char letter) { return std::isdigit(letter) != 0; }))
+    return "";
+  const std::size_t begin = std::min(digits.find_first_not_of('0'), digits.size() - 1);
+  return "Value " + text + ": write " + (text[0] == '-' ? "-" : "") + digits.substr(begin) +
+         ", without the leading 0";
+}
+
+template <class Value>
+struct ValueOf {
+  using Type = Value;
+};
+template <class Value>
+struct ValueOf<std::optional<Value>> {
+  using Type = Value;
+};
+template <class Value>
+struct ValueOf<std::vector<Value>> {
+  using Type = Value;
+};
+
+}  // namespace
 
 Word& Word::required() {
   option_->required();
@@ -79,7 +121,12 @@ Verb::Verb(CLI::App& app, const std::string& name, const std::string& help)
 
 template <class Value>
 Word Verb::option(const std::string& name, Value& value, const std::string& help) {
-  return Word(app_->add_option(name, value, help));
+  using Type = typename ValueOf<Value>::Type;
+  CLI::Option* option = app_->add_option(name, value, help);
+  // A check without a description leaves help as it is.
+  if constexpr (std::is_floating_point_v<Type>) option->check(refuse_not_finite);
+  if constexpr (std::is_integral_v<Type>) option->check(refuse_leading_zero);
+  return Word(option);
 }
 
 template Word Verb::option(const std::string&, std::string&, const std::string&);

@@ -42,7 +42,7 @@ class Verb {
 
   /// `name` is "--step-s" for an option, "scene" for a positional word. `value` must outlive the
   /// parse and keeps its value where the word is not given. For strings, paths, numbers, optionals
-  /// and lists of them (words.cpp has the list).
+  /// and lists of them (words.cpp has the list). Numbers must be finite; whole ones are decimal.
   template <class Value>
   Word option(const std::string& name, Value& value, const std::string& help);
 

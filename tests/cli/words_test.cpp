@@ -137,6 +137,30 @@ TEST_F(CommandLine, AnUnknownEngineOrAStepOfZeroIsAMistakeToRepair) {
   EXPECT_EQ(type("run t_handle --size 12").code, 2);
 }
 
+TEST_F(CommandLine, ANumberThatIsNotFiniteIsAMistakeToRepair) {
+  for (const char* words :
+       {"run t_handle --duration-s nan", "run t_handle --step-s inf", "run t_handle --speed nan",
+        "run t_handle --method dopri5 --tolerance nan", "run t_handle --step-s 1e999",
+        "poke poked_box --pixel 200,250 --force 0,40,0 --duration-s nan", "cost --budget-s nan",
+        "cost t_handle --tolerances 1e-3,nan"}) {
+    const Said said = type(words);
+    EXPECT_EQ(said.code, 2) << words;
+    EXPECT_TRUE(holds(said.err, "is not a finite number")) << words << ": " << said.err;
+  }
+  EXPECT_TRUE(left_nothing());
+}
+
+// C reads 010 as octal: 8.
+TEST_F(CommandLine, AWholeNumberWithALeadingZeroIsAMistakeToRepair) {
+  for (const auto& [words, told] : {std::pair{"run gas --n 010", "write 10, without the leading 0"},
+                                    {"run gas --n 00", "write 0, without the leading 0"},
+                                    {"engines gas --sizes 10,-020", "write -20,"}}) {
+    const Said said = type(words);
+    EXPECT_EQ(said.code, 2) << words;
+    EXPECT_TRUE(holds(said.err, told)) << words << ": " << said.err;
+  }
+}
+
 TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
   const Said alone = type(
       "run t_handle --modules library --duration-s 0.5 --trajectory first.run --html alone.html");
