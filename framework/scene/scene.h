@@ -133,7 +133,7 @@ struct CheckSpec {
   std::vector<std::string> bodies;  // for a check of several bodies in order
   std::optional<Vector3d> axis;     // for a check along a direction: unit, in the frame of the kind
   std::vector<double> expected;     // for a comparison with expected values
-  double at_s = 0.0;                // for a check at an instant; 0: the end
+  double at_s = 0.0;                // for a check at an instant, or from it on; 0: the end, or all
 };
 
 struct Scene {

@@ -218,6 +218,19 @@ TEST(Judge, AtRestNothingMovesOrTurns) {
   EXPECT_FALSE(judged(made, since).passed);
 }
 
+TEST(Judge, AnExpectedMomentumIsComparedAtItsInstant) {
+  HandMade made(stays({0, 0, 0}), stays({3, 0, 0}));
+  for (Frame& frame : made.run.frames) frame.momentum_world = {4 * frame.time, 0, 0};
+  CheckSpec check = check_of("momentum", 1e-6);
+  check.expected = {4, 0, 3};
+  expect_value(made, check, 3.0);
+  check.at_s = 0.5;
+  check.expected = {2, 0, 0};
+  expect_value(made, check, 0.0);
+  check.at_s = 0.55;
+  EXPECT_FALSE(judged(made, check).passed) << "no frame is recorded then";
+}
+
 TEST(Judge, ACommonCentreOfMassIsWeighed) {
   HandMade made([](double t) { return at({3 * t, 0, 0}); }, stays({9, 0, 0}));  // of equal masses
   CheckSpec centre = check_of("centre_of_mass", 0.01);

@@ -104,6 +104,36 @@ TEST(SceneRefusals, AnUnknownKindOfCheckIsNamedWithItsNeighbour) {
   expect_words(refusal(scene_with(kBall, checks)), {"/checks/0/kind", "Did you mean 'energy'"});
 }
 
+TEST(SceneRefusals, AKeyThatAKindOfCheckDoesNotUseIsRefused) {
+  const auto refused = [](const std::string& keys) {
+    return refusal(
+        scene_with(kBall, R"(, "checks": [{ "tolerance": 0, "why": "w", "kind": )" + keys + " }]"));
+  };
+  for (const auto& [keys, key] : {std::pair{R"("energy", "body": "ball")", "body"},
+                                  {R"("energy", "axis": [0, 0, 1])", "axis"},
+                                  {R"("energy", "expected": [1])", "expected"},
+                                  {R"("gap", "at_s": 0.1)", "at_s"},
+                                  {R"("flips", "body": "ball", "axis": [0, 0, 1], "expected": [1],
+                                       "bodies": ["ball", "ball"])",
+                                   "bodies"}})
+    expect_words(refused(keys),
+                 {std::string("/checks/0/") + key, "has no key '" + std::string(key)});
+  expect_words(refused(R"("drift", "body": "ball", "bodies": ["ball", "ball"])"),
+               {"/checks/0/body", "either 'body' or 'bodies'"});
+  EXPECT_EQ(refused(R"("drift", "body": "ball", "at_s": 0.1)"), "");
+  EXPECT_EQ(refused(R"("momentum", "expected": [1, 2, 3], "at_s": 0.1)"), "");
+  EXPECT_EQ(refused(R"("event_count", "other": "ball", "expected": [1])"), "");
+}
+
+TEST(SceneRefusals, AnInstantOfACheckIsWithinTheRun) {
+  const auto refused = [](const std::string& at_s) {
+    return refusal(scene_with(kBall, R"(, "checks": [{ "kind": "energy", "tolerance": 0,
+      "why": "w", "at_s": )" + at_s + " }]"));
+  };
+  expect_words(refused("1e6"), {"/checks/0/at_s", "the run has ended by then"});
+  expect_words(refused("0"), {"/checks/0/at_s", "an instant above 0"});
+}
+
 TEST(SceneRefusals, ATakenNameIsReportedWithItsOwner) {
   expect_words(refusal(scene_with(kBall + ",\n" + kBall)),
                {"s.json:6", "/bodies/1/name", "taken by /bodies/0"});

@@ -128,14 +128,17 @@ Finding energy_not_rising(const CheckSpec& check, const Scene& scene, const Traj
   return finding;
 }
 
-/// Constancy from at_s on, or the expected value at the end.
+/// Constancy from at_s on, or the expected value at at_s.
 Finding conserved(const CheckSpec& check, const Trajectory& run, Vector3d Frame::*quantity) {
   Finding finding;
   if (!check.expected.empty()) {
-    const Vector3d& found = run.frames.back().*quantity;
-    finding.worst(
-        (found - Eigen::Map<const Vector3d>(check.expected.data())).norm(),
-        fmt::format("({:.6g}, {:.6g}, {:.6g}) at the end", found.x(), found.y(), found.z()));
+    const Frame* frame = frame_at(check.at_s, run);
+    if (frame == nullptr)
+      return {kInfinity, fmt::format("no frame was recorded {}", at_time(check.at_s))};
+    const Vector3d& found = frame->*quantity;
+    finding.worst((found - Eigen::Map<const Vector3d>(check.expected.data())).norm(),
+                  fmt::format("({:.6g}, {:.6g}, {:.6g}) {}", found.x(), found.y(), found.z(),
+                              check.at_s == 0.0 ? "at the end" : at_time(frame->time)));
     return finding;
   }
   const Frame* first = nullptr;

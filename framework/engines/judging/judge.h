@@ -4,7 +4,7 @@
 /// A check is right when value <= tolerance, unless the line says otherwise.
 ///   energy              largest |E - E0| relative to the available energy (below) [-]
 ///   energy_not_rising   largest rise of E above an earlier value, relative to the same [-]
-///   momentum            largest |P - P0| [kg m/s]; with `expected`: |P - expected| at the end
+///   momentum            largest |P - P0| [kg m/s]; with `expected`: |P - expected| at `at_s`
 ///   angular_momentum    the same for L about the world's origin [kg m^2/s]
 ///   gap                 smallest gap of any frame [m]; right when >= -tolerance
 ///   final_position      distance of the body's centre from `expected` at `at_s` [m]
