@@ -13,7 +13,8 @@ namespace tumble {
 
 /// Calls `make(draft)` to write a draft in the same folder, then renames the draft to `file`: a
 /// reader sees the old file or the new one, never half of one. The draft keeps the file's
-/// extension. Creates missing folders; leaves no draft behind when `make` throws.
+/// extension. Creates missing folders; leaves no draft behind when `make` throws. Where `file` is a
+/// link, what it points to is written; into a pipe or a character device the draft is copied.
 /// @throws UserError when the file cannot be put in place, and whatever `make` throws
 void make_whole(const std::filesystem::path& file,
                 const std::function<void(const std::filesystem::path& draft)>& make);
@@ -21,6 +22,10 @@ void make_whole(const std::filesystem::path& file,
 /// The same, for bytes in memory.
 /// @throws UserError when the file cannot be written
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
+
+/// Refuses before the work what make_whole is known to refuse after it. Makes nothing.
+/// @throws UserError when `file` is no plain file, or its folder cannot be made or written to
+void expect_writable(const std::filesystem::path& file);
 
 /// All bytes of a file; empty where it cannot be read.
 std::string text_of(const std::filesystem::path& file);
