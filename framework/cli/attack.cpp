@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/verb.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/attacks/run_attacks.h"
@@ -84,8 +85,7 @@ void print_json(const AttackReport& report) {
                     {"score", r.score},
                     {"seconds", r.seconds},
                     {"faults", r.faults}});
-  fmt::print("{}\n", nlohmann::ordered_json{{"attacks", rows}, {"faults", report.faults}}.dump(
-                         2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  fmt::print("{}\n", json_text({{"attacks", rows}, {"faults", report.faults}}, 2));
 }
 
 void attack(Context& context, const AttackWords& words) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/core/text.h"
@@ -113,11 +114,11 @@ void print_lines(const grading::TouchedLines& lines, bool json) {
     for (const grading::LineRange& range : lines.untouched)
       untouched.push_back(
           {{"first", range.first}, {"last", range.last}, {"code_lines", range.code_lines}});
-    fmt::print("{}\n", nlohmann::ordered_json{{"file", lines.file.string()},
-                                              {"code_lines", lines.code_lines},
-                                              {"touched", lines.touched},
-                                              {"untouched", untouched}}
-                           .dump(2));
+    fmt::print("{}\n", json_text({{"file", lines.file.string()},
+                                  {"code_lines", lines.code_lines},
+                                  {"touched", lines.touched},
+                                  {"untouched", untouched}},
+                                 2));
     return;
   }
   constexpr std::size_t kWidth = 80;  // of a shown line of code

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/find_scene.h"
+#include "framework/cli/json_output.h"
 #include "framework/cli/module_choice.h"
 #include "framework/effects/build_world.h"
 #include "framework/engines/run.h"
@@ -301,7 +302,7 @@ void print_json(const Context& context, const scene::Scene& scene,
     page["stages"].push_back(entry);
   }
   if (run != nullptr) page["stopped_by"] = run->stopped_by;
-  fmt::print("{}\n", page.dump(2));
+  fmt::print("{}\n", json_text(page, 2));
 }
 
 void explain(Context& context, const ExplainWords& words) {

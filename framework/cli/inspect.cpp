@@ -10,6 +10,7 @@
 
 #include "framework/cli/command.h"
 #include "framework/cli/find_model.h"
+#include "framework/cli/json_output.h"
 #include "framework/cli/words.h"
 #include "framework/core/terminal.h"
 #include "framework/core/version.h"
@@ -187,7 +188,7 @@ ExitCode inspect(const Command& command, const InspectWords& words) {
              {"objects", Json::array()}};
     for (const LoadedObject& object : file.objects)
       all["objects"].push_back(to_json(object, words.density));
-    fmt::print("{}\n", all.dump(1));
+    fmt::print("{}\n", json_text(all, 1));
   } else {
     const Paint paint;
     const std::size_t n = file.objects.size();

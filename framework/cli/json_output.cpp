@@ -8,11 +8,15 @@
 
 namespace tumble::cli {
 
+std::string json_text(const nlohmann::ordered_json& page, int indent) {
+  return page.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 void print_json(const Command& command, const nlohmann::ordered_json& parts) {
   using Json = nlohmann::ordered_json;
   Json all{{"command", command.command_line}, {"version", kProgramVersion}};
   all.update(parts);
-  std::printf("%s\n", all.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+  std::printf("%s\n", json_text(all, 1).c_str());
 }
 
 }  // namespace tumble::cli

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/cli/json_output.h"
 #include "framework/core/files.h"
 #include "framework/core/version.h"
 #include "framework/sampling/kept_chain.h"
@@ -73,8 +74,8 @@ void write_sample_files(const Context& context, const Sampled& sampled,
     answers["prior"] = json_of(sampled.prior_growing.back());
     times["times_of_prior"] = times_of(sampled.prior_growing.back());
   }
-  write_whole(folder / "answers.json", answers.dump(1) + '\n');
-  write_whole(folder / "times.json", times.dump(1) + '\n');
+  write_whole(folder / "answers.json", json_text(answers, 1) + '\n');
+  write_whole(folder / "times.json", json_text(times, 1) + '\n');
   write_whole(folder / "chains.csv", sampling::csv_of(sampled.names, sampled.chains));
 }
 

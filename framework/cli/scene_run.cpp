@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/judgement_table.h"
 #include "framework/cli/planned_run.h"
 #include "framework/cli/run_page.h"
@@ -149,7 +150,7 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
                               {"passed", check.passed},
                               {"detail", check.detail},
                               {"why", check.why}});
-  fmt::print("{}\n", page.dump(2));
+  fmt::print("{}\n", json_text(page, 2));
 }
 
 /// A run shorter than the scene is judged only by checks that apply until its end.

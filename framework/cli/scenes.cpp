@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "framework/cli/find_scene.h"
+#include "framework/cli/json_output.h"
 #include "framework/core/terminal.h"
 #include "framework/core/text.h"
 #include "framework/core/version.h"
@@ -61,8 +62,7 @@ void print_json(const std::vector<ListedScene>& scenes) {
     if (!scene.problem.empty()) row["problem"] = scene.problem;
     list.push_back(row);
   }
-  fmt::print("{}\n",
-             nlohmann::ordered_json{{"version", kProgramVersion}, {"scenes", list}}.dump(2));
+  fmt::print("{}\n", json_text({{"version", kProgramVersion}, {"scenes", list}}, 2));
 }
 
 void list_scenes(Context& context, const ScenesWords& words) {

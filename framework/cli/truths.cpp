@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "framework/cli/json_output.h"
 #include "framework/cli/module_choice.h"
 #include "framework/cli/read_truth.h"
 #include "framework/cli/truths_table.h"
@@ -184,7 +185,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
     all["odd_files"] = nlohmann::ordered_json::array();
     for (const OddFile& one : odd)
       all["odd_files"].push_back({{"file", one.file}, {"problem", one.problem}});
-    std::printf("%s\n", all.dump(1).c_str());
+    std::printf("%s\n", json_text(all, 1).c_str());
   } else {
     print_truths_count(results, skipped);
     if (!odd.empty())

@@ -32,6 +32,14 @@ TEST_F(CommandLine, JsonOfALedgerSaysWhatDoesNotFitAndKeepsTheExitCode) {
   EXPECT_EQ(parsed(said).at("faults").size(), 1u);
 }
 
+// A file's name is bytes; JSON is UTF-8.
+TEST_F(CommandLine, JsonOfANameThatIsNoTextIsStillJson) {
+  fs::copy_file(fs::path(test::source_dir()) / "models/box.3ds", folder_ / "\xff.3ds");
+  const Said said = type("inspect './\xff.3ds' --json");
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_EQ(parsed(said).at("objects").size(), 1u);
+}
+
 #ifdef TUMBLE_HAS_REFERENCE
 TEST_F(CommandLine, JsonOfTheBatteryHasEveryMeasure) {
   const Said said = type("battery --only 1 --json");
