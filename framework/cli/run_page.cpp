@@ -104,7 +104,7 @@ void add_page_words(Verb& verb, RunWords& words) {
   verb.option("--html", words.html,
               "Write a page that plays the run: motion, curves, events; opens in any browser, "
               "needs no network")
-      .type_name("FILE");
+      .file();
   verb.option("--beside", words.beside,
               "Show a second run in the page, and where the two first differ: whose laws (as "
               "--modules), engine=, step-s=, or recording=FILE")

@@ -1,8 +1,14 @@
 #include "framework/cli/run_words.h"
 
 #include <cstdio>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 
 namespace tumble::cli {
 
@@ -15,6 +21,31 @@ PictureSize parse_size(const std::string& text) {
     throw UserError("--size " + text, "expected WIDTHxHEIGHT in pixels, each from 16 to 4096",
                     "For example --size 640x480.");
   return size;
+}
+
+void check_outputs(const RunWords& words, double duration_s) {
+  namespace fs = std::filesystem;
+  const std::vector<std::pair<std::string, std::string>> outputs = {
+      {"--png", words.png},     {"--sheet", words.sheet},
+      {"--video", words.video}, {"--trajectory", words.trajectory},
+      {"--html", words.html},   {"--virtual-times", words.virtual_times}};
+  std::map<fs::path, std::string> flags;
+  for (const auto& [flag, file] : outputs) {
+    if (file.empty()) continue;
+    expect_writable(file);
+    std::error_code failed;
+    // a pipe or a device may get several
+    if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) continue;
+    const auto [first, is_new] =
+        flags.emplace(fs::weakly_canonical(fs::absolute(file), failed), flag);
+    if (!is_new)
+      throw UserError(flag + " " + file, "is the file of " + first->second + ", too",
+                      "Give each its own.");
+  }
+  if (words.at_s > duration_s)
+    throw UserError(fmt::format("--at-s {:g}", words.at_s),
+                    fmt::format("the run ends at {:g} s", duration_s),
+                    "Give an earlier instant, or leave it out for the end.");
 }
 
 Vector3d parse_vector(const std::string& flag, const std::string& text) {

@@ -85,8 +85,8 @@ void print_counts(const std::map<std::string, std::uint64_t>& counts) {
 }
 
 void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory& run,
-                   const std::vector<CheckResult>& checks, const std::string& extra,
-                   const std::string& searched) {
+                   const std::vector<CheckResult>& checks, const std::string& left_out,
+                   const std::string& extra, const std::string& searched) {
   fmt::print("{}\n", scene.title);
   if (!extra.empty()) fmt::print("  {}\n", extra);
   if (!scene.about.empty()) fmt::print("  {}\n", scene.about);
@@ -110,6 +110,7 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
+  if (!left_out.empty()) fmt::print("  {}\n", left_out);
   const bool all_right = std::all_of(checks.begin(), checks.end(),
                                      [](const CheckResult& check) { return check.passed; });
   if (!searched.empty() && run.stopped_by.empty() && !all_right)
@@ -119,7 +120,7 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
 }
 
 void print_json(const scene::Scene& scene, const PlannedRun& plan, const Trajectory& run,
-                const std::vector<CheckResult>& checks, double cpu_s) {
+                const std::vector<CheckResult>& checks, const std::string& left_out, double cpu_s) {
   nlohmann::ordered_json page;
   page["scene"] = scene.name;
   page["title"] = scene.title;
@@ -150,16 +151,70 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
                               {"passed", check.passed},
                               {"detail", check.detail},
                               {"why", check.why}});
+  page["checks_left_out"] = left_out;
   fmt::print("{}\n", json_text(page, 2));
 }
 
-/// A run shorter than the scene is judged only by checks that apply until its end.
-scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
-  const bool is_shorter = words.duration_s && *words.duration_s < scene.duration_s;
-  if (is_shorter)
-    std::erase_if(scene.checks,
-                  [](const scene::CheckSpec& check) { return !check.expected.empty(); });
-  return scene;
+/// Whether a check of a run that lasts as long as its scene holds for another duration, too.
+bool holds_until(double duration_s, const scene::CheckSpec& check) {
+  if (check.at_s > 0.0) return check.at_s <= duration_s;
+  if (check.kind == "impact_times")  // of the first impacts
+    return std::all_of(check.expected.begin(), check.expected.end(),
+                       [&](double time_s) { return time_s <= duration_s; });
+  const std::set<std::string> of_the_end = {"at_rest", "stands", "falls"};
+  return check.expected.empty() && !of_the_end.contains(check.kind);
+}
+
+struct Judged {
+  scene::Scene scene;    // with the checks that apply to the run
+  std::string left_out;  // how many do not, in words; empty: all apply
+};
+
+/// A run that is shorter or longer than its scene says is judged by the checks that still hold.
+Judged judged_part(scene::Scene scene, double duration_s) {
+  Judged judged{std::move(scene), ""};
+  const double own_s = judged.scene.duration_s;
+  if (std::abs(duration_s - own_s) <= 1e-12 * own_s) return judged;
+  const std::size_t all = judged.scene.checks.size();
+  const std::size_t out = std::erase_if(judged.scene.checks, [&](const scene::CheckSpec& check) {
+    return !holds_until(duration_s, check);
+  });
+  if (out > 0)
+    judged.left_out =
+        fmt::format("{} of {} checks {} about the scene's whole duration and {} left out", out, all,
+                    out == 1 ? "is" : "are", out == 1 ? "is" : "are");
+  return judged;
+}
+
+/// Runs the plan until its end or Ctrl-C. @return why it ended before; empty: it did not
+std::string simulate(const PlannedRun& plan, double duration_s, TrajectoryRecorder& recorder) {
+  std::string ended;
+  StopByHand stoppable(recorder);  // in here only: later a Ctrl-C ends the program
+  try {
+    RunProgress progress(stoppable, duration_s);
+    engines::run_scene(plan.scene, plan.laws, plan.options, progress);
+  } catch (const grading::CallEnded& error) {  // a submission gave no answer
+    ended = error.what();
+  } catch (const StoppedByHand&) {
+  }
+  // Ctrl-C reaches a submission's process, too, which then gives no answer.
+  if (StopByHand::is_asked())
+    ended = fmt::format(
+        "Ctrl-C at {:.6g} of {:.6g} s: the files hold the run up to there",
+        recorder.trajectory().frames.empty() ? 0.0 : recorder.trajectory().frames.back().time,
+        duration_s);
+  return ended;
+}
+
+/// A chart of virtual times shows the moves of a scheduler that a module decides, or, with a page,
+/// of the fast one.
+void check_virtual_times(const PlannedRun& plan, const RunWords& words) {
+  if (words.virtual_times.empty()) return;
+  const std::string& engine = plan.options.engine.empty() ? plan.scene.engine : plan.options.engine;
+  if (engine != "tw" || (!plan.laws.scheduling && words.html.empty()))
+    throw UserError("--virtual-times " + words.virtual_times,
+                    "there is no move of a scheduler to draw",
+                    "Run with --engine tw and a scheduler module: --modules a4=student.");
 }
 
 }  // namespace
@@ -188,6 +243,7 @@ void add_run_words(Verb& verb, RunWords& words) {
   verb.option("--threads", words.threads,
               "Of --engine tw: how many; the run is the same with any number. Laws must keep "
               "nothing from one call to the next")
+      .between(1, 64)
       .shows_default();
   verb.option("--most-states", words.most_states,
               "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many "
@@ -205,27 +261,33 @@ void add_run_words(Verb& verb, RunWords& words) {
             "Of a .3ds file: drop it on a floor; without this word it is free in space");
   verb.option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")
       .positive();
-  verb.option("--png", words.png, "Write one picture").type_name("FILE");
-  verb.option("--at-s", words.at_s, "Instant of the picture [s]; default the end").not_negative();
-  verb.option("--sheet", words.sheet, "Write a contact sheet (.png)").type_name("FILE");
-  verb.option("--video", words.video, "Write a video (.mp4)").type_name("FILE");
+  const Word png = verb.option("--png", words.png, "Write one picture").file();
+  verb.option("--at-s", words.at_s, "Instant of the picture [s]; default the end")
+      .not_negative()
+      .needs(png);
+  verb.option("--sheet", words.sheet, "Write a contact sheet (.png)").file();
+  const Word video = verb.option("--video", words.video, "Write a video (.mp4)").file();
   verb.option("--trajectory", words.trajectory, "Write the recorded run, every frame and event")
-      .type_name("FILE");
-  verb.option("--virtual-times", words.virtual_times,
-              "Of a timewarp on a module's decisions: write a chart (.png) of local virtual times, "
-              "rollbacks and global virtual time")
-      .type_name("FILE");
+      .file();
+  const Word chart =
+      verb.option("--virtual-times", words.virtual_times,
+                  "Of a timewarp on a module's decisions: write a chart (.png) of local virtual "
+                  "times, rollbacks and global virtual time")
+          .file();
   verb.option("--moves", words.moves,
               "Of --virtual-times: after which moves of the scheduler, such as 3,8,9; default: "
               "before and after the first rollbacks")
       .separated_by(',')
+      .needs(chart)
       .type_name("LIST");
   verb.option("--chart-until-s", words.chart_until_s, "Of --virtual-times: how far it goes [s]")
-      .positive();
+      .positive()
+      .needs(chart);
   add_page_words(verb, words);
   verb.option("--speed", words.speed,
               "Seconds of the run in a second of video: 0.25 is slow motion")
       .between(1e-6, 1e6)
+      .needs(video)
       .shows_default();
   verb.option("--size", words.size, "Of pictures and video, in pixels")
       .type_name("WxH")
@@ -238,30 +300,18 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const PictureSize size = parse_size(words.size);  // refused before the run, not after it
   engines::refuse_other_units(scene);
   check_page_words(context, words);
+  check_outputs(words, words.duration_s.value_or(scene.duration_s));
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);
+  check_virtual_times(plan, words);
   VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
   if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();
   const double cpu_before = cpu_seconds();
-  std::string ended;  // why a submission gave no answer
   const double duration_s = plan.options.duration_s.value_or(plan.scene.duration_s);
-  StopByHand stoppable(recorder);
-  try {
-    RunProgress progress(stoppable, duration_s);
-    engines::run_scene(plan.scene, plan.laws, plan.options, progress);
-  } catch (const grading::CallEnded& error) {
-    ended = error.what();
-  } catch (const StoppedByHand&) {
-  }
-  // Ctrl-C reaches a submission's process, too, which then gives no answer.
-  if (StopByHand::is_asked())
-    ended = fmt::format(
-        "Ctrl-C at {:.6g} of {:.6g} s: the files hold the run up to there",
-        recorder.trajectory().frames.empty() ? 0.0 : recorder.trajectory().frames.back().time,
-        duration_s);
+  const std::string ended = simulate(plan, duration_s, recorder);
   const double cpu_s = cpu_seconds() - cpu_before;
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -270,12 +320,13 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   if (run.virtual_times.moves.empty()) run.virtual_times = std::move(times);
 
   // Judgement and summary.
-  const auto checks = engines::judge_run(judged_part(scene, words), run);
+  const Judged judged = judged_part(scene, duration_s);
+  const auto checks = engines::judge_run(judged.scene, run);
   const std::string searched = plan.search ? search_in_words(*plan.search, run, cpu_s) : "";
   if (words.json)
-    print_json(scene, plan, run, checks, cpu_s);
+    print_json(scene, plan, run, checks, judged.left_out, cpu_s);
   else
-    print_summary(scene, plan.laws, run, checks, extra, searched);
+    print_summary(scene, plan.laws, run, checks, judged.left_out, extra, searched);
   std::fflush(stdout);
 
   fmt::print(stderr, "{}\nran in {:.2f} s", record_of(run.info), seconds);

@@ -61,6 +61,13 @@ Word& Word::type_name(const std::string& name) {
   return *this;
 }
 
+Word& Word::file() {
+  option_->check([](const std::string& text) {
+    return text.empty() ? std::string("the name of the file is empty") : std::string();
+  });
+  return type_name("FILE");
+}
+
 Word& Word::positive() {
   option_->check(CLI::PositiveNumber);
   return *this;

@@ -20,6 +20,7 @@ class Word {
 
   Word& required();
   Word& type_name(const std::string& name);  // the name of the value in help, e.g. FILE
+  Word& file();                              // FILE in help; refuses an empty name
   Word& positive();                          // refuses a value that is not above 0
   Word& not_negative();
   Word& between(int least, int most);  // both ends allowed

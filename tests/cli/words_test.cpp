@@ -161,6 +161,48 @@ TEST_F(CommandLine, AWholeNumberWithALeadingZeroIsAMistakeToRepair) {
   }
 }
 
+// A ball at 1 m/s: three of its checks hold for its second only.
+TEST_F(CommandLine, AnotherDurationLeavesOutTheChecksOfTheScenesOwn) {
+  write_whole(folder_ / "ball.json", R"({"title": "t", "duration_s": 1, "bodies": [{"name": "b",
+        "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1, "velocity_m_s": [1, 0, 0]}],
+    "checks": [{"kind": "energy", "tolerance": 1e-9, "why": "w"},
+      {"kind": "final_position", "body": "b", "expected": [1, 0, 0], "tolerance": 1e-9, "why": "w"},
+      {"kind": "final_position", "body": "b", "expected": [0.25, 0, 0], "at_s": 0.25,
+        "tolerance": 1e-9, "why": "w"},
+      {"kind": "stands", "axis": [0, 0, 1], "tolerance": 1e-9, "why": "w"},
+      {"kind": "drift", "at_s": 0.75, "tolerance": 0.5, "why": "w"}]})");
+  const std::string run = "run ball.json --modules library";
+  const Said whole = type(run), part = type(run + " --duration-s 0.5"),
+             longer = type(run + " --duration-s 1.25");
+  EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
+  EXPECT_TRUE(holds(whole.out, "5 of 5 right") && !holds(whole.out, "left out")) << whole.out;
+  EXPECT_EQ(part.code, 0) << part.out << part.err;
+  EXPECT_TRUE(holds(part.out, "2 of 2 right") &&
+              holds(part.out, "3 of 5 checks are about the scene's whole duration"))
+      << part.out;
+  EXPECT_TRUE(holds(longer.out, "3 of 3 right") && holds(longer.out, "2 of 5 checks"))
+      << longer.out;
+}
+
+TEST_F(CommandLine, WordsThatWouldDoNothingAreRefusedBeforeTheRun) {
+  fs::create_directory(folder_ / "taken");
+  for (const auto& [words, part] : {std::pair{"--at-s 0.1", "--png"},
+                                    {"--speed 0.25", "--video"},
+                                    {"--moves 3", "--virtual-times"},
+                                    {"--chart-until-s 1", "--virtual-times"},
+                                    {"--virtual-times v.png", "no move of a scheduler"},
+                                    {"--png ''", "the name of the file is empty"},
+                                    {"--png p.png --at-s 1e6", "the run ends at"},
+                                    {"--png p.png --sheet ./p.png", "is the file of --png, too"},
+                                    {"--trajectory taken", "it is a folder"},
+                                    {"--threads 0", "--threads"}}) {
+    const Said said = type(std::string("run t_handle --modules library ") + words);
+    EXPECT_EQ(said.code, 2) << words << ": " << said.out;
+    EXPECT_EQ(said.out, "") << words;
+    EXPECT_TRUE(holds(said.err, part)) << words << ": " << said.err;
+  }
+}
+
 TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
   const Said alone = type(
       "run t_handle --modules library --duration-s 0.5 --trajectory first.run --html alone.html");
