@@ -81,9 +81,15 @@ scene::Scene find_scene(const Context& context, const std::string& word, std::op
   if (scene::names_model(word))
     return scene::make_model_scene(find_model_file(context, word), model);
   if (fs::is_regular_file(word)) return scene::load_scene(word);
-  if (word.ends_with(".json") || word.find('/') != std::string::npos)
+  if (word.ends_with(".json") || word.find('/') != std::string::npos) {
+    std::error_code failed;
+    if (fs::exists(word, failed))
+      throw UserError(word, fs::is_directory(word, failed) ? "is a folder" : "is no plain file",
+                      "Give the path of a scene file, or a scene's bare name: tumble scenes lists "
+                      "them.");
     throw UserError(word, "there is no such file",
                     "Check the path, or give a scene's bare name: " + listing(context));
+  }
   std::vector<fs::path> beginning;  // an unambiguous prefix of a name is accepted
   std::vector<std::string> names_there;
   for (const auto& file : scenes_of(context)) {

@@ -55,15 +55,24 @@ ModuleWords with_changes(ModuleWords words, const ModuleWords& changes) {
   return words;
 }
 
-Second recorded(const std::string& file) {
+Second recorded(const std::string& file, const scene::Scene& scene) {
   Second second{read_trajectory(file), fs::path(file).stem().string(), "this run"};
+  const TrajectoryInfo& info = second.run.info;
+  if (info.scene_digest.empty() || scene.digest.empty() || info.scene_digest == scene.digest)
+    return second;
+  const std::string note =
+      fmt::format("the recording is of {}: what differs may be the scene",
+                  info.scene_name == scene.name ? "another version of the scene"
+                                                : "another scene, " + info.scene_name);
+  second.run.counters.notices.push_back(note);  // the page shows them
+  fmt::print(stderr, "{}: {}\n", file, note);
   return second;
 }
 
 Second second_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
                   const Trajectory& first, const RunWords& words) {
   const BesideWords beside = parse_beside(words.beside);
-  if (!beside.recording.empty()) return recorded(beside.recording);
+  if (!beside.recording.empty()) return recorded(beside.recording, scene);
   const ModuleWords mine = parse_module_words(words.modules, context.registry);
   const ChosenLaws other = choose_laws(
       context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)),

@@ -41,13 +41,14 @@ std::vector<VectorXd> chosen(const std::vector<Chain>& chains, bool is_done, std
   return few;
 }
 
-sampling::Overlay overlaid(const Sampled& sampled) {
+/// None where every world that the chains kept broke.
+std::vector<sampling::OverlaidRun> overlaid(const Sampled& sampled) {
   std::vector<sampling::OverlaidRun> runs;
   for (const bool is_done : {true, false})
     for (const VectorXd& x : chosen(sampled.chains, is_done, is_done ? kOverlaid : kOverlaidNot))
       runs.push_back({sampling::run_of(sampled.worlds, sampled.chosen.laws, sampled.run, x),
                       is_done ? kDone : kNotDone});
-  return sampling::overlay_of(sampled.worlds.scene, runs);
+  return runs;
 }
 
 Plot trace_of(const Sampled& sampled, const std::string& name, const std::string& unit,
@@ -170,8 +171,11 @@ void write_sample_page(const Context& context, const Sampled& sampled, const fs:
     page.paragraph(lost, report::Look::kBad);
   for (const std::string& doubt : sampling::doubts(answers, sampled.chains.size()))
     page.paragraph(doubt, report::Look::kWarning);
-  if (answers.done > 0 || answers.samples > 0) {
-    const sampling::Overlay overlay = overlaid(sampled);
+  if (const auto runs = overlaid(sampled); runs.empty()) {
+    page.paragraph("No world of these chains ran to its end: there is none to show.",
+                   report::Look::kWarning);
+  } else {
+    const sampling::Overlay overlay = sampling::overlay_of(sampled.worlds.scene, runs);
     render::PictureOptions options;
     options.root = context.root;
     options.marks = false;

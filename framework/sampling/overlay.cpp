@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "framework/core/error.h"
+
 namespace tumble::sampling {
 
 Overlay overlay_of(const scene::Scene& scene, const std::vector<OverlaidRun>& runs) {
+  require(!runs.empty(), "an overlay of no runs");
   Overlay overlay{scene, runs.front().run};
   overlay.scene.checks.clear();
   overlay.run.events.clear();

@@ -14,6 +14,54 @@ using scene::PerturbationSpec;
 
 double below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
+constexpr double kFar = 30.0;  // deviations: beyond 38 a double holds no probability
+
+/// Mills' ratio of the standard normal distribution: the probability above z over the density at z.
+/// Its continued fraction 1 / (z + 1 / (z + 2 / (z + ...))). @pre z >= kFar, where 12 terms leave
+/// less than a rounding
+double mills_ratio(double z) {
+  double rest = z;
+  for (int k = 12; k > 0; --k) rest = z + k / rest;
+  return 1.0 / rest;
+}
+
+/// The z of a standard normal number that is at most `high`, at which a share u of the probability
+/// between `low` and `high` lies below z.
+///   Q(a + d) / Q(a) = exp(-a d - d^2 / 2) m(a + d) / m(a),  Q(z) the probability above z, and below
+///   -z; a = -high; m: Mills' ratio
+/// is solved for d by Newton's method on its logarithm, whose slope is -1 / m(a + d). The logarithm
+/// is concave and the first d is too large: every step approaches the solution from above.
+/// @pre low < high <= -kFar
+double far_below(double low, double high, double u) {
+  const double a = -high, b = -low, m_a = mills_ratio(a);
+  const double log_rest = -0.5 * (b - a) * (b + a) + std::log(mills_ratio(b) / m_a);
+  const double beyond = std::exp(log_rest), within = -std::expm1(log_rest);
+  // each where it does not cancel
+  const double log_share =
+      u < 0.5 ? std::log(beyond + within * u) : std::log1p(-within * (1.0 - u));
+  double d = -log_share / a;
+  for (int step = 0; step < 50; ++step) {
+    const double m = mills_ratio(a + d);
+    const double change = m * (-a * d - 0.5 * d * d + std::log(m / m_a) - log_share);
+    d += change;
+    if (std::abs(change) <= 1e-15 * d) break;
+  }
+  return high - d;
+}
+
+/// The number at which a share u of a normal prior's probability lies: below it; above it where the
+/// whole range is above the mean. There the mirror image is drawn, because probabilities near 1 are
+/// not told apart, and those near 0 are.
+double normal_drawn(const Prior& prior, double u) {
+  const bool is_above = prior.low > prior.mean;
+  const double sign = is_above ? -1.0 : 1.0;
+  const double low = sign * ((is_above ? prior.high : prior.low) - prior.mean) / prior.deviation,
+               high = sign * ((is_above ? prior.low : prior.high) - prior.mean) / prior.deviation;
+  const double z = high <= -kFar ? far_below(low, high, u)
+                                 : normal_quantile(below(low) + (below(high) - below(low)) * u);
+  return std::clamp(prior.mean + sign * prior.deviation * z, prior.low, prior.high);
+}
+
 int index_of(const scene::Scene& scene, const std::string& body) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     if (scene.bodies[i].name == body) return static_cast<int>(i);
@@ -95,10 +143,7 @@ VectorXd drawn_from_prior(const std::vector<Prior>& priors, Random& random) {
       x[i] = prior.low + (prior.high - prior.low) * u;
       continue;
     }
-    const double low = below((prior.low - prior.mean) / prior.deviation),
-                 high = below((prior.high - prior.mean) / prior.deviation);
-    const double z = normal_quantile(low + (high - low) * u);
-    x[i] = std::clamp(prior.mean + prior.deviation * z, prior.low, prior.high);
+    x[i] = normal_drawn(prior, u);
   }
   return x;
 }

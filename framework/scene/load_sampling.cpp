@@ -1,7 +1,10 @@
 #include "framework/scene/load_sampling.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -15,6 +18,9 @@ namespace {
 using nlohmann::json;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+// Between a normal prior's mean and its range: further out the logarithm of its density, half the
+// square of this, is no longer known to a small part of 1.
+constexpr double kMostDeviations = 1e6;
 
 double number_or(const json& object, const char* key, double otherwise) {
   return object.contains(key) ? object.at(key).get<double>() : otherwise;
@@ -53,6 +59,12 @@ PerturbationSpec perturbation(const json& value, const std::string& pointer,
     document.refuse(
         pointer, "a " + spec.what + " cannot be outside its range",
         is_share ? "Keep the bounds within 0 and 1." : "Keep the bounds at 0 or above.");
+  if (spec.is_normal && !(std::abs(std::clamp(spec.mean, spec.low, spec.high) - spec.mean) <=
+                          kMostDeviations * spec.deviation))
+    document.refuse(pointer + "/normal",
+                    "its bounds are more than a million deviations from its mean, where it has no "
+                    "probability",
+                    "Move the bounds or the mean.");
   spec.multiplies = value.value("proposal", "add") == "multiply";
   if (spec.multiplies && !(spec.low >= 0.0))
     document.refuse(pointer + "/proposal", "a number that is multiplied must be positive",
@@ -82,6 +94,9 @@ AskedSpec asked(const json& value, const std::string& pointer, const Document& d
     if (!((spec.low_m.array() < spec.high_m.array()).all()))
       document.refuse(pointer + "/place", "a lower bound is not below its upper one",
                       "Exchange the two.");
+    if (spec.low_m.array().isInf().all() && spec.high_m.array().isInf().all())
+      document.refuse(pointer + "/place", "it has no bound: every place is as asked",
+                      "Give a number in low_m or high_m.");
     spec.softness = place.at("softness_m");
     return spec;
   }
@@ -99,6 +114,9 @@ AskedSpec asked(const json& value, const std::string& pointer, const Document& d
   spec.most_rad = kDegree * number_or(lean, "most_deg", 180.0);
   if (!(spec.least_rad < spec.most_rad))
     document.refuse(pointer + "/lean", "least_deg is not below most_deg", "Exchange the two.");
+  if (spec.least_rad <= 0.0 && spec.most_rad >= std::numbers::pi)
+    document.refuse(pointer + "/lean", "every direction is as asked",
+                    "Give least_deg or most_deg.");
   spec.softness = kDegree * lean.at("softness_deg").get<double>();
   return spec;
 }
@@ -116,11 +134,22 @@ std::optional<SamplingSpec> read_sampling(const Document& document, const Scene&
                      const std::string& remedy) { document.refuse(place, problem, remedy); });
   };
   SamplingSpec spec;
+  std::set<std::pair<std::string, std::string>> taken;  // body, number
   const json& perturbed = value.at("perturbed");
   for (std::size_t i = 0; i < perturbed.size(); ++i) {
     const std::string pointer = "/sampling/perturbed/" + std::to_string(i);
     expect_body(perturbed.at(i), pointer);
     spec.perturbed.push_back(perturbation(perturbed.at(i), pointer, document, bodies));
+    const PerturbationSpec& added = spec.perturbed.back();
+    if (!taken.emplace(added.body, added.what).second)
+      document.refuse(pointer, "'" + added.body + "' has its " + added.what + " perturbed already",
+                      "Delete one of the two.");
+    if (added.what == "friction" && !scene.contact)
+      document.refuse(pointer + "/what",
+                      "body '" + added.body +
+                          "' has friction, which acts in persistent contact only, and the scene "
+                          "has none",
+                      "Add \"contact\": {} to the scene, or perturb another number.");
   }
   const json& conditions = value.at("asked");
   for (std::size_t i = 0; i < conditions.size(); ++i) {

@@ -220,6 +220,27 @@ TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
   // the recording is of the same run
   EXPECT_TRUE(holds(same, "\"label\":\"first\"") && holds(same, "\"difference\":null"))
       << recorded.err;
+  EXPECT_FALSE(holds(recorded.err, "the recording is of")) << recorded.err;
+}
+
+TEST_F(CommandLine, ARecordingOfAnotherSceneIsShownWithANote) {
+  for (const char* name : {"one", "two"})
+    write_whole(folder_ / (std::string(name) + ".json"),
+                std::string(R"({"title": ")") + name + R"(", "duration_s": 0.1, "bodies": [{
+        "name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}]})");
+  ASSERT_EQ(type("run one.json --modules library --trajectory one.run").code, 0);
+  const Said said = type("run two.json --modules library --beside recording=one.run --html p.html");
+  EXPECT_TRUE(holds(said.err, "the recording is of another scene, one")) << said.err;
+  EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "the recording is of another scene, one"));
+}
+
+TEST_F(CommandLine, APathThatIsNoPlainFileSaysSo) {
+  fs::create_directory(folder_ / "f.json");
+  for (const char* words : {"run f.json", "run ./f.json", "explain f.json"}) {
+    const Said said = type(words);
+    EXPECT_EQ(said.code, 2) << words;
+    EXPECT_TRUE(holds(said.err, "f.json: is a folder")) << words << ": " << said.err;
+  }
 }
 
 TEST_F(CommandLine, BesideThatCannotBeIsRefusedBeforeAnythingRuns) {

@@ -82,6 +82,60 @@ TEST(World, OfThePriorIsDrawnByIt) {
   EXPECT_NEAR(below, kDraws / 2, 128);
 }
 
+struct Moments {
+  double mean = 0, variance = 0;
+};
+constexpr int kMany = 4000;
+
+/// Of how far the draws are from the bound.
+Moments excess(const Prior& prior, double bound) {
+  Random random(1);
+  Moments moments;
+  double square = 0;
+  for (int i = 0; i < kMany; ++i) {
+    const double x = drawn_from_prior({prior}, random)[0];
+    EXPECT_TRUE(x >= prior.low && x <= prior.high) << x;
+    moments.mean += std::abs(x - bound) / kMany;
+    square += (x - bound) * (x - bound) / kMany;
+  }
+  moments.variance = square - moments.mean * moments.mean;
+  return moments;
+}
+
+// The tail of a normal distribution beyond a >> 1 deviations s is nearly exponential. Exact of the
+// excess over a s: mean s (1/a - 2/a^3 + 10/a^5 - ...), variance s^2 (1/a^2 - 6/a^4 + ...).
+TEST(World, OfAPriorCutFarFromItsMeanIsDrawnFromItsTail) {
+  constexpr double kInfinite = scene::kNoBound;
+  struct Tail {
+    Prior prior;
+    double bound;
+  };
+  for (const auto& [prior, bound] :
+       {Tail{{PriorKind::kNormal, 0, 0.1, 5, 6}, 5}, Tail{{PriorKind::kNormal, 0, 0.1, -6, -5}, -5},
+        Tail{{PriorKind::kNormal, 1, 0.1, 2, kInfinite}, 2},
+        Tail{{PriorKind::kNormal, 1, 0.1, -kInfinite, 0}, 0}}) {
+    SCOPED_TRACE(bound);
+    const double a = std::abs(bound - prior.mean) / prior.deviation;
+    const double mean = 0.1 * (1 / a - 2 / std::pow(a, 3) + 10 / std::pow(a, 5));
+    const Moments found = excess(prior, bound);
+    // The mean of 4000 errs by mean / 63; their variance by sqrt(8) variance / 63. Four times these.
+    EXPECT_NEAR(found.mean, mean, 4 * mean / 63);
+    EXPECT_NEAR(found.variance, mean * mean, 0.25 * mean * mean);
+  }
+}
+
+// Two ways to the same number meet at 30 deviations. The ranges begin 1e-9 apart, and equal streams
+// give draws no further apart than that and the roundings of 30.
+TEST(World, OfATailIsDrawnAlikeOnBothSidesOfThirtyDeviations) {
+  Random near(7), far(7);
+  for (int i = 0; i < 100; ++i) {
+    const double low = 30 - 1e-9,
+                 x = drawn_from_prior({{PriorKind::kNormal, 0, 1, low, 31}}, near)[0],
+                 y = drawn_from_prior({{PriorKind::kNormal, 0, 1, 30, 31}}, far)[0];
+    EXPECT_NEAR(x, y, 3e-9);
+  }
+}
+
 Frame frame_with(const Vector3d& ball, const Quaterniond& die) {
   Frame frame{};
   frame.poses = {{ball, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()},
@@ -191,6 +245,21 @@ TEST(SamplingEntry, IsRefusedWithItsPlace) {
           kSpeed,
           R"({"body": "die", "lean": {"direction": [0, 0, 0], "most_deg": 9, "softness_deg": 1}})"),
       "/sampling/asked/0/lean/direction");
+  expect_refused(refusal(kSpeed + ", " + kSpeed, kPlace), "perturbed already");
+  expect_refused(
+      refusal(R"({"body": "ball", "what": "friction", "uniform": {"low": 0, "high": 1}})", kPlace),
+      "persistent contact only");
+  expect_refused(
+      refusal(
+          R"({"body": "ball", "what": "velocity_x_m_s", "normal": {"mean": 0, "deviation": 1e-9, "low": 1}})",
+          kPlace),
+      "no probability");
+  expect_refused(
+      refusal(kSpeed,
+              R"({"body": "ball", "place": {"high_m": [null, null, null], "softness_m": 1}})"),
+      "no bound");
+  expect_refused(refusal(kSpeed, R"({"body": "die", "lean": {"softness_deg": 1}})"),
+                 "every direction");
   expect_refused(refusal(kSpeed, R"({"body": "cube", "place": {"softness_m": 1}})"),
                  "/sampling/asked/0/body");
 }
