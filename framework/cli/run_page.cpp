@@ -1,5 +1,6 @@
 #include "framework/cli/run_page.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <set>
@@ -7,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/nearest_word.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker/worker_connection.h"
@@ -149,16 +151,28 @@ BesideWords parse_beside(const std::string& text) {
   return beside;
 }
 
-void check_page_words(const Context& context, const RunWords& words) {
+void check_page_words(const Context& context, const scene::Scene& scene, const RunWords& words) {
   if (words.beside.empty()) return;
   if (words.html.empty())
     throw UserError("--beside " + words.beside,
                     "shows a second run in a page, and no page was asked for", "Add --html FILE.");
   const BesideWords beside = parse_beside(words.beside);
   parse_module_words(beside.modules, context.registry);
-  if (!beside.recording.empty() && !fs::exists(beside.recording))
+  std::vector<std::string> known;
+  for (const auto& [word, meaning] : engines::engine_words()) known.push_back(word);
+  if (!beside.engine.empty() && std::find(known.begin(), known.end(), beside.engine) == known.end())
+    throw UserError("--beside engine=" + beside.engine,
+                    "there is no engine of that name." + did_you_mean(beside.engine, known),
+                    "Known: " + fmt::format("{}", fmt::join(known, ", ")) + ".");
+  if (beside.recording.empty()) return;
+  if (!fs::exists(beside.recording))
     throw UserError(beside.recording, "there is no such recording",
                     "Make one with --trajectory FILE.");
+  const std::size_t bodies = read_trajectory(beside.recording).bodies.size();
+  if (bodies != scene.bodies.size())
+    throw UserError(beside.recording,
+                    fmt::format("has {} bodies, and the scene has {}", bodies, scene.bodies.size()),
+                    "Record a run of this scene with --trajectory FILE.");
 }
 
 void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,

@@ -32,7 +32,7 @@ BesideWords parse_beside(const std::string& text);
 
 /// Checks before the run that --html and --beside can be done.
 /// @throws UserError
-void check_page_words(const Context& context, const RunWords& words);
+void check_page_words(const Context& context, const scene::Scene& scene, const RunWords& words);
 
 /// Makes the second run where --beside asks for one, writes words.html, and reports it on stderr.
 /// Does nothing where words.html is empty.

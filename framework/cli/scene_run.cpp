@@ -155,12 +155,15 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   fmt::print("{}\n", json_text(page, 2));
 }
 
+constexpr double kSameDuration = 1e-12;  // relative: an end that steps add up to
+
 /// Whether a check of a run that lasts as long as its scene holds for another duration, too.
 bool holds_until(double duration_s, const scene::CheckSpec& check) {
-  if (check.at_s > 0.0) return check.at_s <= duration_s;
+  const double end_s = duration_s * (1.0 + kSameDuration);
+  if (check.at_s > 0.0) return check.at_s <= end_s;
   if (check.kind == "impact_times")  // of the first impacts
     return std::all_of(check.expected.begin(), check.expected.end(),
-                       [&](double time_s) { return time_s <= duration_s; });
+                       [&](double time_s) { return time_s <= end_s; });
   const std::set<std::string> of_the_end = {"at_rest", "stands", "falls"};
   return check.expected.empty() && !of_the_end.contains(check.kind);
 }
@@ -174,7 +177,7 @@ struct Judged {
 Judged judged_part(scene::Scene scene, double duration_s) {
   Judged judged{std::move(scene), ""};
   const double own_s = judged.scene.duration_s;
-  if (std::abs(duration_s - own_s) <= 1e-12 * own_s) return judged;
+  if (std::abs(duration_s - own_s) <= kSameDuration * own_s) return judged;
   const std::size_t all = judged.scene.checks.size();
   const std::size_t out = std::erase_if(judged.scene.checks, [&](const scene::CheckSpec& check) {
     return !holds_until(duration_s, check);
@@ -299,7 +302,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
                   const RunWords& words, const std::string& extra) {
   const PictureSize size = parse_size(words.size);  // refused before the run, not after it
   engines::refuse_other_units(scene);
-  check_page_words(context, words);
+  check_page_words(context, scene, words);
   check_outputs(words, words.duration_s.value_or(scene.duration_s));
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   // The run.

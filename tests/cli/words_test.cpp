@@ -249,6 +249,7 @@ TEST_F(CommandLine, BesideThatCannotBeIsRefusedBeforeAnythingRuns) {
         {"--html f.html --beside step-s=fast", "'fast'"},
         {"--html f.html --beside recording=nowhere.run", "nowhere.run"},
         {"--html f.html --beside recording=a.run,engine=rd", "as it was made"},
+        {"--html f.html --beside engine=warp", "no engine of that name"},
         {"--html f.html --beside a9=reference", "a9"}}) {
     const Said said = type(std::string("run t_handle --modules library ") + words);
     EXPECT_EQ(said.code, 2) << words;
