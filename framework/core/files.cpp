@@ -16,12 +16,15 @@
 namespace tumble {
 namespace {
 
-UserError cannot_write(const std::filesystem::path& file, const std::string& reason) {
-  return {file.string(), "cannot be written" + (reason.empty() ? "" : " (" + reason + ")"),
-          "Is there room on the disk, and may you write to this folder?"};
+UserError cannot_write(
+    const std::filesystem::path& file, const std::string& reason,
+    const std::string& remedy = "Is there room on the disk, and may you write to this folder?") {
+  return {file.string(), "cannot be written" + (reason.empty() ? "" : " (" + reason + ")"), remedy};
 }
 
 namespace fs = std::filesystem;
+
+constexpr const char* kNameAnother = "Name another file.";
 
 // Where the bytes for a file go.
 struct Target {
@@ -35,12 +38,12 @@ Target target_of(const fs::path& file) {
   const fs::file_type type = fs::status(file, failed).type();
   // before links are read: that of /dev/stdout names no file
   if (type == fs::file_type::fifo || type == fs::file_type::character) return {file, true};
-  if (type == fs::file_type::directory) throw cannot_write(file, "it is a folder");
+  if (type == fs::file_type::directory) throw cannot_write(file, "it is a folder", kNameAnother);
   if (type == fs::file_type::block || type == fs::file_type::socket)
-    throw cannot_write(file, "it is no plain file");
+    throw cannot_write(file, "it is no plain file", kNameAnother);
   fs::path target = file;
   for (int links = 0; fs::is_symlink(fs::symlink_status(target, failed)); ++links) {
-    if (links == kMostLinks) throw cannot_write(file, "it is a loop of links");
+    if (links == kMostLinks) throw cannot_write(file, "it is a loop of links", kNameAnother);
     const fs::path next = fs::read_symlink(target, failed);
     if (failed) throw cannot_write(file, failed.message());
     target = target.parent_path() / next;  // next alone where it is absolute
@@ -75,7 +78,7 @@ void expect_writable(const fs::path& file) {
     while (!there.empty() && there.has_relative_path() && !fs::exists(there, failed));
   if (there.empty()) there = ".";
   if (!target.is_stream && !fs::is_directory(there, failed))
-    throw cannot_write(file, there.string() + " is no folder");
+    throw cannot_write(file, there.string() + " is no folder", kNameAnother);
   if (::access(there.c_str(), target.is_stream ? W_OK : W_OK | X_OK) != 0)
     throw cannot_write(file, std::strerror(errno));
 }
