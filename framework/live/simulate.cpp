@@ -16,6 +16,7 @@
 #include "framework/core/not_implemented.h"
 #include "framework/effects/build_world.h"
 #include "framework/engines/run.h"
+#include "framework/engines/stepping/local_origin.h"
 #include "framework/live/records.h"
 #include "framework/report/player_parts.h"
 #include "framework/scene/write_entries.h"
@@ -117,8 +118,12 @@ class LiveRun final : public TrajectorySink {
   void obey(const std::string& line);
   void aim(const Json& command);
   void push(const Json& command);
-  void put_on(int body, const Vector3d& force, const Vector3d& point_world, double start,
-              double duration, scene::Scene& more);
+  struct PointForce {
+    int body;
+    Vector3d force_world, point_world;
+    double start, duration;
+  };
+  void put_on(PointForce force, const Vector3d& origin_world, scene::Scene& more);
   bool pull(const engines::HandMoment& moment, scene::Scene& more);
 
   Simulation& simulation_;
@@ -311,7 +316,7 @@ void LiveRun::push(const Json& command) {
   const BodyPose& pose = last_.poses[static_cast<std::size_t>(aimed_)];
   const Vector3d point = pose.com_world + pose.world_from_body * aimed_body_;
   scene::Scene unused;
-  put_on(aimed_, force, point, last_.time, duration, unused);
+  put_on({aimed_, force, point, last_.time, duration}, Vector3d::Zero(), unused);
 }
 
 std::optional<scene::Scene> LiveRun::act(const engines::HandMoment& moment) {
@@ -321,8 +326,9 @@ std::optional<scene::Scene> LiveRun::act(const engines::HandMoment& moment) {
   more.bodies = simulation_.scene.bodies;
   bool has_any = !pushes_.empty();
   for (const Push& push : pushes_)
-    put_on(push.body, push.force_world, place_of(moment, push.body, push.point_body), moment.time,
-           push.duration, more);
+    put_on({push.body, push.force_world, place_of(moment, push.body, push.point_body), moment.time,
+            push.duration},
+           moment.origin_world, more);
   pushes_.clear();
   if (pull_to_ && aimed_ >= 0 && moment.time >= pulled_until_) has_any |= pull(moment, more);
   return has_any ? std::optional(std::move(more)) : std::nullopt;
@@ -356,25 +362,34 @@ bool LiveRun::pull(const engines::HandMoment& moment, scene::Scene& more) {
     return false;
   }
   if (!force.allFinite()) return false;
-  put_on(aimed_, force, held, moment.time, next - moment.time, more);
+  put_on({aimed_, force, held, moment.time, next - moment.time}, moment.origin_world, more);
   return true;
 }
 
-void LiveRun::put_on(int body, const Vector3d& force, const Vector3d& point_world, double start,
-                     double duration, scene::Scene& more) {
-  const std::string& name = simulation_.scene.bodies[static_cast<std::size_t>(body)].name;
+// The record has the point in the world, as a scene has it. The engine gets the point that it will
+// read from that scene: far from the world's origin it is rounded there.
+// @param force  its point seen from the origin  @param origin_world  of the engine's coordinates [m]
+void LiveRun::put_on(PointForce force, const Vector3d& origin_world, scene::Scene& more) {
+  const std::string& name = simulation_.scene.bodies[static_cast<std::size_t>(force.body)].name;
   const bool is_by_engine = static_cast<bool>(simulation_.options.hand);
+  const Vector3d recorded_world = force.point_world + origin_world;
+  if (!origin_world.isZero(0.0)) {
+    scene::Scene probe = simulation_.scene;  // whose links say how a decimal is read
+    probe.bodies.front().position_m = recorded_world;
+    force.point_world =
+        engines::seen_from(origin_world, std::move(probe)).bodies.front().position_m;
+  }
   if (is_by_engine)
     scene::EntryWriter{more}("point_forces", {{"body", name},
-                                              {"force_n", force},
-                                              {"point_m", point_world},
-                                              {"start_s", start},
-                                              {"duration_s", duration}});
+                                              {"force_n", force.force_world},
+                                              {"point_m", force.point_world},
+                                              {"start_s", force.start},
+                                              {"duration_s", force.duration}});
   send(RecordKind::kHand, line_of({{"body", name},
-                                   {"force_n", json_of(force)},
-                                   {"point_m", json_of(point_world)},
-                                   {"start_s", start},
-                                   {"duration_s", duration},
+                                   {"force_n", json_of(force.force_world)},
+                                   {"point_m", json_of(recorded_world)},
+                                   {"start_s", force.start},
+                                   {"duration_s", force.duration},
                                    {"runs_again", !is_by_engine}}));
 }
 

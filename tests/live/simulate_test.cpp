@@ -124,12 +124,18 @@ class Running {
   std::thread thread_;
 };
 
-live::Recipe recipe_with(std::vector<std::string> pushes, double duration_s = 3.0) {
+/// @param x_m  how far along x all is away from where the scene has it
+live::Recipe recipe_with(std::vector<std::string> pushes, double x_m = 0.0) {
+  Json scene = Json::parse(kScene);
+  for (Json& body : scene["bodies"]) {
+    Json& x = body["position_m"][0];
+    x = x.get<double>() + x_m;
+  }
   live::Recipe recipe;
-  recipe.document = kScene;
+  recipe.document = scene.dump();
   recipe.file = "two_boxes.json";
   recipe.pushes = std::move(pushes);
-  recipe.duration_s = duration_s;
+  recipe.duration_s = 3.0;
   return recipe;
 }
 
@@ -137,8 +143,8 @@ live::Recipe recipe_with(std::vector<std::string> pushes, double duration_s = 3.
 struct Handled {
   std::vector<std::string> pushes, frames;
 };
-Handled run_by_hand() {
-  Running run(recipe_with({}), 1.0, true);
+Handled run_by_hand(double x_m = 0.0) {
+  Running run(recipe_with({}, x_m), 1.0, true);
   run.until(RecordKind::kFrame);
   const auto frames = [&](int count) {
     for (int i = 0; i < count; ++i) {
@@ -154,7 +160,7 @@ Handled run_by_hand() {
   run.say({{"do", "aim"}, {"body", 1}, {"point_body_m", {0.1, 0.15, 0.2}}});
   run.until(RecordKind::kAimed);
   for (int i = 0; i < 5; ++i) {
-    run.say({{"do", "pull"}, {"to_m", {3.2, 0.1 * i, 0.4}}});
+    run.say({{"do", "pull"}, {"to_m", {3.2 + x_m, 0.1 * i, 0.4}}});
     frames(2);
   }
   run.say({{"do", "release"}});
@@ -192,6 +198,19 @@ TEST(LiveHand, WhatWasDoneByHandRunsAgainByteForByte) {
   const Handled handled = run_by_hand();
   ASSERT_GT(handled.pushes.size(), 5u);  // the push, and a force for each 60th of the pull
   Running again(recipe_with(handled.pushes));
+  for (std::size_t k = 0; k < handled.frames.size(); ++k)
+    ASSERT_EQ(again.until(RecordKind::kFrame), handled.frames[k]) << "frame " << k;
+}
+
+TEST(LiveHand, FarFromTheOriginPushesAreRecordedInTheWorld) {
+  constexpr double kFar = 1e6;  // m: the engine takes an origin of its own
+  const Handled handled = run_by_hand(kFar);
+  ASSERT_GT(handled.pushes.size(), 5u);
+  // The box is at rest before its push. Two roundings of a place at 1e6 m: 1.2e-10 m each.
+  const Json point = Json::parse(handled.pushes.front()).at("point_m");
+  const Vector3d expected(kFar + 0.2, 0.5, 0.1);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(point.at(i).get<double>(), expected[i], 1e-9);
+  Running again(recipe_with(handled.pushes, kFar));
   for (std::size_t k = 0; k < handled.frames.size(); ++k)
     ASSERT_EQ(again.until(RecordKind::kFrame), handled.frames[k]) << "frame " << k;
 }
