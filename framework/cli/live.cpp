@@ -12,6 +12,7 @@
 #include "framework/cli/planned_run.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/course.h"
+#include "framework/grading/verdicts/plain_text.h"
 #include "framework/core/run_program.h"
 #include "framework/live/session.h"
 #include "framework/live/showcase.h"
@@ -37,9 +38,8 @@ std::string scene_of_assignment(const Context& context, std::string& word) {
           grading::scenes_of({context.root, context.build, &context.registry, ""}, kind->id);
       if (scenes.empty())
         throw UserError(kind->id, "has no scene",
-                        "Name a scene of another assignment, or write one: tumble new scene NAME "
-                        "--of " +
-                            kind->id);
+                        "Name a scene of another assignment, or write one: tumble new scene " +
+                            kind->id + " NAME");
       word = scenes.front().stem().string();
       return kind->id;
     }
@@ -104,10 +104,19 @@ std::string handout_page(const Context& context, const std::string& name) {
   return made.code == 0 ? made.printed : "";
 }
 
-std::string again(const fs::path& file, const live::Changes& changes, const std::string& modules) {
-  std::string command = "tumble run " + file.string();
-  if (!modules.empty()) command += " --modules " + modules;
-  if (!changes.method.empty()) command += " --method " + changes.method;
+/// What was changed in the page comes first. Its engine and its step stand in the saved file; those
+/// of the command line do not.
+std::string again(const LiveWords& words, const fs::path& file, const live::Changes& changes,
+                  const std::string& modules) {
+  std::string command = "tumble run " + grading::shell_word(file.string());
+  const auto add = [&](const std::string& flag, const std::string& value) {
+    if (!value.empty()) command += " " + flag + " " + value;
+  };
+  add("--modules", modules);
+  if (changes.engine.empty()) add("--engine", words.engine);
+  if (words.step_s && !changes.step_s) add("--step-s", fmt::format("{}", *words.step_s));
+  add("--method", changes.method.empty() ? words.method : changes.method);
+  if (words.tolerance) add("--tolerance", fmt::format("{}", *words.tolerance));
   return command;
 }
 
@@ -138,7 +147,8 @@ void live_verb(Context& context, LiveWords& words) {
                           fs::absolute(one.file).parent_path())
       sitting.first_judged = one.id;
   sitting.saves = words.saves;
-  sitting.again = again;
+  sitting.again = [words](const fs::path& file, const live::Changes& changes,
+                          const std::string& laws) { return again(words, file, changes, laws); };
   sitting.handout = [&context](const std::string& name) { return handout_page(context, name); };
   const live::Left left = live::serve(sitting, [&](const std::string& address) {
     fmt::print("{}\n", address);

@@ -88,7 +88,7 @@ void change(Changes& changes, const std::string& text) {
     } else if (key == "restitution") {
       changes.restitution = number_in(value, "restitution", 0, 1, "From 0 to 1.");
     } else if (key == "friction") {
-      changes.friction = number_in(value, "friction", 0, 100, "At least 0.");
+      changes.friction = number_in(value, "friction", 0, 100, "From 0 to 100.");
     } else if (key == "step_s") {
       changes.step_s = number_in(value, "step", 1e-5, 1, "From 0.00001 s to 1 s.");
     } else if (key == "engine") {
@@ -97,7 +97,7 @@ void change(Changes& changes, const std::string& text) {
       changes.method = value.is_null() ? "" : value.get<std::string>();
     } else if (key == "mass_kg") {
       for (const auto& [name, kg] : value.items()) {
-        const auto mass = number_in(kg, "mass", 1e-9, 1e12, "A number above 0.");
+        const auto mass = number_in(kg, "mass", 1e-9, 1e12, "From 1e-9 kg to 1e12 kg.");
         if (mass)
           changes.mass_kg[name] = *mass;
         else
