@@ -82,6 +82,10 @@ void Child::say(const std::string& line) {
 
 void Child::close_input() { close_once(input_); }
 
+void Child::read_talk(std::string& text) {
+  if (talk_is_open_) talk_is_open_ = read_some(talk_, text);
+}
+
 bool Child::read_some(int fd, std::string& text) {
   constexpr std::size_t kAtOnce = 4u << 20;  // bytes: others have their turn
   char buffer[1 << 16];

@@ -23,7 +23,10 @@ class Child {
 
   int output() const { return output_; }  // its standard output, not blocking
   int talk() const { return talk_; }      // its standard error, not blocking
+  bool talk_is_open() const { return talk_is_open_; }
 
+  /// Reads what is there on its standard error.
+  void read_talk(std::string& text);
   /// Reads what is there. @return false at the end
   static bool read_some(int fd, std::string& text);
   /// Waits for its end. @return its exit code; 128 + the signal that ended it
@@ -32,7 +35,7 @@ class Child {
  private:
   pid_t pid_ = -1;
   int input_ = -1, output_ = -1, talk_ = -1;
-  bool has_ended_ = false;
+  bool has_ended_ = false, talk_is_open_ = true;
   int code_ = 0;
 };
 

@@ -36,15 +36,19 @@ History::History(std::string head) : head_(std::move(head)) {
   }
 }
 
+// Once full it stays so until it is cut: a run with gaps is not the run.
+bool History::has_room_for(const std::string& bytes) {
+  is_full_ = is_full_ || bytes_ + bytes.size() > kMostKept;
+  if (!is_full_) bytes_ += bytes.size();
+  return !is_full_;
+}
+
 void History::add_frame(std::string bytes) {
-  bytes_ += bytes.size();
-  is_full_ = is_full_ || bytes_ > kMostKept;
-  if (!is_full_) frames_.push_back(std::move(bytes));
+  if (has_room_for(bytes)) frames_.push_back(std::move(bytes));
 }
 
 void History::add_event(std::string bytes) {
-  bytes_ += bytes.size();
-  if (!is_full_) events_.push_back(std::move(bytes));
+  if (has_room_for(bytes)) events_.push_back(std::move(bytes));
 }
 
 void History::cut(double time_s) {
@@ -57,6 +61,7 @@ void History::cut(double time_s) {
     for (auto it = first; it != list->end(); ++it) bytes_ -= it->size();
     list->erase(first, list->end());
   }
+  is_full_ = false;
 }
 
 double History::time_of(const std::string& packed) {

@@ -35,6 +35,8 @@ class History {
   const std::vector<double>& radii_m() const { return radii_; }
 
  private:
+  bool has_room_for(const std::string& bytes);
+
   std::string head_;
   scene::Scene outline_;
   std::vector<double> radii_;

@@ -16,18 +16,19 @@ namespace tumble::live {
 
 void Session::run(int stop) {
   to_judge_ = sitting_.first_judged;
-  begin("begin", 0.0);
+  begin("begin", 0.0, recipe_);
   for (;;) {
     std::vector<pollfd> waiting = {
         {stop, POLLIN, 0}, {wake_, POLLIN, 0}, {saves_.descriptor(), POLLIN, 0}};
-    const auto wait_for = [&](const Simulator* simulator) {
-      if (simulator != nullptr) waiting.push_back({simulator->child.output(), POLLIN, 0});
+    // What a process says is read, too: one that says much would stand still when its pipe is full.
+    const auto wait_for = [&](const Child& child) {
+      waiting.push_back({child.output(), POLLIN, 0});
+      if (child.talk_is_open()) waiting.push_back({child.talk(), POLLIN, 0});
     };
-    wait_for(running_.get());
-    wait_for(starting_.get());
-    wait_for(checking_.get());
-    if (judge_) waiting.push_back({judge_->output(), POLLIN, 0});
-    if (locator_) waiting.push_back({locator_->output(), POLLIN, 0});
+    for (const Simulator* simulator : {running_.get(), starting_.get(), checking_.get()})
+      if (simulator != nullptr) wait_for(simulator->child);
+    for (const Child* child : {judge_.get(), locator_.get()})
+      if (child != nullptr) wait_for(*child);
     constexpr int kTickMs = 500;
     if (::poll(waiting.data(), waiting.size(), kTickMs) < 0 && errno != EINTR) return;
     if (waiting[0].revents != 0) return;

@@ -11,6 +11,16 @@ namespace tumble::live {
 namespace {
 
 constexpr std::size_t kMostPages = 8;
+// Of a run's frames and of its events, as they are kept, for a page that is opened later [bytes]. In
+// the stream they take less, and both together fit into its mailbox with room for what comes
+// meanwhile. A page does not keep more frames of a long run, either.
+constexpr std::size_t kMostOfFrames = 80u << 20, kMostOfEvents = 32u << 20;
+
+std::size_t bytes_of(const std::vector<std::string>& records) {
+  std::size_t bytes = 0;
+  for (const std::string& record : records) bytes += record.size();
+  return bytes;
+}
 
 }  // namespace
 
@@ -73,15 +83,19 @@ void Session::take_posts() {
   ::eventfd_read(wake_, &unused);
   std::vector<std::string> posts;
   std::vector<std::shared_ptr<Mailbox>> pages;
+  bool was_left = false;
   {
     const std::lock_guard lock(mutex_);
     posts.swap(posts_);
     pages.swap(new_pages_);
+    const bool had = !pages_.empty();
     std::erase_if(pages_, [](const auto& page) { return page->is_closed(); });
+    was_left = had && pages_.empty();
     pages_.insert(pages_.end(), pages.begin(), pages.end());
   }
+  if (was_left) forward(dumped({{"do", "release"}}));  // a page that comes anew holds nothing
   for (const auto& page : pages) greet(*page);
-  if (!pages.empty()) set_pace();
+  if (was_left || !pages.empty()) set_pace();
   for (const std::string& text : posts) {
     try {
       obey(text);
@@ -120,10 +134,19 @@ void Session::greet(Mailbox& page) {
     Json words = run_words();
     words["head"]["from_s"] = 0.0;
     put(event_of("say", dumped(words)));
-    for (const std::string& frame : current_.frames())
-      put(event_of("f", numbers_for_page(frame, current_.frames().front())));
-    for (const std::string& event : current_.events())
-      put(event_of("e", numbers_for_page(event, "")));
+    // Of a long run some of its frames, the last among them, and the latest events.
+    const std::vector<std::string>&frames = current_.frames(), &events = current_.events();
+    const std::size_t stride = 1 + bytes_of(frames) / kMostOfFrames;
+    for (std::size_t k = 0; k < frames.size(); ++k)
+      if (k % stride == 0 || k + 1 == frames.size())
+        put(event_of("f", numbers_for_page(frames[k], frames.front())));
+    std::size_t first = events.size();
+    for (std::size_t bytes = 0; first > 0; --first) {
+      bytes += events[first - 1].size();
+      if (bytes > kMostOfEvents) break;
+    }
+    for (std::size_t k = first; k < events.size(); ++k)
+      put(event_of("e", numbers_for_page(events[k], "")));
   }
   for (const std::string& text : times_) put(event_of("say", text));
   for (const std::string* text : {&trouble_, &verdicts_, &difference_, &end_, &saved_})
@@ -154,22 +177,27 @@ void Session::obey(const std::string& text) {
     tell({{"kind", "pace"}, {"speed", speed_}, {"paused", is_paused_}});
   } else if (what == "step" || what == "aim" || what == "push" || what == "pull" ||
              what == "release") {
+    const bool is_over = running_ ? running_->has_ended : !starting_;
+    if (is_over && (what == "aim" || what == "push"))
+      tell({{"kind", "notice"},
+            {"text", "the run has ended: start over, or go back to an earlier instant"}});
     forward(dumped(command));
   } else if (what == "begin") {  // over again, with the pushes or without them
-    if (!command.value("keep", false)) recipe_.pushes.clear();
-    begin("begin", 0.0);
+    Recipe anew = wanted();
+    if (!command.value("keep", false)) anew.pushes.clear();
+    begin("begin", 0.0, anew);
   } else if (what == "back") {  // goes on from an instant that was
     const double time_s = command.at("time_s");
     if (!(time_s >= 0)) throw UserError("time", "must not be negative", "");
-    recipe_.pushes = before(recipe_.pushes, time_s);
-    begin("back", time_s);
+    Recipe cut = recipe_;
+    cut.pushes = before(cut.pushes, time_s);
+    begin("back", time_s, cut);
   } else if (what == "change") {
-    Recipe changed = recipe_;
+    Recipe changed = wanted();
     change(changed.changes, dumped(command.at("changes")));
     if (!command.value("keep", false)) changed.pushes.clear();
     if (!changed.document.empty()) document_of(changed);  // throws where it cannot be done
-    recipe_ = changed;
-    begin("change", 0.0);
+    begin("change", 0.0, changed);
   } else if (what == "judge") {
     judge(command.value("id", sitting_.first_judged));
   } else if (what == "save") {

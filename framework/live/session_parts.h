@@ -30,13 +30,14 @@ std::string dumped(const Json& json);
 
 /// A process that simulates, and what has come from it.
 struct Simulator {
-  Simulator(const std::vector<std::string>& words, double from, std::string why)
-      : child(words), from_s(from), reason(std::move(why)) {}
+  Simulator(const std::vector<std::string>& words, double from, std::string why, Recipe what)
+      : child(words), from_s(from), reason(std::move(why)), recipe(std::move(what)) {}
   Child child;
   RecordReader records;
   std::string talk;  // on its standard error
   double from_s;
   std::string reason;      // "begin", "code", "change", "back", "push"
+  Recipe recipe;           // that it was begun with
   bool has_ended = false;  // it has said how
 };
 
@@ -57,7 +58,7 @@ class Session {
   void close_pages();
   /// A scene that is made by code cannot be saved: what is done to it is never kept.
   Left left() const {
-    return {scenes_, !recipe_.document.empty() && as_text(recipe_) != saved_recipe_};
+    return {scenes_, !recipe_.document.empty() && as_text(wanted()) != saved_recipe_};
   }
 
  private:
@@ -73,7 +74,11 @@ class Session {
   void send(std::string text);
   void obey(const std::string& text);
   void forward(const std::string& line);
-  void begin(const std::string& reason, double from_s);
+  void begin(const std::string& reason, double from_s, const Recipe& recipe);
+  /// Of the run that is starting, else of the one that is shown: what a change adds to.
+  const Recipe& wanted() const {
+    return starting_ && !starting_->has_ended ? starting_->recipe : recipe_;
+  }
   void adopt(const std::string& head);
   void set_pace();
   void listen_to(std::unique_ptr<Simulator>& simulator);
@@ -100,7 +105,7 @@ class Session {
   std::vector<std::shared_ptr<Mailbox>> new_pages_;
 
   std::vector<std::shared_ptr<Mailbox>> pages_;
-  Recipe recipe_;
+  Recipe recipe_;                              // of the run that is shown, with what a hand did
   std::string saved_recipe_;                   // as it was when it was last saved, or at the start
   std::vector<std::filesystem::path> scenes_;  // saved
   std::vector<std::string> pushes_of_former_;
@@ -108,6 +113,7 @@ class Session {
   bool is_paused_ = false;
   std::unique_ptr<Simulator> running_, starting_;
   History current_, former_;
+  bool former_has_ended_ = false;  // and has not been replaced while it went
   double compared_until_ = 0.0;
   bool has_difference_ = false;
   std::chrono::steady_clock::time_point compared_at_ = std::chrono::steady_clock::now();
@@ -120,7 +126,8 @@ class Session {
   std::unique_ptr<Child> locator_;
   std::string place_;                    // that it has found
   std::unique_ptr<Simulator> checking_;  // whether a saved scene runs again byte for byte
-  std::size_t frames_checked_ = 0, frames_to_check_ = 0;
+  std::vector<std::string> expected_;    // its frames, which may be begun anew meanwhile
+  std::size_t frames_checked_ = 0;
   std::string checked_file_, first_wrong_;
 };
 

@@ -24,28 +24,36 @@ std::string for_people(const std::string& talk) {
 
 }  // namespace
 
-void Session::begin(const std::string& reason, double from_s) {
-  starting_ = std::make_unique<Simulator>(sitting_.simulator, from_s, reason);
-  starting_->child.say(dumped(
-      {{"recipe", as_text(recipe_)}, {"from_s", from_s}, {"speed", speed_}, {"paused", true}}));
+void Session::begin(const std::string& reason, double from_s, const Recipe& recipe) {
+  // The recipe may be the one of the run that is starting, which ends with the assignment.
+  starting_ = std::make_unique<Simulator>(sitting_.simulator, from_s, reason, recipe);
+  starting_->child.say(dumped({{"recipe", as_text(starting_->recipe)},
+                               {"from_s", from_s},
+                               {"speed", speed_},
+                               {"paused", true}}));
   tell({{"kind", "starting"}, {"reason", reason}});
 }
 
-// Nobody looks: nothing moves.
+// Nobody looks: nothing is held, and nothing moves.
 void Session::set_pace() {
   const bool is_watched = std::any_of(pages_.begin(), pages_.end(),
                                       [](const auto& page) { return !page->is_closed(); });
+  if (!is_watched) forward(dumped({{"do", "release"}}));
   forward(dumped({{"do", "pace"}, {"speed", speed_}, {"paused", is_paused_ || !is_watched}}));
 }
 
 // The run that has started takes the place of the one before.
 void Session::adopt(const std::string& head) {
   running_ = std::move(starting_);
+  recipe_ = running_->recipe;
   reason_ = running_->reason;
   if (running_->from_s > 0) {
     current_.cut(running_->from_s);
   } else {
-    if (current_.frames().size() > 1) former_ = std::move(current_);
+    if (current_.frames().size() > 1) {
+      former_ = std::move(current_);
+      former_has_ended_ = !end_.empty();
+    }
     current_ = History(head);
     compared_until_ = 0.0;
   }
@@ -65,7 +73,7 @@ void Session::adopt(const std::string& head) {
 void Session::listen_to(std::unique_ptr<Simulator>& simulator) {
   std::string bytes;
   const bool is_open = Child::read_some(simulator->child.output(), bytes);
-  Child::read_some(simulator->child.talk(), simulator->talk);
+  simulator->child.read_talk(simulator->talk);
   if (simulator->talk.size() > kTalkKept)
     simulator->talk.erase(0, simulator->talk.size() - kTalkKept);
   simulator->records.feed(bytes);
@@ -97,6 +105,14 @@ void Session::hear_starting(Record record) {
     if (running_) listen_to(running_);
     return;
   }
+  if (record.kind == RecordKind::kEnd) {  // before its first frame
+    const std::string why = Json::parse(record.bytes).value("stopped_by", "");
+    starting_->has_ended = true;
+    trouble({{"title", "The run stopped"},
+             {"text", why.empty() ? "it ended before its first frame" : why}});
+    if (!why.empty()) locate(why);
+    return;
+  }
   if (record.kind != RecordKind::kRefused) return;
   Json refused = Json::parse(record.bytes);
   const std::string problem = refused.at("problem");
@@ -109,6 +125,7 @@ void Session::hear_starting(Record record) {
 }
 
 void Session::hear(Simulator& from, Record record) {
+  const bool was_full = current_.is_full();
   switch (record.kind) {
     case RecordKind::kHead: break;
     case RecordKind::kFrame:
@@ -156,12 +173,18 @@ void Session::hear(Simulator& from, Record record) {
       break;
     }
   }
+  if (current_.is_full() && !was_full)
+    tell(
+        {{"kind", "notice"},
+         {"text", fmt::format("the run is too long to be kept beyond {:.6g} s: what comes later is "
+                              "neither saved nor compared",
+                              current_.end_s())}});
 }
 
 // Its pipe has closed: it has said why, or something ended it.
 void Session::lost(Simulator& simulator) {
   const int code = simulator.child.wait();
-  Child::read_some(simulator.child.talk(), simulator.talk);
+  simulator.child.read_talk(simulator.talk);
   if (simulator.has_ended) return;
   std::string said = for_people(simulator.talk);
   if (said.empty())
@@ -182,6 +205,8 @@ void Session::locate(const std::string& said) {
 }
 
 void Session::listen_to_locator() {
+  std::string unused;
+  locator_->read_talk(unused);
   if (Child::read_some(locator_->output(), place_)) return;
   locator_->wait();
   locator_.reset();
@@ -197,9 +222,23 @@ void Session::hand_acted(const std::string& text) {
   Json push = Json::parse(text);
   const bool runs_again = push.value("runs_again", false);
   push.erase("runs_again");
-  recipe_.pushes.push_back(dumped(push));
+  if (!runs_again) {
+    recipe_.pushes.push_back(dumped(push));
+    tell({{"kind", "push"}, {"push", push}});
+    return;
+  }
+  // The run that is shown goes on without the push: it belongs to the one that is begun. A second
+  // push may come before that one has started.
+  const bool is_starting = starting_ && !starting_->has_ended;
+  if (is_starting && starting_->reason != "push") {
+    tell({{"kind", "notice"}, {"text", "a new run is starting: push again when it goes"}});
+    return;
+  }
+  Recipe pushed = wanted();
+  pushed.pushes.push_back(dumped(push));
+  const double start_s = push.at("start_s");
   tell({{"kind", "push"}, {"push", push}});
-  if (runs_again) begin("push", push.at("start_s"));
+  begin("push", is_starting ? std::min(start_s, starting_->from_s) : start_s, pushed);
 }
 
 void Session::trouble(Json what) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ void Session::judge(const std::string& id) {
 
 void Session::listen_to_judge() {
   const bool is_open = Child::read_some(judge_->output(), judge_text_);
-  Child::read_some(judge_->talk(), judge_talk_);
+  judge_->read_talk(judge_talk_);
   if (is_open) return;
   judge_->wait();
   judge_.reset();
@@ -51,7 +52,12 @@ void Session::compare() {
       now - compared_at_ < std::chrono::duration<double>(kComparesEvery))
     return;
   compared_at_ = now;
-  const double until = std::min(former_.end_s(), current_.end_s());
+  const double end = std::min(former_.end_s(), current_.end_s());
+  // The last common instant is compared, too, when nothing more can come at it.
+  const bool is_whole =
+      (former_has_ended_ || former_.end_s() > end) && (!end_.empty() || current_.end_s() > end);
+  const double until =
+      is_whole ? std::nextafter(end, std::numeric_limits<double>::infinity()) : end;
   if (!(until > compared_until_) || former_.radii_m().size() != current_.radii_m().size()) return;
   const Trajectory a = former_.part(compared_until_, until),
                    b = current_.part(compared_until_, until);
@@ -59,7 +65,7 @@ void Session::compare() {
   const auto found =
       report::compare(current_.outline(), current_.radii_m(), a, "the run before", b, "this run");
   compared_until_ = until;
-  Json words{{"kind", "difference"}, {"same_until_s", until}};
+  Json words{{"kind", "difference"}, {"same_until_s", end}};
   if (found.first) {
     has_difference_ = true;
     words["time_s"] = found.first->time_s;
@@ -89,11 +95,11 @@ void Session::save() {
   written.document = tumble::text_of(file);
   written.file = sitting_.recipe.file;
   written.changes.method = recipe_.changes.method;
-  checking_ = std::make_unique<Simulator>(sitting_.simulator, 0.0, "check");
+  checking_ = std::make_unique<Simulator>(sitting_.simulator, 0.0, "check", written);
   checking_->child.say(
       dumped({{"recipe", as_text(written)}, {"from_s", 0.0}, {"speed", 1e30}, {"paused", false}}));
   frames_checked_ = 0;
-  frames_to_check_ = current_.frames().size();
+  expected_ = current_.frames();
   first_wrong_.clear();
   checked_file_ = file.string();
   saved_ = dumped({{"kind", "saved"}, {"file", checked_file_}, {"again", again}});
@@ -103,19 +109,19 @@ void Session::save() {
 void Session::check_saved() {
   std::string bytes;
   const bool is_open = Child::read_some(checking_->child.output(), bytes);
-  Child::read_some(checking_->child.talk(), checking_->talk);
+  checking_->talk.clear();  // only read, so that the process goes on
+  checking_->child.read_talk(checking_->talk);
   checking_->records.feed(bytes);
   while (auto record = checking_->records.next()) {
     if (record->kind == RecordKind::kRefused && first_wrong_.empty())
       first_wrong_ = Json::parse(record->bytes).value("problem", "refused");
-    if (record->kind != RecordKind::kFrame || frames_checked_ == frames_to_check_) continue;
-    const bool is_there = frames_checked_ < current_.frames().size();  // else it was begun anew
-    if (first_wrong_.empty() && !(is_there && record->bytes == current_.frames()[frames_checked_]))
+    if (record->kind != RecordKind::kFrame || frames_checked_ == expected_.size()) continue;
+    if (first_wrong_.empty() && record->bytes != expected_[frames_checked_])
       first_wrong_ = fmt::format("the frame at {:.6g} s differs", History::time_of(record->bytes));
     ++frames_checked_;
   }
   if (is_open) return;
-  if (frames_checked_ < frames_to_check_ && first_wrong_.empty())
+  if (frames_checked_ < expected_.size() && first_wrong_.empty())
     first_wrong_ = "it ended before its last frame";
   Json words = Json::parse(saved_);
   words["checked"] = true;
@@ -124,6 +130,7 @@ void Session::check_saved() {
   saved_ = dumped(words);
   send(event_of("say", saved_));
   checking_.reset();
+  expected_ = {};
 }
 
 void Session::code_saved(const std::set<fs::path>& files) {
@@ -132,7 +139,7 @@ void Session::code_saved(const std::set<fs::path>& files) {
       judge_.reset();  // of the code before; and two builds at once would be in each other's way
       to_judge_ = one.id;
       tell({{"kind", "code_saved"}, {"file", one.file.filename().string()}});
-      return begin("code", 0.0);
+      return begin("code", 0.0, wanted());
     }
 }
 

@@ -1,6 +1,7 @@
 // A process that simulates, for tests of the session: it does what a file says, whose name is its
 // first word. "right": frames until nobody reads; "crash": three, then the message of a guarded
-// call and exit code 1; "die": three, then a signal; "refuse": a compiler's error.
+// call and exit code 1; "die": three, then a signal; "refuse": a compiler's error; "stop": an end
+// before the first frame; "talk": as "right", with more on standard error than a pipe holds.
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -21,19 +22,25 @@ int main(int argc, char** argv) {
                        R"("remedy": "Correct it."})");
     return 2;
   }
+  if (what == "stop") {
+    live::write_record(1, RecordKind::kEnd, R"({"stopped_by": "box: two bodies overlap"})");
+    return 0;
+  }
+  if (what == "talk") std::cerr << std::string(1 << 20, '.') << std::flush;
   live::write_record(1, RecordKind::kHead,
                      R"({"from_s": 0, "scene": {"camera": {"eye": [0, -5, 0],)"
                      R"( "target": [0, 0, 0]}, "bodies": [{"name": "box",)"
                      R"( "immovable": false, "radius": 1}]}})");
+  const bool is_right = what == "right" || what == "talk";
   Frame frame{};
   frame.poses.push_back(
       {Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()});
   for (int k = 0;; ++k) {
     frame.time = k / 60.0;
-    frame.poses[0].com_world.x() = (what == "right" ? 1.0 : 2.0) * frame.time;
+    frame.poses[0].com_world.x() = (is_right ? 1.0 : 2.0) * frame.time;
     if (!live::write_record(1, RecordKind::kFrame, live::pack(frame))) return 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    if (k < 3 || what == "right") continue;
+    if (k < 3 || is_right) continue;
     if (what == "die") std::raise(SIGKILL);
     std::cerr << "frame /somewhere/a1_student.so 0x1234\n\ntumble: a1_impulse.cpp: crashed, in "
                  "collision_impulse\n";

@@ -149,6 +149,31 @@ TEST_F(LiveSession, CrashIsToldWithItsLineAndThePageLivesOn) {
   for (int k = 0; k < 10; ++k) EXPECT_TRUE(hears("event: f"));
 }
 
+TEST_F(LiveSession, EndBeforeTheFirstFrameIsToldWithItsReason) {
+  ASSERT_TRUE(hears("event: f"));
+  code("stop");
+  EXPECT_TRUE(hears("\"title\":\"The run stopped\",\"text\":\"box: two bodies overlap\""));
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(hears("event: f"));  // the run before goes on
+}
+
+TEST_F(LiveSession, CodeThatPrintsMuchRuns) {
+  ASSERT_TRUE(hears("event: f"));
+  code("talk");
+  EXPECT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, RefusedChangeStaysOutOfTheRunThatIsShown) {
+  ASSERT_TRUE(hears("event: f"));
+  code("refuse");
+  ASSERT_TRUE(hears("\"title\":\"Does not compile\""));
+  post(R"({"do": "change", "changes": {"restitution": 0.25}})");
+  ASSERT_TRUE(hears("\"title\":\"Does not compile\""));
+  code("right");
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  EXPECT_TRUE(hears("\"changes\":{\"engine\":\"\",\"method\":\"\"}"));
+}
+
 TEST_F(LiveSession, CompilersErrorLeavesTheRunGoing) {
   ASSERT_TRUE(hears("event: f"));
   code("refuse");
@@ -178,7 +203,7 @@ TEST_F(LiveSession, NonsenseFromThePageIsToldAndEndsNothing) {
 TEST_F(LiveSession, SaysAtItsEndWhatIsKeptAndWhatIsNot) {
   ASSERT_TRUE(hears("event: f"));
   post(R"({"do": "change", "changes": {"gravity_m_s2": [0, 0, -1]}})");
-  ASSERT_TRUE(hears("\"reason\":\"change\""));
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"change\""));
   ASSERT_TRUE(hears("event: f"));
   post(R"({"do": "save"})");
   ASSERT_TRUE(hears("\"kind\":\"saved\""));
