@@ -24,9 +24,10 @@ namespace {
 // Rounding of curves, speeds and arrows relative to the run's largest value: less than the width of
 // a line on any screen.
 constexpr double kCurve = 1e-6, kSpeed = 1.5e-5, kArrow = 1e-3;
-constexpr double kPlace = 1e-6;          // relative to the distance of the camera's target
-constexpr double kTurn = 1.0 / 32768;    // of a quaternion's components: 6e-5 rad
-constexpr double kTime = 1.0 / 1048576;  // s
+constexpr double kPlace = 1e-6;        // relative to the distance of the camera's target
+constexpr double kTurn = 1.0 / 32768;  // of a quaternion's components: 6e-5 rad
+// s; of a run shorter than 0.01 s so much of its end
+constexpr double kTime = 1.0 / 1048576, kTimeShare = 1e-4;
 
 using Value = std::function<double(std::size_t)>;
 
@@ -55,7 +56,7 @@ class RunPacker {
                  const std::vector<double>& apart_m) {
     PackedRun packed;
     packed.times_s = gathered(frames_.size(), [&](std::size_t k) { return frame(k).time; });
-    writer_.add(packed.times_s, kTime, 2);
+    writer_.add(packed.times_s, time_quantum(), 2);
     add_poses();
     packed.series = all_series(scene, apart_m);
     nlohmann::ordered_json series = nlohmann::ordered_json::array();
@@ -88,6 +89,10 @@ class RunPacker {
 
  private:
   const Frame& frame(std::size_t k) const { return run_.frames[frames_[k]]; }
+
+  double time_quantum() const {
+    return std::min(kTime, quantum_of(kTimeShare * run_.frames.back().time));
+  }
 
   // Separates moving bodies from those with a constant pose.
   void find_moving() {
@@ -237,7 +242,7 @@ class RunPacker {
       for (const Event& event : run_.events) values.push_back(value(event));
       writer_.add(values, quantum > 0 ? quantum : quantum_of(kCurve * largest_of(values)), order);
     };
-    add(kTime, 1, [](const Event& e) { return e.time; });
+    add(time_quantum(), 1, [](const Event& e) { return e.time; });
     add(1.0, 0, [](const Event& e) { return static_cast<double>(e.kind); });
     add(1.0, 0, [](const Event& e) { return e.body_a; });
     add(1.0, 0, [](const Event& e) { return e.body_b; });

@@ -25,10 +25,12 @@ constexpr Wanted kWanted[] = {{"energy", "Energy", "energy"},
 Curve curve_of(const Series& series, const std::vector<double>& times_s, const std::string& name) {
   Curve curve{name, {}, {}};
   const std::size_t stride = std::max<std::size_t>(1, times_s.size() / kMostStillPoints);
-  for (std::size_t i = 0; i < times_s.size(); i += stride) {
+  const auto add = [&](std::size_t i) {
     curve.x.push_back(times_s[i]);
     curve.y.push_back(series.values[i]);
-  }
+  };
+  for (std::size_t i = 0; i < times_s.size(); i += stride) add(i);
+  if (!times_s.empty() && (times_s.size() - 1) % stride != 0) add(times_s.size() - 1);
   return curve;
 }
 

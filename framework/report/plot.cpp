@@ -23,6 +23,8 @@ constexpr double kLetter = 0.64;  // mean width of a bold letter over its size
 constexpr double kMostDecades = 40.0;
 // largest over smallest: below it values are drawn as equal
 constexpr double kFlat = 1.001;
+// on a linear axis: length of the shortest over its largest value; numbers have six digits
+constexpr double kFlatShare = 1e-4;
 
 // From dark to light for print, distinguishable to colour-blind readers (after M. Okabe, K. Ito,
 // "Color universal design", 2008). More than eight colours are hard to distinguish: the second
@@ -65,9 +67,10 @@ Range widened(Range range, Scale scale) {
                  room = std::pow(10.0, 0.06 * decades);
     return {range.low / room, range.high * room};
   }
-  const double size =
-      std::max(range.high - range.low, 1e-12 * std::max(std::abs(range.low), std::abs(range.high)));
-  const double room = size > 0 ? 0.06 * size : 1.0;
+  // A curve that is constant to four digits is drawn as a straight line, with numbers that differ.
+  const double size = range.high - range.low,
+               least = kFlatShare * std::max(std::abs(range.low), std::abs(range.high));
+  const double room = size > 0 || least > 0 ? std::max(0.06 * size, 0.5 * (least - size)) : 1.0;
   return {range.low - room, range.high + room};
 }
 
@@ -126,8 +129,11 @@ Curve thinned(const Curve& curve) {
   for (std::size_t part = 0; part < kParts; ++part) {
     const std::size_t begin = part * curve.x.size() / kParts,
                       end = (part + 1) * curve.x.size() / kParts;
-    std::size_t least = begin, largest = begin;
-    for (std::size_t i = begin; i < end; ++i) {
+    std::size_t least = begin;
+    while (least + 1 < end && !std::isfinite(curve.y[least])) ++least;  // nothing compares with it
+    std::size_t largest = least;
+    for (std::size_t i = least; i < end; ++i) {
+      if (!std::isfinite(curve.y[i])) continue;
       if (curve.y[i] < curve.y[least]) least = i;
       if (curve.y[i] > curve.y[largest]) largest = i;
     }

@@ -142,6 +142,20 @@ TEST(Plots, KeepTheExtremaOfLongCurves) {
   EXPECT_NE(svg.find(" 48.6"), std::string::npos);
 }
 
+TEST(Plots, KeepWhatFollowsAMissingValueOfALongCurve) {
+  Curve curve{"long", {}, {}};
+  for (int i = 0; i < 100000; ++i)
+    curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
+  curve.y[54300] = std::nan("");  // the first of the hundred that are drawn together
+  EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {curve}, {}}).find(" 48.6"), std::string::npos);
+}
+
+TEST(Plots, NumbersAtTheAxisOfALargeConstantDiffer) {
+  const std::string svg = svg_of(Plot{
+      "t", {"time", "s"}, {"momentum", "kg m/s"}, {{"c", {1, 2, 3}, {1e6, 1e6 + 0.01, 1e6}}}, {}});
+  EXPECT_EQ(count(svg, ">1e+06<"), 1u) << svg;
+}
+
 TEST(Plots, AreInAPageWithTheirCaption) {
   Page page("t");
   page.plot(Plot{"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});

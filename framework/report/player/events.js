@@ -57,7 +57,7 @@ class EventPane {
     const run = this.player.runs[r], e = run.events, names = this.player.about.bodies;
     const bodies = [e.a[i], e.b[i]].filter(b => b >= 0).map(b => names[b].name).join(' – ');
     const speeds = Number.isFinite(e.before[i]) && e.kind[i] === kCollision ? `${short(e.before[i], 3)} → ${short(e.after[i], 3)} m/s` : '';
-    return [e.time[i].toFixed(4), this.player.runs.length > 1 ? run.label : '', kEventNames[e.kind[i]], bodies, e.impulse[i] > 0 ? `${short(e.impulse[i], 3)} N s` : '', speeds];
+    return [e.time[i].toFixed(Math.max(4, decimalsOf(this.player.end))), this.player.runs.length > 1 ? run.label : '', kEventNames[e.kind[i]], bodies, e.impulse[i] > 0 ? `${short(e.impulse[i], 3)} N s` : '', speeds];
   }
 
   draw() {

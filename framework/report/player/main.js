@@ -264,7 +264,7 @@ function addWords(player, picture) {
   place();
   const notes = [];
   if (picture && picture.stages[0].spacing) notes.push(`grid ${short(picture.stages[0].spacing)} m`);
-  for (const run of player.runs) if (run.head.stride > 1) notes.push(`every ${run.head.stride}th frame kept`);
+  for (const run of player.runs) if (run.head.stride > 1) notes.push(`one of ${run.head.stride} frames kept`);
   byId('words').append(html('div', { className: 'note' }, notes.join(' · ')));
 }
 

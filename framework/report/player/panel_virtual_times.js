@@ -3,7 +3,7 @@
 // the scheduler's move that committed the cursor's time; the slider steps through the moves.
 
 panelKinds.virtual_times = (box, data, player) => {
-  const kRowHeight = 18, kLeft = 96, kTop = 26, moves = data.moves, names = data.processes, end = Math.max(player.end, ...moves.map(m => m[2]));
+  const kRowHeight = 18, kLeft = 96, kTop = 26, moves = data.moves, names = data.processes, end = moves.reduce((latest, move) => Math.max(latest, move[2]), player.end);
   const slider = html('input', { type: 'range', min: '0', max: String(moves.length), step: '1', ariaLabel: 'Move of the scheduler' }), words = html('p', { className: 'move' });
   const canvas = html('canvas', { className: 'times' });
   slider.className = 'moves';

@@ -2,18 +2,31 @@
 
 const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8];
 const kFewestFrames = 4;   // in the shown part of time
+const kShortest = 1e-3;   // s: the length of time that is shown of a run of one frame
+
+// Speeds to choose from, down to one at which a run takes three seconds: 1, 2, 5 times a power of ten.
+function speedsFor(end) {
+  const speeds = [...kSpeeds], parts = [2, 2.5, 2];
+  for (let k = 0; speeds[0] > end / 3 && k < 60; ++k) speeds.unshift(Number((speeds[0] / parts[k % 3]).toPrecision(1)));
+  return speeds;
+}
+
+// Digits behind the point of a time [s] in a run that ends then.
+function decimalsOf(end) { return end >= 1 ? 3 : Math.min(12, 3 + Math.ceil(-Math.log10(end))); }
+
 const byId = id => document.getElementById(id);
 
 class Player {
   constructor(about, runs) {
     this.about = about;
     this.runs = runs;
-    this.end = Math.max(...runs.map(run => run.end));
+    this.end = Math.max(0, ...runs.map(run => run.end)) || kShortest;
     this.longest = runs.reduce((a, b) => (b.end > a.end ? b : a));
     this.time = 0;
     this.from = 0;   // the part of time that slider and curves show
     this.until = this.end;
-    this.speed = [...kSpeeds].reverse().find(s => s <= 1 && s <= this.end / 3) || kSpeeds[0];   // a short run is played slowly: at least three seconds
+    this.speeds = speedsFor(this.end);
+    this.speed = [...this.speeds].reverse().find(s => s <= 1 && s <= this.end / 3) || this.speeds[0];   // a short run is played slowly: at least three seconds
     this.isPlaying = false;
     this.chosen = -1;
     this.followed = -1;
@@ -81,7 +94,9 @@ class Player {
   step(frames) {
     this.isPlaying = false;
     const times = this.longest.times, at = this.longest.frameAt(this.time), isBetween = at.part > 1e-3 && frames < 0;
-    this.seek(times[Math.min(times.length - 1, Math.max(0, at.k + frames + (isBetween ? 1 : 0)))]);
+    let k = Math.min(times.length - 1, Math.max(0, at.k + frames + (isBetween ? 1 : 0)));
+    while (frames < 0 && k > 0 && times[k] > this.time - 1e-6) --k;   // nearer frames count as the same instant
+    this.seek(times[k]);
   }
 
   // Goes to the next or previous event.
@@ -97,8 +112,8 @@ class Player {
   }
 
   faster(steps) {
-    const at = kSpeeds.reduce((best, s, i) => (Math.abs(Math.log(s / this.speed)) < Math.abs(Math.log(kSpeeds[best] / this.speed)) ? i : best), 0);
-    this.setSpeed(kSpeeds[Math.min(kSpeeds.length - 1, Math.max(0, at + steps))]);
+    const speeds = this.speeds, at = speeds.reduce((best, s, i) => (Math.abs(Math.log(s / this.speed)) < Math.abs(Math.log(speeds[best] / this.speed)) ? i : best), 0);
+    this.setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, at + steps))]);
   }
 
   choose(body) {
@@ -146,7 +161,7 @@ class Controls {
     click('farther', () => player.zoom(2));
     byId('looks').append(html('option', { value: '' }, 'view …'), ...Object.entries(kLooks).map(([name, look]) => html('option', { value: name }, look.text)));
     byId('looks').addEventListener('change', event => { if (picture && event.target.value) picture.look(event.target.value); event.target.value = ''; });
-    for (const s of kSpeeds) byId('speed').append(html('option', { value: String(s) }, `${s} ×`));
+    for (const s of player.speeds) byId('speed').append(html('option', { value: String(s) }, `${s} ×`));
     byId('speed').addEventListener('change', event => player.setSpeed(Number(event.target.value)));
     byId('body').append(html('option', { value: '-1' }, 'body …'));
     player.about.bodies.forEach((body, i) => byId('body').append(html('option', { value: String(i) }, body.name)));
@@ -242,8 +257,8 @@ class Controls {
     scrub.value = String(player.time);
     if (!player.isTimeToTell()) return;
     byId('play').textContent = player.isPlaying ? 'Pause' : 'Play';
-    byId('clock').textContent = `${player.time.toFixed(player.end < 1 ? 4 : 3)} s`;
-    byId('scrub').setAttribute('aria-valuetext', `${player.time.toFixed(3)} seconds`);
+    byId('clock').textContent = `${player.time.toFixed(decimalsOf(player.end))} s`;
+    byId('scrub').setAttribute('aria-valuetext', `${player.time.toFixed(decimalsOf(player.end))} seconds`);
     byId('speed').value = String(player.speed);
     byId('body').value = String(player.chosen);
     byId('follow').disabled = player.chosen < 0;

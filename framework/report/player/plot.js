@@ -172,8 +172,11 @@ class TimePlot {
     };
     for (let part = 0; part < parts; ++part) {
       const from = first + Math.floor(part * n / parts), until = first + Math.floor((part + 1) * n / parts);
-      let least = from, largest = from;
-      for (let i = from; i < until; ++i) {
+      let least = from;
+      while (least + 1 < until && !Number.isFinite(curve.values[least])) ++least;   // with which nothing compares
+      let largest = least;
+      for (let i = least; i < until; ++i) {
+        if (!Number.isFinite(curve.values[i])) continue;
         if (curve.values[i] < curve.values[least]) least = i;
         if (curve.values[i] > curve.values[largest]) largest = i;
       }

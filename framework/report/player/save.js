@@ -107,10 +107,12 @@ function gltfBytes(player, picture) {
     if (!run.moving.has(i)) return;
     const times = [], places = [], turns = [], last = new THREE.Quaternion();
     for (let k = 0; k < run.times.length; ++k) {
+      const time = Math.fround(run.times[k]);   // as the file has it, where times must increase
+      if (times.length > 0 && !(time > times[times.length - 1])) continue;
       if (!run.pose(i, { k, part: 0 }, place, turn)) break;
       if (k > 0 && last.dot(turn) < 0) turn.set(-turn.x, -turn.y, -turn.z, -turn.w);   // the shorter way between two frames
       last.copy(turn);
-      times.push(run.times[k]);
+      times.push(time);
       places.push(...place.toArray());
       turns.push(turn.x, turn.y, turn.z, turn.w);
     }
