@@ -5,7 +5,8 @@
 namespace tumble::live {
 namespace {
 
-constexpr std::size_t kMostWaiting = 128u << 20;  // bytes: a whole run for a page that is new
+constexpr std::size_t kMostWaiting = 128u
+                                     << 20;  // bytes: more than a new page gets (session_pages.cpp)
 
 }  // namespace
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMostPages = 8;
 // Of a run's frames and of its events, as they are kept, for a page that is opened later [bytes]. In
 // the stream they take less, and both together fit into its mailbox with room for what comes
-// meanwhile. A page does not keep more frames of a long run, either.
+// meanwhile. A page thins a long run, too.
 constexpr std::size_t kMostOfFrames = 80u << 20, kMostOfEvents = 32u << 20;
 
 std::size_t bytes_of(const std::vector<std::string>& records) {

@@ -1,4 +1,4 @@
-// Curves that grow with the run; dashed those of the run before.
+// Curves that grow with the run: colour and dashes say which one; those of the run before are thin and pale.
 
 const kCurvePlots = [
   { title: 'Energy', unit: 'J', curves: [['kinetic', 'kinetic', 0], ['potential', 'potential', 1]] },
@@ -15,9 +15,10 @@ class GrowingPlot {
     this.canvas = html('canvas', { role: 'img' });
     this.canvas.setAttribute('aria-label', about.title);
     this.values = about.curves.map(() => html('b'));
-    this.keys = about.curves.map(() => html('i', { className: 'key' }));
+    this.keys = about.curves.map((_, i) => element('line', { x1: 0, x2: 28, y1: 4, y2: 4, 'stroke-width': 2.4, 'stroke-dasharray': kStyles[i][1] }));
+    const keyOf = i => { const key = element('svg', { viewBox: '0 0 28 8', class: 'key', 'aria-hidden': 'true' }); key.append(this.keys[i]); return key; };
     this.box = html('figure', { className: 'plot' }, html('h3', {}, `${about.title} [${about.unit}]`), this.canvas,
-      html('figcaption', {}, ...about.curves.map(([, name], i) => html('span', {}, this.keys[i], `${name} `, this.values[i]))));
+      html('figcaption', {}, ...about.curves.map(([, name], i) => html('span', {}, keyOf(i), `${name} `, this.values[i]))));
   }
 
   range(runs, names) {
@@ -59,15 +60,19 @@ class GrowingPlot {
       g.fillText(short(s, 4), x(s), bottom + 13);
     }
     runs.slice().reverse().forEach(one => {
-      g.setLineDash(one === former ? [4, 3] : []);
-      g.lineWidth = one === former ? 1.2 : 1.7;
-      this.about.curves.forEach(([name, , color]) => this.trace(g, one, one.curves[name], x, y, colors[color], end));
+      g.globalAlpha = one === former ? 0.5 : 1;
+      g.lineWidth = one === former ? 1 : 1.7;
+      this.about.curves.forEach(([name, , color], i) => {
+        g.setLineDash(kStyles[i][1].split(' ').filter(Boolean).map(Number));
+        this.trace(g, one, one.curves[name], x, y, colors[color], end);
+      });
     });
+    g.globalAlpha = 1;
     g.setLineDash([]);
     g.fillStyle = style.getPropertyValue('--bad');
     g.fillRect(x(t), top, 1.2, bottom - top);
     const k = run.frameAt(t).k;
-    this.about.curves.forEach(([name, , color], i) => { this.values[i].textContent = short(run.curves[name][k]); this.keys[i].style.background = colors[color]; });
+    this.about.curves.forEach(([name, , color], i) => { this.values[i].textContent = short(run.curves[name][k]); this.keys[i].setAttribute('stroke', colors[color]); });
   }
 
   // Of many points the least and the largest in each column.
@@ -83,8 +88,14 @@ class GrowingPlot {
     };
     for (let part = 0; part < parts; ++part) {
       const from = Math.floor(part * n / parts), until = Math.floor((part + 1) * n / parts);
-      let least = from, most = from;
-      for (let i = from; i < until; ++i) { if (values[i] < values[least]) least = i; if (values[i] > values[most]) most = i; }
+      let least = from;
+      while (least + 1 < until && !Number.isFinite(values[least])) ++least;   // with which nothing compares
+      let most = least;
+      for (let i = least; i < until; ++i) {
+        if (!Number.isFinite(values[i])) continue;
+        if (values[i] < values[least]) least = i;
+        if (values[i] > values[most]) most = i;
+      }
       to(Math.min(least, most));
       if (least !== most) to(Math.max(least, most));
     }

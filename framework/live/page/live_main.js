@@ -5,14 +5,21 @@ const byId = id => document.getElementById(id);
 const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
 const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null };
 
+// One after the other: a pull that came behind its release would hold the body for ever.
+let posted = Promise.resolve();
 function post(command) {
-  return fetch('do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(command) }).catch(() => say('the program has ended', 'bad'));
+  posted = posted.then(() => fetch('do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(command) })).catch(() => say('the program has ended', 'bad'));
+  return posted;
 }
 
 function say(text, kind = '') {
   byId('state').textContent = text;
   byId('state').className = kind;
 }
+
+// Whether saving a mended file helps: troubles of the user's own code, and those whose line was found in it.
+const kTroublesOfCode = new Set(['Does not compile', 'Not attempted', 'Crashed', 'Out of time']);
+function isOfCode(trouble) { return kTroublesOfCode.has(trouble.title) || /\.cpp:\d+$/.test(trouble.where || ''); }
 
 function showTrouble(trouble) {
   const box = byId('trouble');
@@ -21,7 +28,7 @@ function showTrouble(trouble) {
   const [title, text, remedy] = box.querySelectorAll('h2, pre, .remedy');
   title.textContent = trouble.where ? `${trouble.title}: ${trouble.where}` : trouble.title;
   text.textContent = trouble.text || '';
-  remedy.textContent = trouble.remedy || 'The page goes on: mend the file and save it.';
+  remedy.textContent = trouble.remedy || (isOfCode(trouble) ? 'The page goes on: mend the file and save it.' : '');
   document.body.dataset.trouble = `${trouble.title} ${trouble.where || ''} ${trouble.text || ''}`;
 }
 
@@ -66,8 +73,10 @@ function toggle() {
 
 function stepBack() {
   if (!page.run || page.run.length === 0) return;
-  const at = page.run.frameAt(page.time);
-  goTo(page.run.times[Math.max(0, at.k - (at.part > 1e-3 ? 0 : 1))]);
+  const times = page.run.times, at = page.run.frameAt(page.time);
+  let k = Math.max(0, at.k - (at.part > 1e-3 ? 0 : 1));
+  while (k > 0 && times[k] > page.time - 1e-6) --k;   // nearer frames count as the same instant
+  goTo(times[k]);
 }
 
 function stepOn() {
@@ -147,6 +156,7 @@ function showHint() {
   const run = page.run;
   if (!run) return;
   const words = { push: 'Drag from a body and let go: a force pushes it.', pull: run.facts.can_pull ? 'Drag a body: the spring of a3 holds it.' : 'Pulling needs the engine rd and the spring of a3.', look: 'Drag turns the view.' };
+  if (page.ended) words.push = words.pull = 'The run has ended: start over, or go back to an earlier instant.';
   byId('hint').textContent = page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.';
 }
 
@@ -169,6 +179,7 @@ function begin(message) {
   page.run.about.forces = [...head.scene.forces.filter(force => !page.pushes.some(push => Math.abs(force.start - push.start_s) < 1e-9)), ...page.pushes.map(forceOf)];
   page.needsStage = !isBack;
   page.follows = true;
+  page.ended = false;
   if (!isBack) page.time = 0;
   showTrouble(null);
   delete document.body.dataset.trouble;
@@ -227,9 +238,10 @@ const told = {
   end(message) {
     page.run.stopped = message.stopped_by;
     if (message.stopped_by) showTrouble({ title: 'The run stopped', text: message.stopped_by, where: '' });
-    else if (message.faults) showTrouble({ title: 'This run cannot be trusted', text: message.faults, where: '', remedy: ' ' });
+    else if (message.faults) showTrouble({ title: 'This run cannot be trusted', text: message.faults, where: '' });
     say(message.stopped_by ? `stopped at ${short(message.time_s)} s` : `ended at ${short(message.time_s)} s`, message.stopped_by ? 'bad' : '');
     page.ended = true;
+    showHint();
   },
   trouble(message) { showTrouble(message); say(message.title.toLowerCase(), 'bad'); },
   notice(message) { byId('aimed').textContent = message.text; },
@@ -266,7 +278,7 @@ function listen() {
     if (!page.run) return;
     page.run.addFrame(floatsOf(event.data));
     ++page.frames;
-    page.ended = false;
+    if (page.ended) { page.ended = false; showHint(); }
   });
   stream.addEventListener('e', event => { if (page.run) page.run.addEvent(floatsOf(event.data)); });
   stream.onerror = () => say('the program has ended, or is gone for a moment', 'bad');
@@ -370,7 +382,7 @@ function addControls() {
     const target = event.target instanceof Element ? event.target : document.body;
     if (event.ctrlKey || event.metaKey || event.altKey || target.closest('select, input[type=number], input[type=text]')) return;
     const onButton = target.closest('button, summary, input[type=checkbox], a');
-    const acts = { ' ': onButton ? null : toggle, ArrowLeft: target.closest('[type=range]') ? null : stepBack, ArrowRight: target.closest('[type=range]') ? null : stepOn, r: () => post({ do: 'begin', keep: false }), 1: () => setTool('push'), 2: () => setTool('pull'), 3: () => setTool('look') };
+    const acts = { ' ': onButton ? null : toggle, ArrowLeft: target.closest('[type=range]') ? null : stepBack, ArrowRight: target.closest('[type=range]') ? null : stepOn, r: () => post({ do: 'begin', keep: true }), 1: () => setTool('push'), 2: () => setTool('pull'), 3: () => setTool('look') };
     const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     act();
