@@ -5,8 +5,8 @@
 namespace tumble::live {
 namespace {
 
-constexpr std::size_t kMostWaiting = 128u
-                                     << 20;  // bytes: more than a new page gets (session_pages.cpp)
+// bytes: more than a page gets that is new (session_pages.cpp)
+constexpr std::size_t kMostWaiting = 128u << 20;
 
 }  // namespace
 

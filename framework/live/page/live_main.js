@@ -348,7 +348,7 @@ function showScales() {
 
 function addOptions() {
   const options = [...Object.entries(kVectors).map(([name, about]) => [name, about.text, cssColor(about.color)]), ['axes', 'principal axes'], ['centres', 'centres of mass'], ['chosenOnly', 'of the chosen body only'],
-    ['ghost', 'the run before, as a ghost', cssColor(kGhost)], ['forces', 'forces on points', cssColor(kColors.force)], ['links', 'springs, rods, joints', cssColor(kColors.rod)], ['halo', 'chosen body highlighted', cssColor(kChosen)], ['ground', 'ground and grid'], ['shadows', 'shadows']];
+    ['ghost', 'the run before, as a ghost', cssColor(kFormerColor)], ['forces', 'forces on points', cssColor(kColors.force)], ['links', 'springs, rods, joints', cssColor(kColors.rod)], ['halo', 'chosen body highlighted', cssColor(kChosen)], ['ground', 'ground and grid'], ['shadows', 'shadows']];
   for (const [name, text, color] of options) {
     const box = html('input', { type: 'checkbox', checked: shown[name], id: `show_${name}` }), swatch = html('i');
     if (color) swatch.style.background = color;

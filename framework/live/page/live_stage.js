@@ -9,7 +9,7 @@ const kVectors = {
   contact: { text: 'contact forces', color: 0x007a57, unit: 'N' },
   constraint: { text: 'forces of springs and rods', color: 0x4a5bbf, unit: 'N' },
 };
-const kGhost = 0x6f8dad, kHandColor = 0xd0306c;
+const kFormerColor = 0x6f8dad, kHandColor = 0xd0306c;
 const cssColor = color => '#' + color.toString(16).padStart(6, '0');
 
 // The 1, 2 or 5 times a power of ten that is not above x.
@@ -22,7 +22,7 @@ class Ghost {
   constructor(stage, run) {
     this.run = run;
     this.meshes = stage.groups.filter(group => group.members.some(i => run.moving.has(i))).map(group => {
-      const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(kGhost).convertGammaToLinear(2.2), transparent: true, opacity: 0.3, depthWrite: false });
+      const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(kFormerColor).convertGammaToLinear(2.2), transparent: true, opacity: 0.3, depthWrite: false });
       const mesh = new THREE.InstancedMesh(sameGeometry(group.geometry(12)), material, group.members.length);
       mesh.frustumCulled = false;
       mesh.renderOrder = 1;
