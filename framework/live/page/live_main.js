@@ -39,12 +39,14 @@ function goTo(time) {
   page.time = Math.max(0, Math.min(time, page.run ? page.run.end : 0));
   if (!page.paused) setPace(true, page.speed);
   showTime();
+  showHint();
 }
 
 function newest() {
   page.follows = true;
   if (page.run) page.time = page.run.end;
   showTime();
+  showHint();
 }
 
 function setPace(paused, speed) {
@@ -83,7 +85,7 @@ function stepOn() {
   const run = page.run;
   if (!run || run.length === 0) return;
   const k = run.frameAt(page.time).k;
-  if (k + 1 < run.length) { page.time = run.times[k + 1]; page.follows = k + 2 >= run.length; return showTime(); }
+  if (k + 1 < run.length) { page.time = run.times[k + 1]; page.follows = k + 2 >= run.length; showHint(); return showTime(); }
   newest();
   post({ do: 'step' });
 }
