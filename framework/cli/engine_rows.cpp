@@ -12,6 +12,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/events/trace.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/run.h"
@@ -238,6 +239,7 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene,
   options.step_s = choice.step_s;
   options.duration_s = choice.duration_s;
   options.command = context.command_line;
+  options.instants_s = engines::instants_of_checks(scene);
   // The row of the table.
   EngineRun measured;
   EngineRow& row = measured.row;

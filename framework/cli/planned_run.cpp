@@ -10,6 +10,8 @@
 #include "framework/cli/cost_measure.h"
 #include "framework/cli/cost_methods.h"
 #include "framework/core/cpu_time.h"
+#include "framework/engines/base/tolerances.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/report/cost_page.h"
 #include "framework/scene/words.h"
@@ -193,12 +195,14 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
 }
 
 double error_of(const PlannedRun::Search& search, const Trajectory& run) {
-  if (run.frames.size() != search.reference.samples.size())
-    return std::numeric_limits<double>::quiet_NaN();
   double most = 0.0;
-  for (std::size_t k = 0; k < run.frames.size(); ++k)
-    most = std::max(most, engines::distance_between(run.frames[k], search.reference.samples[k],
-                                                    search.reference.radii));
+  auto frame = run.frames.begin();  // beside those of the samples there are those of checks
+  for (const Frame& sample : search.reference.samples) {
+    while (frame != run.frames.end() && frame->time < sample.time - engines::kSameInstant) ++frame;
+    if (frame == run.frames.end() || frame->time > sample.time + engines::kSameInstant)
+      return std::numeric_limits<double>::quiet_NaN();
+    most = std::max(most, engines::distance_between(*frame, sample, search.reference.radii));
+  }
   return most;
 }
 
@@ -241,6 +245,7 @@ PlannedRun plan_run(const Context& context, const scene::Scene& scene, const Cho
     plan = {std::move(run.scene), std::move(run.laws), std::move(run.options),
             std::move(plan.search)};
     plan.options.command = context.command_line;
+    plan.options.instants_s = engines::instants_of_checks(scene);
     return plan;
   }
   // Otherwise from the flags.
@@ -258,6 +263,7 @@ PlannedRun plan_run(const Context& context, const scene::Scene& scene, const Cho
   plan.options.step_s = words.step_s;
   plan.options.duration_s = words.duration_s;
   plan.options.command = context.command_line;
+  plan.options.instants_s = engines::instants_of_checks(scene);
   return plan;
 }
 

@@ -52,7 +52,9 @@ Laws right_laws() {
 Trajectory run(const scene::Scene& scene, const Laws& laws,
                const engines::RunOptions& options = {}) {
   TrajectoryRecorder recorder;
-  engines::run_scene(scene, laws, options, recorder);
+  engines::RunOptions judged = options;
+  judged.instants_s = engines::instants_of_checks(scene);
+  engines::run_scene(scene, laws, judged, recorder);
   return recorder.trajectory();
 }
 

@@ -8,11 +8,9 @@
 namespace tumble::engines {
 namespace {
 
-std::vector<double> instants_of(const scene::Scene& scene) {
-  std::vector<double> instants;
-  for (const scene::CheckSpec& check : scene.checks) instants.push_back(check.at_s);
-  return instants;
-}
+// Of a frame time and of a run: an instant nearer to a frame than this has no other state, and
+// who steps from frame to frame would not see it.
+constexpr double kSamePart = 1e-3;
 
 }  // namespace
 
@@ -20,27 +18,26 @@ FrameTimes::FrameTimes(double rate_hz, double duration_s, std::vector<double> in
     : rate_(rate_hz),
       duration_(duration_s),
       slack_(kNegligible * std::min(1.0 / rate_hz, duration_s)),
+      same_(std::min(kSameInstant, kSamePart * std::min(1.0 / rate_hz, duration_s))),
       instants_(std::move(instants_s)) {
   std::sort(instants_.begin(), instants_.end());
 }
 
-FrameTimes::FrameTimes(const scene::Scene& scene, const RunOptions& options)
-    : FrameTimes(options.frame_rate_hz, options.duration_s.value_or(scene.duration_s),
-                 instants_of(scene)) {}
+FrameTimes::FrameTimes(const RunOptions& options, double duration_s)
+    : FrameTimes(options.frame_rate_hz, options.duration_s.value_or(duration_s),
+                 options.instants_s) {}
 
 void FrameTimes::take() {
   if (next_ >= duration_) {
     next_ = std::numeric_limits<double>::infinity();
     return;
   }
-  const double earliest = next_ + slack_;
-  while (static_cast<double>(multiple_) / rate_ <= earliest) ++multiple_;
-  while (taken_instants_ < instants_.size() && instants_[taken_instants_] <= earliest)
+  while (static_cast<double>(multiple_) / rate_ <= next_ + slack_) ++multiple_;
+  const double multiple = std::min(static_cast<double>(multiple_) / rate_, duration_);
+  while (taken_instants_ < instants_.size() && instants_[taken_instants_] <= next_ + same_)
     ++taken_instants_;
-  const double multiple = static_cast<double>(multiple_) / rate_;
   next_ = multiple;
-  // a multiple rather than what rounding parts from it
-  if (taken_instants_ < instants_.size() && instants_[taken_instants_] < multiple - slack_)
+  if (taken_instants_ < instants_.size() && instants_[taken_instants_] < multiple - same_)
     next_ = instants_[taken_instants_];
   if (next_ >= duration_ - slack_) next_ = duration_;
 }

@@ -84,6 +84,8 @@ struct RunOptions {
   std::optional<double> step_s;      // overrides the scene's
   std::optional<double> duration_s;  // overrides the scene's
   double frame_rate_hz = 60.0;       // of recorded frames
+  // of further frames; who judges a run asks for those of its checks (instants_of_checks) [s]
+  std::vector<double> instants_s;
   std::vector<Callback> callbacks;   // in order of time
   // of rd only; empty: nobody acts
   Hand hand;

@@ -36,6 +36,10 @@ inline constexpr double kDeviations = 8.0;
 /// or measured. Larger: times, gaps and rises that a check could see are dropped. Smaller: it
 /// meets what rounding leaves, and steps and searches of no length begin.
 inline constexpr double kNegligible = 1e-9;
+/// s: instants that stand for each other where states are looked up by time: what six decimals of a
+/// number of seconds leave. Smaller: a check at 0.333333 s has no frame. Larger: it is judged by a
+/// frame in which bodies are elsewhere.
+inline constexpr double kSameInstant = 1e-6;
 /// m/s: as a restitution threshold, nothing rests; below it, impacts are of rounding alone
 /// (bodies that lie still move by some 1e-15 m/s) and their energy obeys no law.
 inline constexpr double kNegligibleSpeed = 1e-9;

@@ -17,7 +17,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
     : laws_(guarded(laws)),
       step_(options.step_s.value_or(scene.step_s)),
       duration_(options.duration_s.value_or(scene.duration_s)),
-      frame_times_(scene, options),
+      frame_times_(options, scene.duration_s),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}),
       impacts_(world_, laws_.find_impact_time, step_),
       meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}),

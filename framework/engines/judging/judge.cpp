@@ -442,6 +442,13 @@ std::optional<CheckResult> judge_impacts(const Trajectory& run) {
 
 }  // namespace
 
+std::vector<double> instants_of_checks(const scene::Scene& scene) {
+  std::vector<double> instants;
+  for (const CheckSpec& check : scene.checks)
+    if (check.at_s > 0.0) instants.push_back(check.at_s);
+  return instants;
+}
+
 std::vector<CheckResult> judge_run(const Scene& scene, const Trajectory& run) {
   refuse_other_units(scene);
   std::vector<CheckResult> results;

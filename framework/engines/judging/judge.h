@@ -95,4 +95,8 @@ void refuse_other_units(const scene::Scene& scene);
 /// of check.
 std::vector<CheckResult> judge_run(const scene::Scene& scene, const Trajectory& run);
 
+/// The instants at which checks look: a run that is to be judged records frames there
+/// (RunOptions::instants_s). [s]
+std::vector<double> instants_of_checks(const scene::Scene& scene);
+
 }  // namespace tumble::engines

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 
@@ -19,9 +20,6 @@ int index_of(const std::string& name, const Trajectory& run) {
 
 const Frame* frame_at(double time, const Trajectory& run) {
   if (time == 0.0) return &run.frames.back();
-  // A run of the scene has a frame at the instants of its checks; one of another scene at multiples
-  // of the frame time, which a check may name by six decimals.
-  constexpr double kSameInstant = 1e-6;  // s
   const auto distance = [&](const Frame& frame) { return std::abs(frame.time - time); };
   const auto nearest =
       std::min_element(run.frames.begin(), run.frames.end(),

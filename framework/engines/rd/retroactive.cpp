@@ -33,7 +33,7 @@ class RetroactiveRun : private StepStages {
         moving_(world_step_.moving()),
         callbacks_(options.callbacks),
         hand_(options.hand),
-        recorder_(FrameTimes(scene, options), sink),
+        recorder_(FrameTimes(options, scene.duration_s), sink),
         energy_watch_(scene.rest_speed_m_s, step_, true) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!world_step_.has_contacts()) return;

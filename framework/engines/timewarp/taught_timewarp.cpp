@@ -26,7 +26,7 @@ TaughtTimewarp::TaughtTimewarp(const scene::Scene& scene, const Laws& laws,
       run_(scene, laws, options, watch_),
       sink_(sink),
       decide_(guarded(laws.scheduling, laws.scheduling_source)),
-      redraws_(scene, options),
+      redraws_(options, scene.duration_s),
       queue_(decide_.comes_before) {
   for (int i = 0; i < world().size(); ++i) {
     processes_.emplace_back(world(), i);

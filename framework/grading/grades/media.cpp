@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/course/laws_around.h"
@@ -56,7 +57,9 @@ Run run(const scene::Scene& scene, const Laws& laws) {
   Run result;
   TrajectoryRecorder recorder;
   try {
-    engines::run_scene(scene, laws, {}, recorder);
+    engines::RunOptions options;
+    options.instants_s = engines::instants_of_checks(scene);
+    engines::run_scene(scene, laws, options, recorder);
   } catch (const NotImplemented& missing) {
     result.story = missing.what();
     result.attempted = false;
