@@ -1,6 +1,7 @@
 // tumble engines SCENE: the same scene by every engine, with counters, agreement, and relative
 // times.
 // Without a scene: the course's scenes on one page (engines_all).
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -48,6 +49,9 @@ void run_engines(Context& context, const EnginesWords& words) {
   const ChosenLaws chosen = choose_laws(
       context, scene, parse_module_words(words.modules, context.registry), words.engines);
   refuse_threads_of_sandboxes(chosen, words.threads);
+  if (!words.propagator.empty() && words.propagator != "laws" && words.propagator != "auto")
+    throw UserError("--propagator " + words.propagator, "is none of laws and auto",
+                    "For example --propagator auto.");
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   std::vector<std::vector<EngineRow>> ladder;
   if (!words.sizes.empty() && scene::sized_scene_named(words.scene) == nullptr)
@@ -78,6 +82,11 @@ void run_engines(Context& context, const EnginesWords& words) {
                chosen.laws.integrator_source);
     print_rows(rows);
     fmt::print("{}\n", page.string());
+  }
+  if (std::all_of(rows.begin(), rows.end(),
+                  [](const EngineRow& row) { return row.counts.empty(); })) {
+    fmt::print(stderr, "tumble: no engine ran\n");
+    context.exit = ExitCode::kUserError;
   }
   for (const EngineRow& row : rows)
     if ((!row.counts.empty() && !row.stopped_by.empty()) || !row.faults.empty())
@@ -116,6 +125,7 @@ void add_engines(CLI::App& app, Context& context) {
       .positive();
   verb.option("--step-s", words->step_s, "Largest step [s] instead of the scene's").positive();
   verb.option("--threads", words->threads, "Of tw: how many; then times are by the clock")
+      .between(1, 64)
       .shows_default();
   verb.option("--out", words->out,
               "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one")

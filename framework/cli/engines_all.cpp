@@ -1,5 +1,6 @@
 #include "framework/cli/engines_all.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -162,6 +163,8 @@ const EngineRun* run_to_show(const std::vector<EngineRun>& runs) {
 
 void add_judgement(const scene::Scene& scene, const std::vector<EngineRun>& runs,
                    EnginesScene& shown) {
+  shown.is_right = std::any_of(runs.begin(), runs.end(),
+                               [](const EngineRun& run) { return !run.run.frames.empty(); });
   for (const EngineRun& run : runs) {
     if (run.run.frames.empty()) continue;
     for (const engines::CheckResult& check : engines::judge_run(scene, run.run)) {

@@ -9,6 +9,7 @@
 #include "framework/cli/grading_run.h"
 #include "framework/core/digest.h"
 #include "framework/core/text.h"
+#include "framework/scene/build_shape.h"
 
 namespace tumble::cli {
 namespace {
@@ -73,6 +74,8 @@ std::string key_of(const Context& context, const scene::Scene& scene, const Modu
                    const std::string& options) {
   std::string text = digest_of_file("/proc/self/exe") + '\n' + scene.name + ' ' + scene.digest +
                      '\n' + options + '\n';
+  for (const fs::path& model : scene::model_files(scene, context.root))
+    text += model.filename().string() + ' ' + digest_of_file(model) + '\n';
   for (const modules::ModuleKind* kind : context.registry.all()) {
     text += kind->id + ' ' + digest_of_file(own_file(context, kind->folder)) + ' ' +
             digest_of_file(context.build / "modules" / (kind->id + "_reference.so"));
@@ -85,8 +88,11 @@ std::string key_of(const Context& context, const scene::Scene& scene, const Modu
 
 farm::Outcome spread(const Context& context, const SpreadWords& words, const farm::KeptParts& parts,
                      const farm::SplitWork& work, const std::vector<std::string>& command) {
+  std::optional<farm::Shard> shard;
+  if (!words.shard.empty()) shard = farm::shard_of(words.shard);
   if (words.again)
-    for (const std::string& name : work.names) parts.forget(name);
+    for (std::size_t i = 0; i < work.names.size(); ++i)
+      if (!shard || shard->holds(i)) parts.forget(work.names[i]);
   const auto progress = [&](std::size_t done, std::size_t all, double seconds_left) {
     fmt::print(stderr, "tumble: {} of {}{}\n", done, counted(all, work.unit),
                done < all && std::isfinite(seconds_left) && seconds_left >= 0.0
@@ -97,7 +103,7 @@ farm::Outcome spread(const Context& context, const SpreadWords& words, const far
   if (words.on == "local") {
     farm::LocalOptions options;
     options.jobs = words.jobs > 0 ? words.jobs : default_jobs();
-    if (!words.shard.empty()) options.shard = farm::shard_of(words.shard);
+    options.shard = shard;
     options.progress = progress;
     outcome = farm::make_here(parts, work, options);
   } else {

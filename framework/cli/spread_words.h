@@ -27,8 +27,8 @@ void add_spread_words(Verb& verb, SpreadWords& words, const std::string& pieces)
 /// @throws UserError for words that contradict each other or mean nothing
 void check(const SpreadWords& words);
 
-/// A digest of all that decides a piece's result: this program, the scene, every module's code,
-/// and the verb's own options.
+/// A digest of all that decides a piece's result: this program, the scene with its models, every
+/// module's code, and the verb's own options.
 /// @param options  in any form, all that matter
 std::string key_of(const Context& context, const scene::Scene& scene, const ModuleWords& words,
                    const std::string& options);

@@ -172,6 +172,8 @@ void run_sweep(Context& context, const SweepWords& words) {
   work.make = [&](std::size_t index) {
     return made(context, words, swept, chosen, engines, index);
   };
+  for (const std::string& name : work.names)
+    if (const auto kept = parts.result(name); kept && point_of(*kept).may_pass) parts.forget(name);
   const farm::Outcome outcome = spread(context, words.spread, parts, work, words_of_task(words));
   if (!words.spread.shard.empty()) return end_shard(context, words.spread, outcome, kUnit);
 

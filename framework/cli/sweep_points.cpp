@@ -142,6 +142,7 @@ PointResult run_point(const Context& context, const scene::Scene& scene, const C
     engines::run_scene(plan.scene, plan.laws, plan.options, recorder);
   } catch (const grading::CallEnded& error) {
     stopped_by = error.what();
+    result.may_pass = true;
   } catch (const UserError& error) {
     stopped_by = error.what();
   }
@@ -176,6 +177,7 @@ PointResult run_point(const Context& context, const scene::Scene& scene, const C
 std::string text_of(const PointResult& result) {
   return ordered_json{{"state", static_cast<int>(result.state)},
                       {"reason", result.reason},
+                      {"may_pass", result.may_pass},
                       {"values", result.values},
                       {"cpu_s", result.cpu_s}}
       .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
@@ -186,6 +188,7 @@ PointResult point_of(const std::string& text) {
   PointResult result;
   result.state = static_cast<PointState>(json.at("state").get<int>());
   result.reason = json.at("reason");
+  result.may_pass = json.at("may_pass");
   for (const auto& value : json.at("values")) result.values.push_back(number(value));
   result.cpu_s = number(json.at("cpu_s"));
   return result;

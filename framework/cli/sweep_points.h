@@ -31,6 +31,7 @@ enum class PointState { kMissing, kFine, kStopped, kNotTrusted };
 struct PointResult {
   PointState state = PointState::kMissing;
   std::string reason;          // why it is not fine
+  bool may_pass = false;       // what stopped it is not of the point: a sandbox out of time, say
   std::vector<double> values;  // by measure; NaN where there is none
   double cpu_s = kUnset;       // of the run; compared with nothing
 };

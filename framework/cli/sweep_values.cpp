@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,7 +37,7 @@ struct Known {
 const std::vector<Known>& scene_wide() {
   static const std::vector<Known> known = {{"restitution", "", 0.0, 1.0},
                                            {"friction", "", 0.0},
-                                           {"gravity", "m/s^2"},
+                                           {"gravity", "m/s^2", 0.0},
                                            {"step_s", "s", 0.0, kInfinity, true},
                                            {"tolerance", "", 0.0, kInfinity, true},
                                            {"method", "", 0.0, 0.0, false, false},
@@ -161,6 +163,10 @@ void add_range(const std::string& said, const std::vector<std::string>& parts, V
   constexpr double kRounding = 1e-9;  // of a step: 0:1:0.1 ends with 1
   const double steps = std::floor((end - start) / step + kRounding);
   if (steps + 1.0 > static_cast<double>(kMostPoints)) refuse_many(said, steps + 1.0);
+  if (start + steps * step < end - kRounding * step)
+    fmt::print(stderr,
+               "tumble: {}: the range ends at {:.12g}, since steps of {:g} do not meet {:g}\n",
+               flag(said), start + steps * step, step, end);
   for (int i = 0; i <= static_cast<int>(steps); ++i)
     varied.numbers.push_back(std::stod(fmt::format("{:.12g}", start + i * step)));
 }
@@ -174,8 +180,10 @@ void check_numbers(const std::string& said, const Known& known, const Varied& va
         std::isfinite(known.high)
             ? fmt::format("from {:g} to {:g}", known.low, known.high)
             : fmt::format("{} {:g}", known.is_open ? "above" : "at least", known.low);
-    throw UserError(flag(said), fmt::format("{} cannot be {:g}", known.word, value),
-                    "It has to be " + range + ".");
+    throw UserError(
+        flag(said), fmt::format("{} cannot be {:g}", known.word, value),
+        "It has to be " + range +
+            (known.word == "gravity" ? ": it is a size, along the scene's own direction." : "."));
   }
 }
 
@@ -216,6 +224,13 @@ Varied varied_of(const std::string& said, const scene::Scene& scene) {
         varied.numbers.push_back(number_of(said, part));
     }
     check_numbers(said, known, varied);
+    const bool is_friction = varied.word == "friction" || varied.word.ends_with(".friction");
+    if (is_friction && !scene.contact &&
+        std::any_of(varied.numbers.begin(), varied.numbers.end(),
+                    [](double value) { return value > 0.0; }))
+      throw UserError(flag(said),
+                      "friction acts in persistent contact only, and the scene has none",
+                      "Add \"contact\": {} to the scene.");
     for (const double value : varied.numbers) varied.texts.push_back(fmt::format("{}", value));
   }
   std::vector<std::string> sorted = varied.texts;
@@ -305,8 +320,14 @@ void set_words(const std::vector<Varied>& varied, const GridPoint& point, RunWor
   if (!words.method.empty() && !method_named(words.method).controlled) words.tolerance.reset();
 }
 
+// Words of all bodies come before those of one, which say more.
 void set_scene(const std::vector<Varied>& varied, const GridPoint& point, scene::Scene& scene) {
-  for (std::size_t i = 0; i < varied.size(); ++i) {
+  std::vector<std::size_t> order(varied.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
+    return varied[i].word.find('.') == std::string::npos;
+  });
+  for (const std::size_t i : order) {
     const std::string& word = varied[i].word;
     const std::size_t dot = word.rfind('.');
     if (!varied[i].is_number) continue;

@@ -35,6 +35,10 @@ Outcome make_here(const KeptParts& parts, const SplitWork& work, const LocalOpti
       open.push_back(i);
     }
   }
+  if (!open.empty()) {  // a folder that cannot be written is told now and not after all runs
+    parts.put(".probe", "");
+    parts.forget(".probe");
+  }
   std::vector<int> status_of(open.size(), 0);
   const auto start = Clock::now();
   std::size_t ended = 0;

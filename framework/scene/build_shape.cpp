@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <numbers>
+#include <set>
 #include <tuple>
 
 #include "framework/core/error.h"
@@ -133,6 +134,15 @@ Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file,
                   const std::filesystem::path& root) {
   Models models(scene_file, root);
   return with_mass(body, unit_solid(body, models));
+}
+
+std::vector<std::filesystem::path> model_files(const Scene& scene,
+                                               const std::filesystem::path& root) {
+  std::set<std::filesystem::path> files;
+  for (const BodySpec& body : scene.bodies)
+    if (const auto* spec = std::get_if<ModelSpec>(&body.shape))
+      files.insert(find_model(spec->file, scene.file, root));
+  return {files.begin(), files.end()};
 }
 
 std::vector<Solid> build_solids(const Scene& scene, const std::filesystem::path& root) {

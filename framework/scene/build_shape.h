@@ -32,6 +32,11 @@ struct Solid {
 Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file,
                   const std::filesystem::path& root = {});
 
+/// The files of the scene's models, each once, in alphabetical order; also those that are missing.
+/// @param root  as for build_solid
+std::vector<std::filesystem::path> model_files(const Scene& scene,
+                                               const std::filesystem::path& root = {});
+
 /// The solids of all bodies, by body index; a model of several bodies is read once.
 std::vector<Solid> build_solids(const Scene& scene, const std::filesystem::path& root = {});
 

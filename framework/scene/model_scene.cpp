@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/digest.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/solid.h"
@@ -187,6 +188,7 @@ Scene make_model_scene(const std::filesystem::path& file, const ModelSceneOption
   scene.title = fmt::format("{}, {}", file.filename().string(),
                             options.is_dropped ? "dropped on a floor" : "free in space");
   scene.file = std::filesystem::absolute(file);  // the model is searched beside it
+  scene.digest = digest_of_file(file);
   scene.about = about(objects, options);
   add_bodies(objects, file, options, scene);
 
