@@ -34,8 +34,9 @@ struct PointsByHand {
 struct Person {
   std::string name, id, group;        // group may be empty
   std::optional<int> free_late_days;  // left to this student; empty: the policy's
-  std::optional<std::int64_t> due_s;  // an extension; empty: the policy's [s since 1970, UTC]
-  std::optional<PointsByHand> by_hand;
+  // an extension; empty: the policy's [s since 1970, UTC]
+  std::optional<std::int64_t> due_s = std::nullopt;
+  std::optional<PointsByHand> by_hand = std::nullopt;
 };
 
 /// When a submission was handed in, and by whom.
