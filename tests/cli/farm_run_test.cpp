@@ -111,6 +111,45 @@ TEST_F(Farm, ShardsOfASweepAreTakenOver) {
   EXPECT_EQ(file("out/sweep/t_handle/table.csv"), file("whole/t_handle/table.csv"));
 }
 
+TEST_F(Farm, AShardThatBeginsAnewLeavesTheOthersPoints) {
+  const std::string words = kTop + "--over step_s=0.01:0.04:0.01 ";
+  type(words + "--shard 1/2 --again");
+  type(words + "--shard 2/2 --again");
+  EXPECT_TRUE(holds(type(words).err, "4 points of an earlier start taken over"));
+}
+
+TEST_F(Farm, AnotherModelUnderTheSameNameIsAnotherWork) {
+  const fs::path models = fs::path(test::source_dir()) / "models";
+  const std::string words = "sweep mine.3ds --modules library --duration-s 0.1 --over step_s=0.01";
+  fs::copy_file(models / "box.3ds", folder_ / "mine.3ds");
+  type(words);
+  EXPECT_TRUE(holds(type(words).err, "taken over"));
+  fs::copy_file(models / "card.3ds", folder_ / "mine.3ds", fs::copy_options::overwrite_existing);
+  EXPECT_FALSE(holds(type(words).err, "taken over"));
+}
+
+TEST_F(Farm, AWordOfOneBodyWinsOverThatOfAllInEitherOrder) {
+  // v = 1 m/s into a wall: what comes back is the ball's restitution, or the smaller of both
+  std::ofstream(folder_ / "wall.json") << R"({"title": "wall", "duration_s": 1, "bodies": [
+    {"name": "ball", "shape": {"sphere": {"radius_m": 0.1}}, "mass_kg": 1, "restitution": 1,
+     "position_m": [-0.5, 0, 0], "velocity_m_s": [1, 0, 0]},
+    {"name": "wall", "shape": {"box": {"size_m": [0.2, 1, 1]}}, "immovable": true,
+     "restitution": 1, "position_m": [0.1, 0, 0]}]})";
+  const std::string sweep = "sweep wall.json --modules library --measure ball.x ";
+  const Said one = type(sweep + "--over ball.restitution=0,0.5 --over restitution=1 --out one"),
+             other = type(sweep + "--over restitution=1 --over ball.restitution=0,0.5 --out two");
+  for (const Said& said : {one, other}) EXPECT_EQ(said.code, 0) << said.out << said.err;
+  const auto places = [&](const std::string& folder) {
+    std::vector<double> all;
+    const auto table = nlohmann::json::parse(file(folder + "/wall/table.json"));
+    for (const auto& point : table["points"]) all.push_back(point["values"][0]);
+    return all;
+  };
+  EXPECT_EQ(places("one"), places("two"));
+  ASSERT_EQ(places("one").size(), 2u);
+  EXPECT_NE(places("one")[0], places("one")[1]);
+}
+
 TEST_F(Farm, WordsOfASweepThatMeanNothingAreRefused) {
   const auto refusal = [&](const std::string& over) {
     const Said said = type("sweep t_handle --modules library " + over);
@@ -126,6 +165,9 @@ TEST_F(Farm, WordsOfASweepThatMeanNothingAreRefused) {
       {"--over restitution=1:0:0.1", "reversed"},
       {"--over restitution=0:1:0", "no step above 0"},
       {"--over restitution=0:1", "START:END:STEP"},
+      {"--over gravity=-9.81,9.81", "it is a size"},
+      {"--over friction=0,0.5", "persistent contact only"},
+      {"--over step_s=0.1 --out /dev/null/x", "cannot be written"},
       {"--over restitution=a,b", "'a' is no number"},
       {"--over restitution=0,0.5,0", "given twice"},
       {"--over restitution=0,1 --over restitution=0.5", "varied twice"},
