@@ -58,8 +58,9 @@ TEST(FrameTimes, AscendAndMissNothing) {
                std::min(1e-6, 1e-3 * std::min(1.0 / rate, duration)) * (1 + 1e-9);
       });
     };
-    for (const double instant : instants)
+    for (const double instant : instants) {
       if (instant > 0.0 && instant < duration) ASSERT_TRUE(has(instant)) << instant;
+    }
     for (long k = 0; static_cast<double>(k) / rate < duration; ++k)
       ASSERT_TRUE(has(static_cast<double>(k) / rate)) << k;
   }
