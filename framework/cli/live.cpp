@@ -142,10 +142,11 @@ void live_verb(Context& context, LiveWords& words) {
   };
   // The assignment that was named, or the one that the scene stands in.
   sitting.first_judged = id;
-  for (const live::Watched& one : sitting.watched)
-    if (id.empty() && fs::absolute(scene.file).parent_path().parent_path() ==
-                          fs::absolute(one.file).parent_path())
+  for (const live::Watched& one : sitting.watched) {
+    const fs::path folder = context.root / "assignments" / context.registry.find(one.id).folder;
+    if (id.empty() && fs::absolute(scene.file).parent_path().parent_path() == fs::absolute(folder))
       sitting.first_judged = one.id;
+  }
   sitting.saves = words.saves;
   sitting.again = [words](const fs::path& file, const live::Changes& changes,
                           const std::string& laws) { return again(words, file, changes, laws); };
