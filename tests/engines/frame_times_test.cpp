@@ -59,7 +59,8 @@ TEST(FrameTimes, AscendAndMissNothing) {
       });
     };
     for (const double instant : instants) {
-      if (instant > 0.0 && instant < duration) ASSERT_TRUE(has(instant)) << instant;
+      if (!(instant > 0.0) || instant >= duration) continue;
+      ASSERT_TRUE(has(instant)) << instant;
     }
     for (long k = 0; static_cast<double>(k) / rate < duration; ++k)
       ASSERT_TRUE(has(static_cast<double>(k) / rate)) << k;
