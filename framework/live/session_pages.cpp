@@ -11,8 +11,8 @@ namespace tumble::live {
 namespace {
 
 constexpr std::size_t kMostPages = 8;
-// Of a run's frames and of its events, as they are kept, for a page that is opened later [bytes]. In
-// the stream they take less, and both together fit into its mailbox with room for what comes
+// Of a run's frames and of its events, as they are kept, for a page that is opened later [bytes].
+// In the stream they take less, and both together fit into its mailbox with room for what comes
 // meanwhile. A page thins a long run, too.
 constexpr std::size_t kMostOfFrames = 80u << 20, kMostOfEvents = 32u << 20;
 

@@ -368,7 +368,8 @@ bool LiveRun::pull(const engines::HandMoment& moment, scene::Scene& more) {
 
 // The record has the point in the world, as a scene has it. The engine gets the point that it will
 // read from that scene: far from the world's origin it is rounded there.
-// @param force  its point seen from the origin  @param origin_world  of the engine's coordinates [m]
+// @param force  its point seen from the origin
+// @param origin_world  of the engine's coordinates [m]
 void LiveRun::put_on(PointForce force, const Vector3d& origin_world, scene::Scene& more) {
   const std::string& name = simulation_.scene.bodies[static_cast<std::size_t>(force.body)].name;
   const bool is_by_engine = static_cast<bool>(simulation_.options.hand);

@@ -27,8 +27,8 @@ double mills_ratio(double z) {
 
 /// The z of a standard normal number that is at most `high`, at which a share u of the probability
 /// between `low` and `high` lies below z.
-///   Q(a + d) / Q(a) = exp(-a d - d^2 / 2) m(a + d) / m(a),  Q(z) the probability above z, and below
-///   -z; a = -high; m: Mills' ratio
+///   Q(a + d) / Q(a) = exp(-a d - d^2 / 2) m(a + d) / m(a)
+///   Q(z): the probability above z, and below -z; a = -high; m: Mills' ratio
 /// is solved for d by Newton's method on its logarithm, whose slope is -1 / m(a + d). The logarithm
 /// is concave and the first d is too large: every step approaches the solution from above.
 /// @pre low < high <= -kFar

@@ -1,6 +1,7 @@
 // The live page in a browser. Usage: node page_test.mjs ROOT BUILD [SECONDS of poking, 20]
 // Exit 0: right; 1: wrong; 77: skipped, with the reason. Needs chromium; the reference modules for
-// all but the first test. Without TUMBLE_TEST_BROWSER only what takes seconds. Wall times are printed with the machine's load and judged by nobody.
+// all but the first test. Without TUMBLE_TEST_BROWSER only what takes seconds. Wall times are
+// printed with the machine's load and judged by nobody.
 import { spawn, execFileSync } from 'node:child_process';
 import { createServer } from 'node:http';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, readdirSync, readlinkSync, rmSync, writeFileSync } from 'node:fs';

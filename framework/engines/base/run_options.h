@@ -86,7 +86,7 @@ struct RunOptions {
   double frame_rate_hz = 60.0;       // of recorded frames
   // of further frames; who judges a run asks for those of its checks (instants_of_checks) [s]
   std::vector<double> instants_s;
-  std::vector<Callback> callbacks;   // in order of time
+  std::vector<Callback> callbacks;  // in order of time
   // of rd only; empty: nobody acts
   Hand hand;
   // called at each frame by the engines that go from event to event; empty: not called
