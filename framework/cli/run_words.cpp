@@ -23,29 +23,29 @@ PictureSize parse_size(const std::string& text) {
   return size;
 }
 
-void check_outputs(const RunWords& words, double duration_s) {
+RunWords with_outputs(RunWords words, double duration_s) {
   namespace fs = std::filesystem;
-  const std::vector<std::pair<std::string, std::string>> outputs = {
-      {"--png", words.png},     {"--sheet", words.sheet},
-      {"--video", words.video}, {"--trajectory", words.trajectory},
-      {"--html", words.html},   {"--virtual-times", words.virtual_times}};
   std::map<fs::path, std::string> flags;
+  const std::vector<std::pair<std::string, std::string*>> outputs = {
+      {"--png", &words.png},     {"--sheet", &words.sheet},
+      {"--video", &words.video}, {"--trajectory", &words.trajectory},
+      {"--html", &words.html},   {"--virtual-times", &words.virtual_times}};
   for (const auto& [flag, file] : outputs) {
-    if (file.empty()) continue;
-    expect_writable(file);
+    if (file->empty()) continue;
+    expect_writable(*file);
+    *file = behind_links(*file).string();
     std::error_code failed;
-    // a pipe or a device may get several
-    if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) continue;
     const auto [first, is_new] =
-        flags.emplace(fs::weakly_canonical(fs::absolute(file), failed), flag);
+        flags.emplace(fs::weakly_canonical(fs::absolute(*file), failed), flag);
     if (!is_new)
-      throw UserError(flag + " " + file, "is the file of " + first->second + ", too",
+      throw UserError(flag + " " + *file, "is the file of " + first->second + ", too",
                       "Give each its own.");
   }
   if (words.at_s > duration_s)
     throw UserError(fmt::format("--at-s {:g}", words.at_s),
                     fmt::format("the run ends at {:g} s", duration_s),
                     "Give an earlier instant, or leave it out for the end.");
+  return words;
 }
 
 Vector3d parse_vector(const std::string& flag, const std::string& text) {

@@ -41,10 +41,11 @@ struct PictureSize {
 /// @throws UserError unless "WxH" with both in [16, 4096]
 PictureSize parse_size(const std::string& text);
 
-/// Refuses before the run what would be refused after it: output files that cannot be written, two
-/// with one name, a picture of an instant that the run does not reach.
+/// The words with output files behind the links that were named, so that links stay. Refuses before
+/// the run what would be refused after it: output files that cannot be written, two with one name,
+/// a picture of an instant that the run does not reach.
 /// @throws UserError
-void check_outputs(const RunWords& words, double duration_s);
+RunWords with_outputs(RunWords words, double duration_s);
 
 /// Three comma-separated numbers after a flag, such as "1,0,-2".
 Vector3d parse_vector(const std::string& flag, const std::string& text);

@@ -299,11 +299,11 @@ void add_run_words(Verb& verb, RunWords& words) {
 }
 
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
-                  const RunWords& words, const std::string& extra) {
+                  const RunWords& said, const std::string& extra) {
+  const RunWords words = with_outputs(said, said.duration_s.value_or(scene.duration_s));
   const PictureSize size = parse_size(words.size);  // refused before the run, not after it
   engines::refuse_other_units(scene);
   check_page_words(context, scene, words);
-  check_outputs(words, words.duration_s.value_or(scene.duration_s));
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);

@@ -26,36 +26,16 @@ namespace fs = std::filesystem;
 
 constexpr const char* kNameAnother = "Name another file.";
 
-// Where the bytes for a file go.
-struct Target {
-  fs::path path;           // behind links, which stay
-  bool is_stream = false;  // a pipe, a terminal, /dev/null: nothing can take its place
-};
-
-Target target_of(const fs::path& file) {
-  constexpr int kMostLinks = 40;  // as the kernel
+// A link is replaced, as a file is: what it points to may belong to others. Nothing takes the place
+// of a folder, a pipe or a device, nor of a link to these.
+void refuse_other_than_files(const fs::path& file) {
   std::error_code failed;
   const fs::file_type type = fs::status(file, failed).type();
-  // before links are read: that of /dev/stdout names no file
-  if (type == fs::file_type::fifo || type == fs::file_type::character) return {file, true};
-  if (type == fs::file_type::directory) throw cannot_write(file, "it is a folder", kNameAnother);
-  if (type == fs::file_type::block || type == fs::file_type::socket)
+  if (type == fs::file_type::directory && !fs::is_symlink(fs::symlink_status(file, failed)))
+    throw cannot_write(file, "it is a folder", kNameAnother);
+  if (type == fs::file_type::fifo || type == fs::file_type::character ||
+      type == fs::file_type::block || type == fs::file_type::socket)
     throw cannot_write(file, "it is no plain file", kNameAnother);
-  fs::path target = file;
-  for (int links = 0; fs::is_symlink(fs::symlink_status(target, failed)); ++links) {
-    if (links == kMostLinks) throw cannot_write(file, "it is a loop of links", kNameAnother);
-    const fs::path next = fs::read_symlink(target, failed);
-    if (failed) throw cannot_write(file, failed.message());
-    target = target.parent_path() / next;  // next alone where it is absolute
-  }
-  return {target};
-}
-
-void write_into(const fs::path& stream, const fs::path& draft) {
-  std::ofstream out(stream, std::ios::binary | std::ios::app);
-  const std::string bytes = text_of(draft);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!out.flush()) throw cannot_write(stream, "");
 }
 
 // Removes the draft when it goes out of scope; after the rename there is nothing left to remove.
@@ -69,37 +49,41 @@ struct Draft {
 
 }  // namespace
 
-void expect_writable(const fs::path& file) {
-  const Target target = target_of(file);
-  fs::path there = target.path;  // what has to let us write
+fs::path behind_links(const fs::path& file) {
+  constexpr int kMostLinks = 40;  // as the kernel
   std::error_code failed;
-  if (!target.is_stream) do
-      there = there.parent_path();
-    while (!there.empty() && there.has_relative_path() && !fs::exists(there, failed));
+  fs::path target = file;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, failed)); ++links) {
+    if (links == kMostLinks) throw cannot_write(file, "it is a loop of links", kNameAnother);
+    const fs::path next = fs::read_symlink(target, failed);
+    if (failed) throw cannot_write(file, failed.message());
+    target = target.parent_path() / next;  // next alone where it is absolute
+  }
+  return target;
+}
+
+void expect_writable(const fs::path& file) {
+  refuse_other_than_files(file);
+  fs::path there = file;  // what has to let us write
+  std::error_code failed;
+  do there = there.parent_path();
+  while (!there.empty() && there.has_relative_path() && !fs::exists(there, failed));
   if (there.empty()) there = ".";
-  if (!target.is_stream && !fs::is_directory(there, failed))
-    throw cannot_write(file, there.string() + " is no folder", kNameAnother);
-  if (::access(there.c_str(), target.is_stream ? W_OK : W_OK | X_OK) != 0)
-    throw cannot_write(file, std::strerror(errno));
+  if (!fs::is_directory(there, failed)) throw cannot_write(file, there.string() + " is no folder");
+  if (::access(there.c_str(), W_OK | X_OK) != 0) throw cannot_write(file, std::strerror(errno));
 }
 
 void make_whole(const fs::path& file, const std::function<void(const fs::path&)>& make) {
-  const Target target = target_of(file);
-  if (target.is_stream) {
-    const PrivateFolder folder;
-    const fs::path draft = folder.path() / ("draft" + file.extension().string());
-    make(draft);
-    return write_into(file, draft);
-  }
+  refuse_other_than_files(file);
   std::error_code failed;
-  const fs::path folder = target.path.parent_path();
+  const fs::path folder = file.parent_path();
   if (!folder.empty()) fs::create_directories(folder, failed);
   if (failed) throw cannot_write(file, failed.message());
-  const std::string name = '.' + target.path.stem().string() + ".draft" +
-                           std::to_string(::getpid()) + target.path.extension().string();
+  const std::string name = '.' + file.stem().string() + ".draft" + std::to_string(::getpid()) +
+                           file.extension().string();
   const Draft draft{folder / name};
   make(draft.path);
-  fs::rename(draft.path, target.path, failed);
+  fs::rename(draft.path, file, failed);
   if (failed) throw cannot_write(file, failed.message());
 }
 

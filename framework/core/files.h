@@ -14,7 +14,7 @@ namespace tumble {
 /// Calls `make(draft)` to write a draft in the same folder, then renames the draft to `file`: a
 /// reader sees the old file or the new one, never half of one. The draft keeps the file's
 /// extension. Creates missing folders; leaves no draft behind when `make` throws. Where `file` is a
-/// link, what it points to is written; into a pipe or a character device the draft is copied.
+/// link, the link is replaced.
 /// @throws UserError when the file cannot be put in place, and whatever `make` throws
 void make_whole(const std::filesystem::path& file,
                 const std::function<void(const std::filesystem::path& draft)>& make);
@@ -22,6 +22,11 @@ void make_whole(const std::filesystem::path& file,
 /// The same, for bytes in memory.
 /// @throws UserError when the file cannot be written
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
+
+/// What a file is behind links, or the file itself. For a file that a person names, whose links
+/// stay.
+/// @throws UserError where the links make a loop
+std::filesystem::path behind_links(const std::filesystem::path& file);
 
 /// Refuses before the work what make_whole is known to refuse after it. Makes nothing.
 /// @throws UserError when `file` is no plain file, or its folder cannot be made or written to
