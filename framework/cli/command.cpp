@@ -87,8 +87,8 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
   lay_out_help(app);
   declare(app);
   app.footer(
-      "./tumble test  (in the source tree) builds and passes every test; words of ctest may "
-      "follow.\n"
+      "./tumble test  (in the source tree) builds and passes every test (the longest draw a "
+      "sample, with --whole all of it); words of ctest may follow.\n"
       "Colours: none where NO_COLOR is set. A word that is not known is answered with the "
       "nearest.");
   refuse_unknown_verb(app, argc, argv);

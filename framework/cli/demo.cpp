@@ -38,13 +38,16 @@ struct Graded {
   std::vector<Grade> grades;  // in the order of submissions_of
 };
 enum { kReference, kStarter, kFlawed };
+// The one whose scenes are drawn, beside the reference: the reference beside itself and a stub
+// that does not move show nothing new.
+constexpr const char* kDrawn = "flawed";
 
 grading::FoundSubmissions submissions_of(const Context& context, const modules::ModuleKind& kind) {
   const fs::path file = kind.folder + ".cpp", ours = context.root / kPrivateFolder / kind.folder;
   return {ours,
           {{"reference", ours / file, "", {}},
            {"starter", context.root / "assignments" / kind.folder / file, "", {}},
-           {"flawed", ours / "flawed_submission" / file, "", {}}},
+           {kDrawn, ours / "flawed_submission" / file, "", {}}},
           {}};
 }
 
@@ -175,6 +178,7 @@ void demo(Context& context, const DemoOptions& options) {
   for (const modules::ModuleKind* kind : context.registry.all()) {
     grading::GradeOptions grade;
     grade.jobs = options.jobs;
+    grade.media_of = {kDrawn};
     grade.media_options.three_file = fs::path("../../..") / kThree;  // from aN/NAME/media
     // it shows the grader, and gives nobody a grade
     grade.accepted_sandbox = grading::traits_of(grading::chosen_sandbox()).name;

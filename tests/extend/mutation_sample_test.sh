@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # A few mutations of each reference, drawn by lot: each is caught by a test, or equal_mutations.json says why it makes no difference.
 # All of them, in hours: for id in a1 ... : tumble new mutations ID FOLDER && tumble audit ID --mutants FOLDER
-# Usage: mutation_sample_test.sh ROOT TUMBLE [COUNT [SEED]]   COUNT mutations of each assignment, default 3
+# Usage: mutation_sample_test.sh ROOT TUMBLE [COUNT [SEED]]   COUNT mutations of each assignment, default 1, in a whole run 5
 set -euo pipefail
-root=$1 tumble=$2 count=${3:-3} seed=${4:-7}
+root=$1 tumble=$2 count=${3:-$([ -n "${TUMBLE_TEST_WHOLE:-}" ] && echo 5 || echo 1)} seed=${4:-7}
 export TUMBLE_ROOT=$root
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

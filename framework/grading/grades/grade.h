@@ -1,6 +1,7 @@
 /// A submission and its grade, as plain data.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -133,12 +134,17 @@ struct GradeOptions {
   // submissions graded at the same time, each in a separate process
   int jobs = 1;
   bool media = true;
+  // names of the only submissions that get pictures. Empty: all
+  std::vector<std::string> media_of;
   bool cost = true;  // measures what accuracy costs with a submission's methods, for its page
   MediaOptions media_options;
   // whose code runs in a page; nothing: the submission's where pictures are made
   std::optional<CodeInPages> code_in_pages;
   CodeInPages page_code() const {
     return code_in_pages.value_or(media ? CodeInPages::kOwn : CodeInPages::kNone);
+  }
+  bool draws(const std::string& name) const {
+    return media && (media_of.empty() || std::ranges::count(media_of, name) > 0);
   }
   // a kind of sandbox that is used although the policy refuses it; results are marked
   std::string accepted_sandbox;

@@ -90,7 +90,7 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   if (grade.state == GradeState::kJudged)
     grade.causes = causes_of(grade.tests, audited_slips_of(course, id),
                              submission.source.filename().string(), text_of(submission.source));
-  if (options.media && grade.state == GradeState::kJudged)
+  if (options.draws(submission.name) && grade.state == GradeState::kJudged)
     grade.media =
         make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes,
                    object.path, folder / "media", options.media_options);
