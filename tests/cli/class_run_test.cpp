@@ -129,7 +129,8 @@ TEST_F(Overnight, KillsLoseNothingAndLeaveTheBytesOfARunWithoutThem) {
   EXPECT_EQ(files_that_differ(files("calm"), files("out")), "");
   const ProgramOutcome check = tumble({"ledger", "verify", (root / "out").string()});
   EXPECT_EQ(check.code, 0) << check.printed;
-  EXPECT_TRUE(says(check, fmt::format("{0} entries of {0} submissions fit together", submissions))) << check.printed;
+  EXPECT_TRUE(says(check, fmt::format("{0} entries of {0} submissions fit together", submissions)))
+      << check.printed;
 }
 
 // Rubrics whose points were moved from a test that the submission passes to one that it fails.
