@@ -1,6 +1,6 @@
 // The live page in a browser. Usage: node page_test.mjs ROOT BUILD [SECONDS of poking, 20]
 // Exit 0: right; 1: wrong; 77: skipped, with the reason. Needs chromium; the reference modules for
-// all but the first test. Without TUMBLE_TEST_BROWSER only what takes seconds. Wall times are
+// all but the first test. Only what takes seconds, unless the tests run whole. Wall times are
 // printed with the machine's load and judged by nobody.
 import { spawn, execFileSync } from 'node:child_process';
 import { createServer } from 'node:http';
@@ -11,7 +11,7 @@ import { Browser } from './browser.mjs';
 
 const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
 function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
-const isQuick = !process.env.TUMBLE_TEST_BROWSER;   // two tests of seconds; all take minutes
+const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // two tests of seconds; all take minutes
 try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
 if (!existsSync(tumble)) skip(`${tumble} is not built`);
 const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
@@ -172,7 +172,7 @@ try {
   const only = process.env.LIVE_ONLY;
   for (const { name, run, needsReference } of tests) {
     if (only && !name.includes(only)) continue;
-    if (isQuick && !kQuick.some(part => name.includes(part))) { console.log(`left out: ${name}: TUMBLE_TEST_BROWSER=1 ctest -R live_page`); continue; }
+    if (isQuick && !kQuick.some(part => name.includes(part))) { console.log(`left out: ${name}: ./tumble test --whole -R live_page`); continue; }
     if (needsReference && !hasReference) { console.log(`skipped: ${name}: this tree has no reference modules`); continue; }
     const before = failed;
     failed = 0;
