@@ -138,12 +138,13 @@ std::vector<std::string> words_of_task(const SampleWords& words) {
 /// shard of them.
 void sample(const Context& context, const SampleWords& words, const fs::path& folder,
             Sampled& sampled) {
-  const farm::KeptParts parts(
+  farm::KeptParts parts(
       folder / "chains",
       key_of(context, sampled.worlds.scene, parse_module_words(words.modules, context.registry),
              fmt::format("sample {} {} {} {} {} {} {}", words.samples, words.warm_up, words.seed,
                          words.is_hard, words.engine, words.step_s.value_or(0.0),
                          words.duration_s.value_or(0.0))));
+  hold(words.spread, parts);
   farm::SplitWork work;
   work.unit = kUnit;
   for (int number = 1; number <= words.chains; ++number) {

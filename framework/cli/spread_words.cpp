@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,9 @@ namespace tumble::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// In the environment of what --on starts.
+constexpr const char* kTask = "TUMBLE_TASK";
 
 std::string time_left(double seconds) {
   if (seconds < 1.0) return "less than 1 s left";
@@ -86,6 +90,10 @@ std::string key_of(const Context& context, const scene::Scene& scene, const Modu
   return digest(text);
 }
 
+void hold(const SpreadWords& words, farm::KeptParts& parts) {
+  if (std::getenv(kTask) == nullptr) parts.hold(words.shard);
+}
+
 farm::Outcome spread(const Context& context, const SpreadWords& words, const farm::KeptParts& parts,
                      const farm::SplitWork& work, const std::vector<std::string>& command) {
   std::optional<farm::Shard> shard;
@@ -115,7 +123,7 @@ farm::Outcome spread(const Context& context, const SpreadWords& words, const far
     job.directory = fs::current_path();
     job.needed = {job.command.front(), context.root.string(), job.directory.string(),
                   fs::absolute(parts.folder()).string()};
-    job.environment = {{"TUMBLE_ROOT", context.root.string()}, {"TUMBLE_TASK", "1"}};
+    job.environment = {{"TUMBLE_ROOT", context.root.string()}, {kTask, "1"}};
     job.shards = words.shards;
     job.hosts = words.hosts;
     job.jobs = words.jobs;

@@ -33,6 +33,11 @@ void check(const SpreadWords& words);
 std::string key_of(const Context& context, const scene::Scene& scene, const ModuleWords& words,
                    const std::string& options);
 
+/// The folder is this command's until `parts` ends. A task that --on started has it from the command
+/// that waits for it.
+/// @throws UserError when another command holds it
+void hold(const SpreadWords& words, farm::KeptParts& parts);
+
 /// Makes what is missing of the work, with progress on stderr. With --shard only that part, and the
 /// verb then ends: nothing is to be shown of a part.
 /// @param command  words of a task on another machine: the verb's, without those of SpreadWords

@@ -160,8 +160,8 @@ void run_sweep(Context& context, const SweepWords& words) {
       words.run.duration_s.value_or(0.0), engines.find("tw") != std::string::npos);
   for (const Measure& measure : swept.measures) options += ' ' + measure.word;
   const fs::path folder = fs::path(words.out) / swept.scene.name;
-  const farm::KeptParts parts(folder / "points",
-                              key_of(context, swept.scene, module_words, options));
+  farm::KeptParts parts(folder / "points", key_of(context, swept.scene, module_words, options));
+  hold(words.spread, parts);
   farm::SplitWork work;
   work.unit = kUnit;
   constexpr std::size_t kDigits = 16;  // of a name: enough for 10^4 points

@@ -1,5 +1,10 @@
 #include "framework/farm/parts.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <system_error>
 #include <vector>
 
@@ -27,6 +32,30 @@ std::vector<std::string> split(const std::string& text) {
 }
 
 }  // namespace
+
+void KeptParts::hold(const std::string& shard) {
+  // a command that was killed may have left processes that take a moment to end
+  constexpr int kTries = 100, kPauseUs = 20'000;
+  std::error_code failed;
+  fs::create_directories(folder_, failed);
+  std::string name = shard.empty() ? ".whole.lock" : ".shard-" + shard + ".lock";
+  std::replace(name.begin(), name.end(), '/', '-');
+  const fs::path file = folder_ / name;
+  const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (lock < 0)
+    throw UserError(file.string(), "cannot be opened",
+                    "Give --out a folder that you may write to.");
+  held_ = std::shared_ptr<const int>(new int(lock), [](const int* descriptor) {
+    ::close(*descriptor);
+    delete descriptor;
+  });
+  for (int i = 0; ::flock(lock, LOCK_EX | LOCK_NB) != 0; ++i) {
+    if (i == kTries)
+      throw UserError(folder_.parent_path().string(), "another command works there now",
+                      "Wait for its end, or give --out another folder.");
+    ::usleep(kPauseUs);
+  }
+}
 
 std::optional<std::string> KeptParts::read(const fs::path& file) const {
   const std::string text = text_of(file), head = "tumble part " + key_ + ' ';

@@ -9,6 +9,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,12 @@ class KeptParts {
   /// @param key  a digest of all that decides the results: program, scene, options, laws
   KeptParts(std::filesystem::path folder, std::string key)
       : folder_(std::move(folder)), key_(std::move(key)) {}
+
+  /// From here until this object ends no other command makes the same pieces in the folder: it
+  /// could forget what this one has finished. Each shard is held by itself.
+  /// @param shard  "2/8"; empty: the whole
+  /// @throws UserError when another command holds it, or nothing can be written there
+  void hold(const std::string& shard);
 
   /// The bytes of a finished piece; nothing where it is missing.
   std::optional<std::string> result(const std::string& name) const;
@@ -42,6 +49,7 @@ class KeptParts {
 
   std::filesystem::path folder_;
   std::string key_;
+  std::shared_ptr<const int> held_;  // descriptor of the locked file
 };
 
 }  // namespace tumble::farm

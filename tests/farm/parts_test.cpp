@@ -71,5 +71,19 @@ TEST_F(PartsOnDisk, LeaveAnErrorAsTheClassThatItWas) {
   EXPECT_FALSE(parts.has("a"));
 }
 
+// Two commands at once would forget each other's pieces.
+TEST_F(PartsOnDisk, AreOfOneCommandAtATimeAndEachShardByItself) {
+  {
+    KeptParts first(folder, "key");
+    first.hold("");
+    EXPECT_THROW(KeptParts(folder, "another").hold(""), UserError);
+    KeptParts(folder, "key").hold("1/2");
+    KeptParts shard(folder, "key");
+    shard.hold("2/2");
+    EXPECT_THROW(KeptParts(folder, "key").hold("2/2"), UserError);
+  }
+  KeptParts(folder, "key").hold("");
+}
+
 }  // namespace
 }  // namespace tumble::farm

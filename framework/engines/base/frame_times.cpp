@@ -1,6 +1,7 @@
 #include "framework/engines/base/frame_times.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "framework/engines/base/run_options.h"
 #include "framework/engines/base/tolerances.h"

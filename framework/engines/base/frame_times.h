@@ -2,7 +2,6 @@
 /// beside them, and the run's end.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 namespace tumble::engines {

@@ -62,7 +62,7 @@ function showTime() {
   byId('scrub').max = String(Math.max(end, 1e-3));
   byId('scrub').value = String(page.time);
   byId('go').textContent = page.paused ? 'Go' : 'Pause';
-  const isPast = run && !page.follows && page.time < end - 1e-6;
+  const isPast = run && !page.follows && page.time < end - sameInstant(run.times);
   byId('here').hidden = byId('newest').hidden = !isPast;
   byId('on').disabled = !page.paused;
 }
@@ -77,7 +77,7 @@ function stepBack() {
   if (!page.run || page.run.length === 0) return;
   const times = page.run.times, at = page.run.frameAt(page.time);
   let k = Math.max(0, at.k - (at.part > 1e-3 ? 0 : 1));
-  while (k > 0 && times[k] > page.time - 1e-6) --k;   // nearer frames count as the same instant
+  while (k > 0 && times[k] > page.time - sameInstant(times)) --k;   // nearer frames count as the same instant
   goTo(times[k]);
 }
 

@@ -104,11 +104,12 @@ class LiveRun extends Run {
 
   // Forgets what came at this time or later.
   cut(time) {
-    this.filterFrames(k => this.times[k] < time - 1e-6);
-    const e = this.events, count = e.time.filter(t => t < time - 1e-6).length;
+    const before = time - sameInstant(this.times);   // as the frames were before any is forgotten
+    this.filterFrames(k => this.times[k] < before);
+    const e = this.events, count = e.time.filter(t => t < before).length;
     for (const list of [e.time, e.kind, e.a, e.b, ...e.point, ...e.normal, e.impulse, e.before, e.after]) list.length = count;
     e.count = count;
-    for (const [body, times] of this.impacts) this.impacts.set(body, times.filter(t => t < time - 1e-6));
+    for (const [body, times] of this.impacts) this.impacts.set(body, times.filter(t => t < before));
   }
 
   velocity(body, k) { const c = this.moving.get(body); return c ? [c[7][k], c[8][k], c[9][k]] : [0, 0, 0]; }

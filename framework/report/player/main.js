@@ -237,7 +237,7 @@ function happeningIn(player, run) {
   if (i >= 0 && player.time - e.time[i] < kFlashSeconds * player.speed && e.kind[i] === kCollision)
     words.push(`${[e.a[i], e.b[i]].filter(b => b >= 0).map(b => names[b].name).join(' – ')}: ${short(e.impulse[i], 3)} N s, ${short(e.before[i], 3)} → ${short(e.after[i], 3)} m/s`);
   for (const push of player.about.forces)
-    if (player.time >= push.start - 1e-6 && player.time <= push.start + push.duration) words.push(`force on ${names[push.body].name}: ${short(Math.hypot(...push.force), 3)} N`);
+    if (player.time >= push.start - sameInstant(run.times) && player.time <= push.start + push.duration) words.push(`force on ${names[push.body].name}: ${short(Math.hypot(...push.force), 3)} N`);
   return words.join(' · ');
 }
 

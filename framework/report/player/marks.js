@@ -108,7 +108,7 @@ class Marks {
   addPushes(t, speed, pose) {
     const place = new THREE.Vector3(), turn = new THREE.Quaternion();
     for (const push of this.about.forces) {
-      if (t < push.start - 1e-6 || t > push.start + push.duration + 0.12 * speed) continue;
+      if (t < push.start - sameInstant(this.run.times) || t > push.start + push.duration + 0.12 * speed) continue;
       if (!push.local) {   // the point in the body frame, from the pose at the start of the force
         this.run.pose(push.body, this.run.frameAt(push.start), place, turn);
         push.local = new THREE.Vector3(...push.point).sub(place).applyQuaternion(turn.clone().conjugate());

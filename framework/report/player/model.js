@@ -1,5 +1,12 @@
 // A run in the page: poses by body and frame, series, contacts, events. SI units, world frame.
 
+// Times nearer to each other than this [s] are one instant: a ten-thousandth of the mean time between frames, and never
+// more than a microsecond.
+function sameInstant(times) {
+  const between = times.length - 1;
+  return between < 1 ? 1e-6 : Math.min(1e-6, 1e-4 * (times[between] - times[0]) / between);
+}
+
 const kEventNames = ['', 'collision', 'comes to rest', 'force on', 'force off', 'contact begins', 'contact ends', 'sticks', 'slides', 'falls asleep', 'wakes', 'control'];
 const kCollision = 1;
 
@@ -82,10 +89,11 @@ class Run {
   // The last frame not later than t, and the fraction of the interval to the next.
   frameAt(t) {
     const times = this.times;
+    const same = sameInstant(times);
     let low = 0, high = times.length - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
-      if (times[middle] <= t + 1e-6) low = middle; else high = middle - 1;
+      if (times[middle] <= t + same) low = middle; else high = middle - 1;
     }
     if (low + 1 >= times.length) return { k: low, part: 0 };
     return { k: low, part: Math.min(1, Math.max(0, (t - times[low]) / (times[low + 1] - times[low]))) };

@@ -95,7 +95,7 @@ class Player {
     this.isPlaying = false;
     const times = this.longest.times, at = this.longest.frameAt(this.time), isBetween = at.part > 1e-3 && frames < 0;
     let k = Math.min(times.length - 1, Math.max(0, at.k + frames + (isBetween ? 1 : 0)));
-    while (frames < 0 && k > 0 && times[k] > this.time - 1e-6) --k;   // nearer frames count as the same instant
+    while (frames < 0 && k > 0 && times[k] > this.time - sameInstant(times)) --k;   // nearer frames count as the same instant
     this.seek(times[k]);
   }
 
