@@ -30,6 +30,7 @@ constexpr const char* kThree = "three.js";
 struct DemoOptions {
   std::string out = "out/demo";
   int jobs = 2;
+  int scenes = 0;  // of each assignment; 0: all
 };
 
 /// One assignment as the demo grades it: the reference, the untouched starter, a flawed submission.
@@ -179,6 +180,11 @@ void demo(Context& context, const DemoOptions& options) {
     grading::GradeOptions grade;
     grade.jobs = options.jobs;
     grade.media_of = {kDrawn};
+    if (options.scenes > 0) {
+      grade.scenes = grading::scenes_of(course, kind->id);
+      if (grade.scenes.size() > static_cast<std::size_t>(options.scenes))
+        grade.scenes.resize(static_cast<std::size_t>(options.scenes));
+    }
     grade.media_options.three_file = fs::path("../../..") / kThree;  // from aN/NAME/media
     // it shows the grader, and gives nobody a grade
     grade.accepted_sandbox = grading::traits_of(grading::chosen_sandbox()).name;
@@ -214,6 +220,9 @@ void add_demo(CLI::App& app, Context& context) {
             "Grade three submissions of each assignment and draw every scene: the whole path on "
             "one page");
   verb.option("--out", options->out, "Folder of the report").shows_default();
+  verb.option("--scenes", options->scenes,
+              "Draw only the first N scenes of each assignment, by name; default all")
+      .between(1, 1000);
   verb.option("--jobs", options->jobs, "Submissions graded at the same time")
       .between(1, 64)
       .shows_default();
