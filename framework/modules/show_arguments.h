@@ -1,12 +1,14 @@
 /// The arguments of a call in words, derived from their types like the wire format: for the story
 /// of a call that never returned.
-///   (0, 0, 5) for vectors, {..., ...} for structs, [n: ..., ...] for lists, "f" for functions
+///   (0, 0, 5) for vectors, {time: 1, point: (0, 0, 5)} for structs, [n: ..., ...] for lists, "f" for
+///   functions
 #pragma once
 
 #include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "framework/modules/wire.h"
@@ -18,6 +20,37 @@ namespace detail {
 inline constexpr std::size_t kArgumentsShown = 600;  // characters
 // of a list, and of a vector without fixed size
 inline constexpr int kItemsShown = 4;
+
+#if defined(__GNUC__) && !defined(__clang__)
+// An object that is nowhere: only the addresses of its fields are named, by the compiler.
+template <class T>
+struct Absent {
+  const T value;
+};
+template <class T>
+extern const Absent<T> absent;
+
+template <auto* field>
+constexpr std::string_view spelled() {
+  return __PRETTY_FUNCTION__;  // "... field = (& absent<Hit>.Absent<Hit>::value.Hit::time); ..."
+}
+
+/// The name of a struct's field in its source; empty where the compiler does not tell.
+template <class T, std::size_t number>
+constexpr std::string_view name_of_field() {
+  constexpr std::string_view text = spelled<&boost::pfr::get<number>(absent<T>.value)>();
+  constexpr std::size_t end = text.find(");");
+  if (end == std::string_view::npos) return {};
+  constexpr std::size_t begin = text.rfind("::", end);
+  return begin == std::string_view::npos ? std::string_view()
+                                         : text.substr(begin + 2, end - begin - 2);
+}
+#else
+template <class T, std::size_t number>
+constexpr std::string_view name_of_field() {
+  return {};
+}
+#endif
 
 inline void show(std::string& text, double x) {
   char digits[32];
@@ -74,9 +107,11 @@ void show_argument(std::string& text, const T& x) {
     static_assert(std::is_aggregate_v<T>);
     bool is_first = true;
     text += '{';
-    boost::pfr::for_each_field(x, [&](const auto& field) {
+    boost::pfr::for_each_field(x, [&](const auto& field, auto number) {
       if (!is_first) text += ", ";
       is_first = false;
+      if (constexpr auto name = name_of_field<T, decltype(number)::value>(); !name.empty())
+        (text += name) += ": ";
       show_argument(text, field);
     });
     text += '}';
@@ -85,8 +120,8 @@ void show_argument(std::string& text, const T& x) {
 
 }  // namespace detail
 
-/// "{(0, 0, 5), (0, 0, -1)}, {(0, 0, 0), (1, 0, 0), (0, 1, 0)}"; a long text is cut and ends with
-/// "..."
+/// "{origin: (0, 0, 5), direction: (0, 0, -1)}, {a: (0, 0, 0), b: (1, 0, 0), c: (0, 1, 0)}"; a long
+/// text is cut and ends with "..."
 template <class... A>
 std::string show_arguments(const A&... arguments) {
   std::string text;
