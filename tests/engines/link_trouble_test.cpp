@@ -254,5 +254,21 @@ TEST(LinkTrouble, EnergyOfAnIntegrationIsTheIntegrations) {
                  {"'ball'", "comes from integration", "integrate_step"});
 }
 
+// A stage of RK4 stands off unit length, and R of such a quaternion tilts L: a stick of 1 m by 2 cm
+// turns that into spin along its axis, and was a radian off after a second.
+TEST(LinkTrouble, ADragOfNextToNothingTurnsNoStick) {
+  scene::Scene scene =
+      scene_of({box("stick", {0.5, 0.01, 0.01}, 1.0, Vector3d::Zero(), Vector3d::Zero())}, 1.0);
+  scene.step_s = 1.0 / 60;
+  scene.bodies[0].angular_velocity_rad_s = {0, 3, 4};
+  const Trajectory free = run(scene, reference_laws());
+  scene.effects.of<effects::DragSpec>().push_back({"stick", 1e-12, 1e-12});
+  const Trajectory dragged = run(scene, reference_laws());
+  const auto at_end = [](const Trajectory& of) { return of.frames.back().poses[0]; };
+  ASSERT_EQ(dragged.stopped_by, "");
+  // RK4's own error at w h = 1/12 is 60 (w h)^5 / 2880 = 8e-8 rad
+  EXPECT_LT(at_end(free).world_from_body.angularDistance(at_end(dragged).world_from_body), 1e-6);
+}
+
 }  // namespace
 }  // namespace tumble::testing

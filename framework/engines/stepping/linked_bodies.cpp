@@ -284,8 +284,10 @@ VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
   ++counters_.derivative_evaluations;
   std::vector<RigidBodyState> local;
   local.reserve(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
     local.push_back(unpack(y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize)));
+    local.back().world_from_body.normalize();  // why: MovingWorld::integrate
+  }
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Wrench> wrenches = forces(local, bodies);
