@@ -260,7 +260,7 @@ TEST(LinkTrouble, ADragOfNextToNothingTurnsNoStick) {
   scene::Scene scene =
       scene_of({box("stick", {0.5, 0.01, 0.01}, 1.0, Vector3d::Zero(), Vector3d::Zero())}, 1.0);
   scene.step_s = 1.0 / 60;
-  scene.bodies[0].angular_velocity_rad_s = {0, 3, 4};
+  scene.bodies[0].omega_world_rad_s = {0, 3, 4};
   const Trajectory free = run(scene, reference_laws());
   scene.effects.of<effects::DragSpec>().push_back({"stick", 1e-12, 1e-12});
   const Trajectory dragged = run(scene, reference_laws());
