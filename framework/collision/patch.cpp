@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,10 @@ struct FlatPoint {
   int index;  // in the original list; -1: a new point
 };
 using Polygon = InlineVector<FlatPoint, 16>;
+
+// Of the coordinates: what polygons that touch at their boundaries are apart by, first that of
+// coordinates alone, then that of a normal that itself has rounding.
+constexpr double kBoundarySlacks[] = {1e-14, 1e-12, 1e-9};
 
 double cross2(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
@@ -100,12 +105,14 @@ Polygon crossing_of_segments(const Polygon& a, const Polygon& b) {
 }
 
 // I. Sutherland, G. Hodgman, Reentrant polygon clipping, CACM 17 (1974) 32.
-Polygon clip(const Polygon& cut, const Polygon& window) {
+/// @param slack  [m] the window is wider by this on every side
+Polygon clip(const Polygon& cut, const Polygon& window, double slack = 0.0) {
   Polygon subject = cut, kept;
   for (int i = 0; i < window.size() && !subject.empty(); ++i) {
     const Vector2d& p = window[i].p;
     const Vector2d edge = window[(i + 1) % window.size()].p - p;
-    const auto side = [&](const FlatPoint& q) { return cross2(edge, q.p - p); };
+    const double room = slack > 0 ? slack * edge.norm() : 0.0;
+    const auto side = [&](const FlatPoint& q) { return cross2(edge, q.p - p) + room; };
     kept.clear();
     for (int k = 0; k < subject.size(); ++k) {
       const FlatPoint &q = subject[k], &next = subject[(k + 1) % subject.size()];
@@ -119,16 +126,31 @@ Polygon clip(const Polygon& cut, const Polygon& window) {
   return subject;
 }
 
+// Distance of a point from the nearest line along a side of the window; < 0: outside.
+double room_in(const Polygon& window, const Vector2d& point) {
+  double room = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < window.size(); ++i) {
+    const Vector2d edge = window[(i + 1) % window.size()].p - window[i].p;
+    room = std::min(room, cross2(edge, point - window[i].p) / edge.norm());
+  }
+  return room;
+}
+
 // `a` has at most as many corners as `b`.
 Polygon shared_region(const Polygon& a, const Polygon& b) {
   if (a.size() == 1) return a;
   if (b.size() == 2) return crossing_of_segments(a, b);
   Polygon region = clip(a, b);
   if (!region.empty()) return region;
-  // they touch only at their boundaries, and rounding separates them
-  Vector2d middle = Vector2d::Zero();
-  for (const FlatPoint& q : a) middle += q.p / static_cast<double>(a.size());
-  region.push_back({middle, -1});
+  // They touch only at their boundaries, and rounding separates them.
+  double size = 0.0;
+  for (const Polygon* polygon : {&a, &b})
+    for (const FlatPoint& q : *polygon) size = std::max(size, q.p.cwiseAbs().maxCoeff());
+  for (const double slack : kBoundarySlacks)
+    if (region = clip(a, b, slack * size); !region.empty()) return region;
+  region.push_back(*std::max_element(a.begin(), a.end(), [&](const auto& p, const auto& q) {
+    return room_in(b, p.p) < room_in(b, q.p);
+  }));
   return region;
 }
 

@@ -141,6 +141,24 @@ TEST(EdgeOnEdge, FlushBoxesHaveTheNormalOfTheirFaces) {
   }
 }
 
+// Faces that meet only in a line, as in a pile of bricks: rounding puts them 1e-17 m apart, and the
+// contact lay in the middle of one of the faces, where the other body is not.
+TEST(EdgeOnEdge, FacesThatMeetInALineTouchAlongIt) {
+  const CollisionShape box{Box{Vector3d::Constant(0.05)}};
+  const Pose upper{Vector3d(0.4, 0, 0.8)}, shelf{Vector3d(0.3, 0, 0.7)};
+  for (const bool is_upper_first : {true, false}) {
+    const std::vector<ManifoldPoint> points = collision::manifold_points(
+        box, is_upper_first ? upper : shelf, box, is_upper_first ? shelf : upper, kReach);
+    ASSERT_FALSE(points.empty());
+    for (const ManifoldPoint& p : points) {
+      EXPECT_NEAR(p.point_a_world.x(), 0.35, kRoundOff);
+      EXPECT_NEAR(p.point_a_world.z(), 0.75, kRoundOff);
+      EXPECT_NEAR(std::abs(p.point_a_world.y()), 0.05, kRoundOff);
+      EXPECT_NEAR(p.gap, 0.0, kRoundOff);
+    }
+  }
+}
+
 TEST(EdgeOnEdge, TippingBoxHasContactPointsAtTheDescendingEdge) {
   const CollisionShape box{Box{Vector3d(0.5, 0.4, 0.1)}};
   const double tilt = 1e-5;  // rad, about its lower edge at x = -0.5
