@@ -1,5 +1,6 @@
 #include "framework/collision/gap.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -71,13 +72,36 @@ Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query&
   return gap;
 }
 
+// Some points inside a solid, body frame. Not its corners: they may lie on the other's surface.
+std::vector<Vector3d> points_inside(const CollisionShape& solid) {
+  constexpr double kBelow = 1e-6;  // of the solid's radius: under a face, far above rounding
+  std::vector<Vector3d> points;
+  const auto middle_of = [](const Polytope& piece) {
+    Vector3d sum = Vector3d::Zero();
+    for (const Vector3d& v : piece.vertices) sum += v;
+    return Vector3d(sum / static_cast<double>(piece.vertices.size()));
+  };
+  const auto& pieces = solid.pieces();
+  if (!solid.is_closed_surface()) {
+    points.push_back(middle_of(pieces[0]));
+    return points;
+  }
+  for (const std::size_t i : {std::size_t{0}, pieces.size() / 2, pieces.size() - 1})
+    if (!pieces[i].face_normals.empty())
+      points.push_back(middle_of(pieces[i]) -
+                       kBelow * solid.bounding_radius() * pieces[i].face_normals.front());
+  return points;
+}
+
 bool holds_some_point_of(const CollisionShape& outer, const Pose& outer_pose,
                          const CollisionShape& inner, const Pose& inner_pose) {
   if (!outer.is_closed_surface() || inner.is_half_space()) return false;
-  const Vector3d point_world =
-      inner_pose.com_world + inner_pose.world_from_body * inner.vertices()[0];
-  return outer.holds_point(outer_pose.world_from_body.conjugate() *
-                           (point_world - outer_pose.com_world));
+  const std::vector<Vector3d> points = points_inside(inner);
+  return std::any_of(points.begin(), points.end(), [&](const Vector3d& p) {
+    const Vector3d point_world = inner_pose.com_world + inner_pose.world_from_body * p;
+    return outer.holds_point(outer_pose.world_from_body.conjugate() *
+                             (point_world - outer_pose.com_world));
+  });
 }
 
 }  // namespace

@@ -201,6 +201,19 @@ TEST(Gap, OfAModelAndABoxIsTheSmallestOverAllFaces) {
   }
 }
 
+// A body copied with its place: the surfaces are one, so that no two faces cross.
+TEST(Gap, AModelThatIsWhereAnotherOfItsKindIsOverlapsIt) {
+  Poses random(13);
+  for (const char* name : {"torus", "l_shape", "t_handle", "dumbbell"}) {
+    const Solid solid = model(name);
+    for (int k = 0; k < 20; ++k) {
+      const Pose pose = k == 0 ? Pose() : random.pose(1.0);
+      EXPECT_TRUE(collision::overlapping(solid.shape, pose, solid.shape, pose, 0.0))
+          << name << ", pose " << k;
+    }
+  }
+}
+
 TEST(Gap, OfAModelAndABallOrAPlaneIsThatOfItsNearestPoint) {
   const CollisionShape ball{Shape(Sphere{0.2})}, floor{Shape(HalfSpace{})};
   Poses random(13);
