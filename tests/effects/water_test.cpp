@@ -11,6 +11,7 @@
 #include "framework/effects/registry.h"
 #include "framework/effects/water/water.h"
 #include "framework/engines/cost/cost.h"
+#include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/scenes.h"
@@ -219,6 +220,26 @@ TEST(Water, EventEnginesFollowItAlike) {
     EXPECT_LE(
         (rd.frames.back().poses[i].com_world - ordered.frames.back().poses[i].com_world).norm(),
         1e-6);
+}
+
+// w^2 = rho g A / m, of what starts above the water, too; drag damps it by rho drag V / m.
+TEST(Water, HowFastABodyBobsIsKnownWhereTheRunStarts) {
+  constexpr double kDensity = 500.0, kThickness = 4e-4, kDrag = 1.5;
+  const double frequency = std::sqrt(kWater * kG / (kDensity * kThickness));
+  for (const double z : {0.0, 1.0}) {
+    const World plate = build_world(in_water({floating_box({2, 2, kThickness}, kDensity, z)}, 1.0));
+    const auto swing = engines::judge_springs(plate, test_laws(), 1.0 / 60);
+    ASSERT_TRUE(swing) << z;
+    EXPECT_NEAR(swing->angular_frequency / frequency, 1.0, 1e-6) << z;
+    EXPECT_EQ(swing->damping, 0.0) << z;
+    EXPECT_GT(swing->amplification, 1.0) << "w h = 3.7 is beyond Runge-Kutta's 2.83";
+  }
+  const World damped =
+      build_world(in_water({floating_box({1, 1, 0.2}, kDensity, 0.0)}, 1.0, kDrag));
+  const auto swing = engines::judge_springs(damped, test_laws(), 1.0 / 60);
+  ASSERT_TRUE(swing);
+  EXPECT_NEAR(swing->damping, 0.5 * kWater / kDensity * kDrag, 1e-9);
+  EXPECT_NE(swing->last_remedy.find("larger"), std::string::npos) << swing->last_remedy;
 }
 
 TEST(Water, ItsLevelMovesWithTheOriginOfTheRun) {

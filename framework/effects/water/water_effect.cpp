@@ -212,7 +212,8 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
     }
   }
   // Up and down: k = rho g A, A the area that the level cuts where the run starts; of a body that
-  // starts clear of it, its mean over the body's shortest way through.
+  // starts clear of it, its mean over the body's shortest way through. Damped by the drag on what
+  // is under the level then; of a body that starts clear, on half of it.
   void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start,
                          std::vector<StiffRow>& rows) const override {
     for (const Floating& floating : held(world)) {
@@ -221,10 +222,16 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
       up[2] = 1.0;
       const double stiffness =
           floating.water.density_kg_m3 * floating.gravity * area_at_level(floating, state);
-      rows.push_back({floating.body, -1, up, Vector6d::Zero(), stiffness, 0.0,
-                      fmt::format("body '{}' in the water",
-                                  world.bodies[static_cast<std::size_t>(floating.body)].name),
-                      "a larger body", "give the water drag_1_s"});
+      const double under =
+          immersion_of(floating, state.com_world, state.world_from_body).under.volume;
+      const double damping = floating.water.density_kg_m3 * floating.water.drag_1_s *
+                             (under > 0.0 ? under : 0.5 * floating.solid.whole().volume);
+      rows.push_back(
+          {floating.body, -1, up, Vector6d::Zero(), stiffness, damping,
+           fmt::format("body '{}' in the water",
+                       world.bodies[static_cast<std::size_t>(floating.body)].name),
+           "a larger body",
+           damping > 0.0 ? "give the water a larger drag_1_s" : "give the water drag_1_s"});
     }
   }
   void append_pulls(const World& world, const std::vector<RigidBodyState>& states,
@@ -249,6 +256,12 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
   }
 
  private:
+  /// Of the box that has the solid's least second moment: exact for boxes, 1.55 R of a ball's 2 R.
+  /// [m]
+  static double least_width(const Submerged& whole) {
+    const Matrix3d central = whole.second - whole.first * whole.first.transpose() / whole.volume;
+    return std::sqrt(12.0 * symmetric_eigen(central).values[0] / whole.volume);
+  }
   static double area_at_level(const Floating& floating, const RigidBodyState& state) {
     constexpr double kPart = 1e-4;  // of the radius: a difference quotient over this way
     const double way = kPart * floating.solid.radius();
@@ -258,7 +271,7 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
     const double area = (immersion_of(floating, lower, state.world_from_body).under.volume -
                          immersion_of(floating, upper, state.world_from_body).under.volume) /
                         (2.0 * way);
-    return area > 0.0 ? area : floating.solid.whole().volume / floating.solid.radius();
+    return area > 0.0 ? area : floating.solid.whole().volume / least_width(floating.solid.whole());
   }
 };
 
