@@ -105,6 +105,11 @@ TEST(LinkRefusals, ARodThatDoesNotFitSaysByHowMuch) {
                 "Leave length_m out"});
   expect_words(rod(kBall, kBob, R"(, "length_m": 1.00000001)"), {"too near"});
   EXPECT_EQ(refusal(rod(kBall, kBob, R"(, "length_m": 1.0000000001)")), "accepted");
+  // 0.01 m at 10^6 m from the origin: the places themselves have no more digits
+  const std::string far = R"({ "body": "ball", "point_body_m": [1000000.07, 0, 0] })",
+                    beside = R"({ "point_world_m": [1000000.06, 0, 2] })";
+  EXPECT_EQ(refusal(rod(far, beside, R"(, "length_m": 0.01)")), "accepted");
+  expect_words(rod(far, beside, R"(, "length_m": 0.010001)"), {"too near"});
   expect_words(rod(kBall, R"({ "point_world_m": [0, 0, 2] })"),
                {"/rods/0", "no length", "anchored at the same place", "joint of kind \"ball\""});
   expect_words(rod(kBall, kBob, R"(, "length_m": 0)"), {"/rods/0/length_m", "above 0"});

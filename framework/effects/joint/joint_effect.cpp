@@ -155,7 +155,7 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
       entry.read("axis", spec.axis);
       if (spec.axis.isZero(0.0))
         entry.refuse("axis", "found the zero vector, expected a direction");
-      spec.axis.normalize();
+      spec.axis.stableNormalize();
     }
     scene.effects.of<JointSpec>().push_back(spec);
   }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/numbers.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/effects/linked_effect.h"
 
@@ -194,7 +195,11 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
                  scene::ending(rod.b) + " are anchored at the same place",
              "Move one of them; for two bodies that share a point use a joint of kind \"ball\".");
     const double off = found - rod.length_m;
-    if (std::abs(off) > kRodFit * rod.length_m)
+    // far from the origin coordinates have no more digits
+    const double rounding =
+        4 * kEpsilon *
+        std::max(place(rod.a).cwiseAbs().maxCoeff(), place(rod.b).cwiseAbs().maxCoeff());
+    if (std::abs(off) > kRodFit * rod.length_m + rounding)
       refuse(rod.pointer + "/length_m",
              "rod '" + rod.name + "' is " + digits(rod.length_m) + " m long, but its ends are " +
                  digits(found) + " m apart at the start: " + digits(std::abs(off)) + " m too " +
