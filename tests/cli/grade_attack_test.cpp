@@ -11,6 +11,7 @@
 
 #include "tests/support/places.h"
 #include "tests/cli/grading_fixture.h"
+#include "tests/support/whole.h"
 
 namespace tumble::grading {
 namespace {
@@ -220,6 +221,7 @@ TEST_F(GradeAttack, TwoGradingsDoNotMeetInOneFolderAndAKilledOneLeavesItFree) {
 }
 
 TEST_F(GradeAttack, ChildrenOfAKilledGradingThatDieSlowlyAreWaitedFor) {
+  TUMBLE_ONLY_WHOLE();
   put("alice/a1_impulse.cpp", text_of(kStub));
   EXPECT_EQ(grade("out").code, 0);
   // A process that holds the lock of a finished run, for longer than a live one is waited for.
@@ -242,6 +244,7 @@ TEST_F(GradeAttack, ChildrenOfAKilledGradingThatDieSlowlyAreWaitedFor) {
 }
 
 TEST_F(GradeAttack, AFileThatChangesMeanwhileIsGradedAsItWas) {
+  TUMBLE_ONLY_WHOLE();
   // takes a while
   put("alice/a1_impulse.cpp", stub_that("for (volatile int never = 0; !never;) {}"));
   put("bob/a1_impulse.cpp", "int x = ;\n");
@@ -267,6 +270,7 @@ TEST_F(GradeAttack, TwoSubmissionsOfOneNameAreSaid) {
 }
 
 TEST_F(GradeAttack, MediaMadeBeforeStayWithoutMedia) {
+  TUMBLE_ONLY_WHOLE();
   put("alice/a1_impulse.cpp", text_of(kStub));
   grade("out");
   // Pictures of an earlier run: signed, so made by the grader; one file suffices.
@@ -278,6 +282,7 @@ TEST_F(GradeAttack, MediaMadeBeforeStayWithoutMedia) {
 }
 
 TEST_F(GradeAttack, ABuildThatTakesTheProgramsAwayDisturbsNoGrading) {
+  TUMBLE_ONLY_WHOLE();
   // The programs are copied first; here the build tree consists of links whose judge is deleted
   // during the grading.
   const fs::path build = root / "build";

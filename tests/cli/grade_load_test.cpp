@@ -3,11 +3,13 @@
 #include "tests/support/places.h"
 #include "tests/cli/busy_loops.h"
 #include "tests/cli/grading_fixture.h"
+#include "tests/support/whole.h"
 
 namespace tumble::grading {
 namespace {
 
 TEST_F(Grading, BusyLoopsBesideItChangeNoByte) {
+  TUMBLE_ONLY_WHOLE();
   id = "a2";
   put("reference/a2_integration.cpp",
       text_of(fs::path(test::source_dir()) /

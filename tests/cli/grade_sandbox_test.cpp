@@ -66,21 +66,18 @@ std::string without_lines(const nlohmann::json& tests) {
 }
 
 TEST_F(GradeSandbox, AllKindsGiveTheSameVerdicts) {
+  TUMBLE_ONLY_WHOLE();
   put("bob/a1_impulse.cpp", text_of(kReference));
   put("carol/a1_impulse.cpp", stub_that("int* nothing = nullptr; *nothing = 1;"));
-  std::vector<std::string> names{"alice", "bob", "carol"};
-  if (test::is_whole()) {
-    put("dave/a1_impulse.cpp", text_of(kStub) + "\nint x = ;\n");
-    put("erin/a1_impulse.cpp", text_of(kReference) + "\nint main() { return 0; }\n");
-    names.insert(names.end(), {"dave", "erin"});
-  }
+  put("dave/a1_impulse.cpp", text_of(kStub) + "\nint x = ;\n");
+  put("erin/a1_impulse.cpp", text_of(kReference) + "\nint main() { return 0; }\n");
   std::map<std::string, nlohmann::json> first;
   for (const std::string kind : {"namespaces", "landlock", "bare"}) {
     const ProgramOutcome outcome =
         grade(kind, {"--no-media", "--sandbox", kind, "--accept-sandbox", kind});
     if (outcome.code == 2 && says(outcome, "does not work on this machine")) continue;
     ASSERT_EQ(outcome.code, 0) << kind << outcome.printed;
-    for (const std::string& name : names) {
+    for (const char* name : {"alice", "bob", "carol", "dave", "erin"}) {
       const nlohmann::json found = results(name, kind);
       if (!first.contains(name)) first[name] = found;
       EXPECT_EQ(without_lines(found["tests"]), without_lines(first[name]["tests"]))
@@ -92,9 +89,7 @@ TEST_F(GradeSandbox, AllKindsGiveTheSameVerdicts) {
     }
   }
   EXPECT_EQ(first["bob"]["score"], 100.0);
-  if (test::is_whole()) {
-    EXPECT_EQ(first["erin"]["score"], 100.0) << "a main() of the submission's own replaces nothing";
-  }
+  EXPECT_EQ(first["erin"]["score"], 100.0) << "a main() of the submission's own replaces nothing";
 }
 
 // ---- tumble doctor ----

@@ -2,6 +2,7 @@
 // reports the right size.
 #include "tests/support/places.h"
 #include "tests/cli/grading_fixture.h"
+#include "tests/support/whole.h"
 
 namespace tumble::grading {
 namespace {
@@ -57,6 +58,7 @@ TEST_F(GradeSizes, OfStatesAndDerivativesOfA2) {
 }
 
 TEST_F(GradeSizes, AskedForTooMuchOfMemoryAreRefusedBeforeItIsTaken) {
+  TUMBLE_ONLY_WHOLE();
   id = "a2";
   // 80 MB
   put("ann/a2_integration.cpp", with_slip(text_of(solution("a2_integration")), "rk4_step",
@@ -66,6 +68,7 @@ TEST_F(GradeSizes, AskedForTooMuchOfMemoryAreRefusedBeforeItIsTaken) {
 }
 
 TEST_F(GradeSizes, OfMultipliersAndForcesOfA3) {
+  TUMBLE_ONLY_WHOLE();
   id = "a3";
   std::string text = text_of(solution("a3_constraints"));
   text = with_slip(text, "constraint_multipliers", "return VectorXd();");
