@@ -10,6 +10,7 @@
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
+#include "tests/support/whole.h"
 
 namespace tumble::testing::paper_scenes_test {
 namespace {
@@ -194,6 +195,7 @@ TEST(FirstCollisions, OfARobotIsItsThrowWhichAgrees) {
 // step is cut too. The sliding of a held block is right to the order of the step only, so this
 // moves it by at most the error of the step.
 TEST(FirstCollisions, OfTwoRobotsAgreeAsFarAsTheirStepIsRight) {
+  TUMBLE_ONLY_WHOLE();
   scene::Scene scene = sized("robots", 2, 0.35), finer = scene;
   // a quarter changes nothing: contacts of links use shorter steps of their own
   finer.step_s = scene.step_s / 8;

@@ -14,6 +14,7 @@
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
+#include "tests/support/whole.h"
 
 namespace tumble::testing {
 namespace {
@@ -155,6 +156,7 @@ TEST(LogicalProcesses, OnSeveralThreadsCommitTheReferencesTrace) {
 // For rocks a body's history of flights would grow too long; for bobs, which swing on one flight,
 // the steps of their segments.
 TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
+  TUMBLE_ONLY_WHOLE();
   for (const scene::Scene& scene : {sized("avalanche", 24, 2.5), pendula_and_balls(5, 0.9)}) {
     const Trajectory reference = run_with("ordered", scene);
     ASSERT_EQ(reference.stopped_by, "") << scene.name;
@@ -450,6 +452,7 @@ TEST(SizedScenes, BeginApartAtTheirOwnSize) {
 }
 
 TEST(SizedScenes, BeginApartWhereTheyAreLarge) {
+  TUMBLE_ONLY_WHOLE();
   for (const scene::SizedScene& sized_scene : scene::sized_scenes()) {
     // Each rock is a shape of its own to build; an arm has ten bodies, and each pair of links is
     // found by name.
