@@ -41,7 +41,8 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int widt
           "-c:v", "libx264", "-preset", "veryfast", "-crf", std::to_string(crf), "-pix_fmt",
           "yuv420p", "-threads", "2", "-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v",
           "+bitexact", "-map_metadata", "-1", "-metadata", "comment=" + record, "-f", "mp4",
-          mp4.string()};
+          // Without "file:", ffmpeg takes what precedes a colon in a name for a protocol.
+          "file:" + mp4.string()};
 }
 
 }  // namespace

@@ -100,6 +100,15 @@ TEST_F(Pictures, VideoThatCannotBeWrittenGivesAReasonAndLeavesNothing) {
   }
 }
 
+// In a relative name, as it is typed, ffmpeg could take "12" for a protocol.
+TEST_F(Pictures, VideoMayHaveAColonInItsName) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  EXPECT_NO_THROW(write_video("12:30.mp4", falling_ball(), ball_at(2.0), small()));
+  fs::current_path(before);
+  EXPECT_EQ(probe(folder_ / "12:30.mp4", "stream=codec_name"), "h264\n");
+}
+
 TEST_F(Pictures, WithoutFfmpegTheErrorNamesIt) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", "/nowhere", 1);
