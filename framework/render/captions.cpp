@@ -51,6 +51,17 @@ std::vector<std::string> in_lines(const TextWriter& writer, const std::string& t
 
 }  // namespace
 
+std::string time_text(const Trajectory& run, std::size_t frame) {
+  // of log10: frames 0.01 s apart need two decimals, whatever the rounding of their times
+  constexpr double kRoundOff = 1e-6;
+  const double intervals = static_cast<double>(run.frames.size()) - 1.0;
+  const double spacing_s = (run.frames.back().time - run.frames.front().time) / intervals;
+  const double needed = std::ceil(-std::log10(spacing_s) - kRoundOff);
+  // A single frame has no spacing.
+  const int decimals = std::isfinite(needed) ? static_cast<int>(std::clamp(needed, 2.0, 9.0)) : 2;
+  return fmt::format("t = {:.{}f} s", run.frames[frame].time, decimals);
+}
+
 void write_captions(Image& image, const TextWriter& writer, const scene::Scene& scene,
                     const Trajectory& run, const Stage& stage, std::size_t frame,
                     const Moment& moment, const std::string& label, Words words) {
@@ -63,10 +74,16 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
       writer.write(image, place.text, at->x(), at->y() + 1.5 * small + place.drop_pixels,
                    small * 1.08, kDark, Align::kCentre, true);
 
-  const std::string time = fmt::format("t = {:.2f} s", run.frames[frame].time);
+  const std::string time = time_text(run, frame);
   writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark,
                Align::kLeft, true);
-  if (words == Words::kTimeOnly) return;
+  const auto write_end = [&](double baseline) {
+    if (!run.stopped_by.empty() && frame + 1 == run.frames.size())
+      writer.write(image,
+                   writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true),
+                   margin, baseline, small * 1.15, kAlarm, Align::kLeft, true);
+  };
+  if (words == Words::kTimeOnly) return write_end(h - margin - kLineSpacing * small - 4.0 * unit);
 
   // For runs side by side the label is below the title: half a picture is too narrow for both in
   // one line.
@@ -89,10 +106,7 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
   for (auto line = made.rbegin(); line != made.rend(); ++line, from_below -= kLineSpacing * small)
     writer.write(image, *line, w - margin, from_below, small, kSoft, Align::kRight);
 
-  if (!run.stopped_by.empty() && frame + 1 == run.frames.size())
-    writer.write(image,
-                 writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true),
-                 margin, from_below - 10.0 * unit, small * 1.15, kAlarm, Align::kLeft, true);
+  write_end(from_below - 10.0 * unit);
 }
 
 }  // namespace tumble::render

@@ -1,13 +1,21 @@
 /// Text over a rendered picture. Internal to framework/render.
 #pragma once
 
+#include <string>
+
 #include "framework/render/image.h"
 #include "framework/render/stage.h"
 #include "framework/render/text.h"
 
 namespace tumble::render {
 
+/// kTimeOnly: of these the labels, the time, and what stopped the run, as in the views of a sheet.
 enum class Words { kAll, kTimeOnly };
+
+/// "t = 0.25 s": at least two decimals, and so many that successive frames have different times
+/// (nine at most).
+/// @pre the run has a frame
+std::string time_text(const Trajectory& run, std::size_t frame);
 
 /// Writes title, time, engine and step, the grid's scale, labels, and what stopped the run.
 /// @param label  at the top right, e.g. "reference"; may be empty

@@ -31,6 +31,8 @@ class FramePainter {
   Image with_words(Wordless painted) const;
   std::size_t frame_at(double time_s) const { return stage_.frame_at(time_s); }
   Image paint_at(double time_s) { return paint(stage_.frame_at(time_s)); }
+  /// Time of the frame that is drawn for `time_s`.
+  double drawn_s(double time_s) const { return run_.frames[stage_.frame_at(time_s)].time; }
   double end_s() const { return run_.frames.back().time; }
 
  private:
@@ -45,6 +47,7 @@ class FramePainter {
 };
 
 /// Provenance of this run, for the text chunks of a PNG.
+/// @param time_s  of the drawn frame
 ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s);
 
 }  // namespace tumble::render

@@ -79,7 +79,8 @@ Image make_picture(const scene::Scene& scene, const Trajectory& run, double time
 
 void write_picture(const std::filesystem::path& png, const scene::Scene& scene,
                    const Trajectory& run, double time_s, const PictureOptions& options) {
-  write_png(png, make_picture(scene, run, time_s, options), notes_of(scene, run, time_s));
+  FramePainter painter(scene, run, options);
+  write_png(png, painter.paint_at(time_s), notes_of(scene, run, painter.drawn_s(time_s)));
 }
 
 void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& scene,
@@ -109,11 +110,13 @@ void write_side_by_side_picture(const std::filesystem::path& png, const scene::S
   Image whole(
       static_cast<int>(runs.size()) * options.width + (static_cast<int>(runs.size()) - 1) * kSeam,
       options.height);
+  double drawn_s = 0.0;  // in the view of the first run, whose provenance the file has
   for (std::size_t i = 0; i < runs.size(); ++i) {
     FramePainter painter(scene, runs[i].trajectory, options, runs[i].label);
     paste(painter.paint_at(time_s), static_cast<int>(i) * (options.width + kSeam), 0, whole);
+    if (i == 0) drawn_s = painter.drawn_s(time_s);
   }
-  write_png(png, whole, notes_of(scene, runs.front().trajectory, time_s));
+  write_png(png, whole, notes_of(scene, runs.front().trajectory, drawn_s));
 }
 
 double telling_instant(const Trajectory& run) {

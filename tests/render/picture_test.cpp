@@ -9,16 +9,17 @@
 
 #include "framework/core/error.h"
 #include "framework/render/camera.h"
+#include "framework/render/captions.h"
 #include "framework/render/picture.h"
 #include "tests/render/render_fixtures.h"
 
 namespace tumble::render {
 namespace {
 
-std::string png_bytes() {
+std::string png_bytes(double time_s = 0.5) {
   const auto file = std::filesystem::temp_directory_path() /
                     ("tumble_picture_" + std::to_string(getpid()) + ".png");
-  write_picture(file, falling_ball(), ball_at(2.0), 0.5, small());
+  write_picture(file, falling_ball(), ball_at(2.0), time_s, small());
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   in.close();
@@ -30,6 +31,28 @@ TEST(Picture, SameRunSameBytes) {
   const std::string once = png_bytes();
   EXPECT_GT(once.size(), 1000u);
   EXPECT_EQ(once, png_bytes());
+}
+
+// The run ends at 0.5 s.
+TEST(Picture, FileHasTheTimeOfTheFrameThatIsDrawn) { EXPECT_EQ(png_bytes(99.0), png_bytes(0.5)); }
+
+TEST(Captions, SuccessiveFramesHaveDifferentTimes) {
+  const auto times = [](double spacing_s) {
+    Trajectory run = ball_at(2.0);
+    for (std::size_t i = 0; i < run.frames.size(); ++i)
+      run.frames[i].time = static_cast<double>(i) * spacing_s;
+    return time_text(run, 1);
+  };
+  EXPECT_EQ(times(0.5), "t = 0.50 s");
+  EXPECT_EQ(times(0.01), "t = 0.01 s");
+  EXPECT_EQ(times(1.0 / 60), "t = 0.02 s");
+  EXPECT_EQ(times(0.001), "t = 0.001 s");
+  EXPECT_EQ(times(2.5e-5), "t = 0.00003 s");
+  EXPECT_EQ(times(1e-12), "t = 0.000000000 s");
+  EXPECT_EQ(times(0.0), "t = 0.00 s");
+  Trajectory alone = ball_at(2.0);
+  alone.frames.pop_back();
+  EXPECT_EQ(time_text(alone, 0), "t = 0.00 s");
 }
 
 TEST(Picture, RunOfAnotherSceneIsRefused) {

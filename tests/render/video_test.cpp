@@ -90,6 +90,26 @@ TEST_F(Pictures, ContactSheetIsAGridOfHalfSizeViews) {
   EXPECT_EQ(probe(folder_ / "s.png", "stream=width,height"), "244,184\n");
 }
 
+// A run that was stopped says so where it ends: in the last of 2 x 2 views of 80 x 60 pixels.
+TEST_F(Pictures, ContactSheetShowsWhatStoppedTheRun) {
+  const auto red = [&](const std::string& stopped_by, bool in_last_view) {
+    Trajectory run = ball_at(2.0);
+    run.stopped_by = stopped_by;
+    write_contact_sheet(folder_ / "s.png", falling_ball(), run, 4, small());
+    const Image sheet = read_png(folder_ / "s.png");
+    int count = 0;
+    for (int y = 0; y < sheet.height; ++y)
+      for (int x = 0; x < sheet.width; ++x) {
+        const std::uint8_t* p = sheet.pixel(x, y);
+        count += p[0] > p[1] + 60 && p[0] > p[2] + 60 && (x > 80 && y > 60) == in_last_view;
+      }
+    return count;
+  };
+  EXPECT_EQ(red("", true), 0);
+  EXPECT_GT(red("the bodies fell asleep", true), 10);
+  EXPECT_EQ(red("the bodies fell asleep", false), 0);
+}
+
 TEST_F(Pictures, VideoThatCannotBeWrittenGivesAReasonAndLeavesNothing) {
   try {
     write_video("/proc/no-such-place/v.mp4", falling_ball(), ball_at(2.0), small());
