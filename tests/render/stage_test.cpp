@@ -1,6 +1,7 @@
 // Marks of a drawing: the scale bar where it is visible, paths with their corners.
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,22 @@ TEST(Stage, ADieShowsItsPipsOnTheFacesTheyBelongTo) {
   EXPECT_EQ((pips[{2, true}]), 6);
   for (int axis = 0; axis < 3; ++axis)
     EXPECT_EQ((pips[{axis, true}] + pips[{axis, false}]), 7) << "axis " << axis;
+}
+
+// A tilt of 0.1 degrees is 9 mm over 5 m: bodies on a floor that is drawn level would penetrate it.
+TEST(Stage, OnlyALevelFloorIsDrawnAsTheGround) {
+  scene::Scene scene = falling_ball();
+  const auto has_ground = [&](double tilt_deg) {
+    const Quaterniond turn(
+        Eigen::AngleAxisd(tilt_deg * std::numbers::pi / 180.0, Vector3d::UnitX()));
+    scene.bodies[1].world_from_body = turn;
+    Trajectory run = ball_at(2.0);
+    for (Frame& frame : run.frames) frame.poses[1].world_from_body = turn;
+    return Stage(scene, run, as_shown()).moment(0).drawing.ground.shown;
+  };
+  EXPECT_TRUE(has_ground(0.0));
+  EXPECT_FALSE(has_ground(0.1));
+  EXPECT_FALSE(has_ground(2.0));
 }
 
 // A ball moves along x and reverses after 1003 steps; the path shows every twelfth of 2006 frames,

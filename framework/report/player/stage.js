@@ -1,6 +1,7 @@
 // One run in three dimensions, with the camera, light and colours of the program's pictures.
 
 const kChosen = 0xffb000, kGhostColor = 0x2a4a6a, kGhost = 0.38, kXray = 0.28;
+const kLevel = 1 - 1e-8;   // cosine: within 0.008 degrees of level a plane is the ground; others have an edge
 let kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd;   // a page that follows the dark scheme has others
 
 class Stage {
@@ -26,12 +27,12 @@ class Stage {
     this.addOutline();
   }
 
-  // The first horizontal plane is the ground; it is drawn without an edge.
+  // The first level plane is the ground; it is drawn without an edge.
   findFloor() {
     this.floor = this.about.bodies.findIndex((body, i) => {
       if (body.shape.kind !== 'plane' || this.run.moving.has(i)) return false;
       this.run.pose(i, { k: 0, part: 0 }, this.place, this.turn);
-      return new THREE.Vector3(0, 0, 1).applyQuaternion(this.turn).z > 0.999;
+      return new THREE.Vector3(0, 0, 1).applyQuaternion(this.turn).z > kLevel;
     });
   }
 
