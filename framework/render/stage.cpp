@@ -15,6 +15,10 @@ namespace {
 // frames sampled for the extent of the motion: enough, and fast for long runs
 constexpr std::size_t kExtentFrames = 400;
 
+// However far bodies move, the near plane stays close to the eye, and a far plane of finite
+// distance keeps the projection within single precision. Of the sight.
+constexpr double kNearest = 0.01, kFarthest = 1e4;
+
 // Smallest cosine between a floor's normal and the vertical: within 0.008 degrees, 0.7 mm over 5 m,
 // a plane is drawn as the level ground.
 constexpr double kLevel = 1.0 - 1e-8;
@@ -247,8 +251,9 @@ Moment Stage::moment(std::size_t index) const {
   drawing.ground.centre_m = seen.head<2>();
   const double reach =
       sight_m() + std::max(ground_.shown ? ground_.fade_m : 0.0, extent_.diagonal().norm());
-  drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
-  drawing.near_m = drawing.far_m / 2000.0;
+  drawing.far_m =
+      std::min(kFarthest * sight_m(), 1.2 * reach + (view.eye_world - extent_.center()).norm());
+  drawing.near_m = std::min(drawing.far_m / 2000.0, kNearest * sight_m());
   add_bodies(frame, drawing);
   add_sheets(drawing);
   draw_links(links_.at(frame), options_.height, drawing);

@@ -80,6 +80,21 @@ TEST(Stage, ADieShowsItsPipsOnTheFacesTheyBelongTo) {
     EXPECT_EQ((pips[{axis, true}] + pips[{axis, false}]), 7) << "axis " << axis;
 }
 
+// A body that flies off takes the far plane along, but not the near one past what is looked at.
+TEST(Stage, WhatIsLookedAtIsSeenHoweverFarABodyGoes) {
+  const scene::Scene scene = falling_ball();
+  const double sight = (scene.camera.target_m - scene.camera.eye_m).norm();
+  for (const double distance : {0.0, 1e2, 1e4, 1e8, 1e200}) {
+    Trajectory run = ball_at(2.0);
+    run.frames.back().poses[0].com_world.x() = distance;
+    const Drawing drawing = Stage(scene, run, as_shown()).moment(0).drawing;
+    EXPECT_GT(drawing.near_m, 0.0) << distance;
+    EXPECT_LE(drawing.near_m, 0.01 * sight) << distance;
+    EXPECT_GT(drawing.far_m, std::min(distance, 1e3 * sight)) << distance;
+    EXPECT_LE(drawing.far_m, 1e4 * sight) << distance;
+  }
+}
+
 // A tilt of 0.1 degrees is 9 mm over 5 m: bodies on a floor that is drawn level would penetrate it.
 TEST(Stage, OnlyALevelFloorIsDrawnAsTheGround) {
   scene::Scene scene = falling_ball();
