@@ -1,7 +1,8 @@
 /// The content of one picture as plain data, from the stage to the painter. Internal to
 /// framework/render.
 ///
-/// World frame, metres. Only here numbers are converted to `float`.
+/// World frame, metres. Only here numbers are converted to `float`, after the drawing's origin has
+/// been subtracted.
 #pragma once
 
 #include <array>
@@ -36,7 +37,7 @@ enum class Pass : std::uint8_t {
 };
 
 struct Instance {
-  float world_from_local[12];  // 3 x 4, row by row
+  float world_from_local[12];  // 3 x 4, row by row; its last column from the drawing's origin
   float color[4];              // linear RGB and opacity
   // 1: quarters in two tones, so that the rotation of a ball is visible; 0: one tone
   float quartered;
@@ -67,6 +68,9 @@ struct Ground {
 /// Equal drawings of equal geometries give equal pictures.
 struct Drawing {
   View view;
+  // Near what is looked at where that is far from the world's origin, so that single precision is
+  // enough; else zero.
+  Vector3d origin_world = Vector3d::Zero();
   double near_m = 0.1, far_m = 100.0;
   Vector3d to_light_world;       // unit
   Vector3d shadow_centre_world;  // centre of the ball within which shadows are cast
@@ -74,6 +78,8 @@ struct Drawing {
   Ground ground;
   std::vector<Batch> batches;
 
+  /// Axes of the world.
+  Vector3d from_origin(const Vector3d& point_world) const { return point_world - origin_world; }
   bool operator==(const Drawing&) const = default;
 };
 

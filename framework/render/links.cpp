@@ -84,12 +84,12 @@ void draw_links(const std::vector<Link>& links, int height, Drawing& drawing) {
   std::map<int, std::vector<Instance>> solid;  // by geometry
   const auto add_ball = [&](const Vector3d& centre, double radius, const Vector3d& color) {
     const int level = ball_level(radius / metres_per_pixel(drawing.view, height, centre));
-    solid[kBall + level].push_back(
-        placed(centre, Eigen::Matrix3d::Identity(), Vector3d::Constant(radius), color));
+    solid[kBall + level].push_back(placed(drawing.from_origin(centre), Eigen::Matrix3d::Identity(),
+                                          Vector3d::Constant(radius), color));
   };
   for (const Link& link : links) {
     if (!is_finite(link)) continue;
-    const double length = (link.b_world - link.a_world).norm();
+    const Vector3d a = drawing.from_origin(link.a_world), b = drawing.from_origin(link.b_world);
     const double width_pixels =
         link.width_m / metres_per_pixel(drawing.view, height, 0.5 * (link.a_world + link.b_world));
     const Vector3d& color = link.kind == LinkKind::kSpring ? kSpringColor
@@ -100,14 +100,14 @@ void draw_links(const std::vector<Link>& links, int height, Drawing& drawing) {
       add_ball(link.a_world, 1.7 * link.width_m, color),
           add_ball(link.b_world, 1.7 * link.width_m, color);
     // a spring may have no length
-    if (!(length > 0.0) || link.kind == LinkKind::kBallJoint) continue;
+    if (!((b - a).norm() > 0.0) || link.kind == LinkKind::kBallJoint) continue;
     const bool is_coil =
         link.kind == LinkKind::kSpring && !(width_pixels >= 0.0 && width_pixels < 2.0);
     const int geometry = is_coil ? kCoil + coil_level(link.turned_m / (kPitch * link.width_m))
                                  : static_cast<int>(kRod);
     const double width =
         link.kind == LinkKind::kSpring && !is_coil ? 0.5 * link.width_m : link.width_m;
-    solid[geometry].push_back(laid_between(link.a_world, link.b_world, width, color));
+    solid[geometry].push_back(laid_between(a, b, width, color));
   }
   for (auto& [geometry, instances] : solid)
     drawing.batches.push_back({geometry, Pass::kSolid, std::move(instances)});

@@ -67,11 +67,12 @@ void Stage::place_scale_bar() {
     return true;
   };
   double best = std::numeric_limits<double>::infinity();
-  const int ci = static_cast<int>(std::lround(scene_.camera.target_m.x() / step)),
-            cj = static_cast<int>(std::lround(scene_.camera.target_m.y() / step));
-  for (int i = ci - 30; i <= ci + 30; ++i) {
-    for (int j = cj - 30; j <= cj + 30; ++j) {
-      const Vector3d from(i * step, j * step, ground_.height_m), to = from + Vector3d(step, 0, 0);
+  const double ci = std::round(scene_.camera.target_m.x() / step),
+               cj = std::round(scene_.camera.target_m.y() / step);
+  for (int i = -30; i <= 30; ++i) {
+    for (int j = -30; j <= 30; ++j) {
+      const Vector3d from((ci + i) * step, (cj + j) * step, ground_.height_m),
+          to = from + Vector3d(step, 0, 0);
       const auto a = project(view, options_.width, options_.height, from),
                  b = project(view, options_.width, options_.height, to);
       if (!a || !b || (*a - *b).norm() < 0.045 * w) continue;
@@ -95,10 +96,12 @@ void Stage::add_scale_bar(Moment& moment) const {
   const Vector3d from = scale_bar_from_ + lift, to = from + Vector3d(scale_bar_m_, 0, 0);
   const double width = 1.6 * metres_per_pixel(moment.drawing.view, options_.height, from);
   const Vector3d tick(0, 3.5 * width, 0);
+  const auto line = [&](const Vector3d& a, const Vector3d& b) {
+    return laid_between(moment.drawing.from_origin(a), moment.drawing.from_origin(b), width,
+                        kBarColor);
+  };
   Batch bar{kTube, Pass::kLine, {}};
-  bar.instances = {laid_between(from, to, width, kBarColor),
-                   laid_between(from - tick, from + tick, width, kBarColor),
-                   laid_between(to - tick, to + tick, width, kBarColor)};
+  bar.instances = {line(from, to), line(from - tick, from + tick), line(to - tick, to + tick)};
   moment.drawing.batches.push_back(bar);
   const auto a = project(moment.drawing.view, options_.width, options_.height, from),
              b = project(moment.drawing.view, options_.width, options_.height, to);
@@ -119,9 +122,9 @@ void Stage::add_path(std::size_t last, Drawing& drawing) const {
   Batch path{kTube, Pass::kLine, {}};
   for (const std::size_t i : moving) {
     const Vector3d color = 0.75 * actors_[i].color;
-    Vector3d from = run_.frames.front().poses[i].com_world;
+    Vector3d from = drawing.from_origin(run_.frames.front().poses[i].com_world);
     for (const std::size_t f : shown) {
-      const Vector3d to = run_.frames[f].poses[i].com_world;
+      const Vector3d to = drawing.from_origin(run_.frames[f].poses[i].com_world);
       if (!to.allFinite() || !((to - from).norm() > 0.5 * width)) continue;
       path.instances.push_back(laid_between(from, to, width, color, 0.55));
       from = to;
@@ -142,8 +145,9 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
     const double length = strength * std::min(0.17 * sight_m(), 2.6 * actor.radius_m);
     if (!(length > 4e-3 * sight_m())) return;
     const Vector3d tip = event.point_world + sign * length * event.normal_b_to_a_world;
-    arrows.instances.push_back(
-        laid_between(event.point_world, tip, length, kImpulseColor, opacity));
+    arrows.instances.push_back(laid_between(drawing.from_origin(event.point_world),
+                                            drawing.from_origin(tip), length, kImpulseColor,
+                                            opacity));
   };
   for (auto event = run_.events.rbegin();
        event != run_.events.rend() && flashes.instances.size() < kMaxFlashes; ++event) {
@@ -154,8 +158,9 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
     const double pixel = metres_per_pixel(drawing.view, options_.height, event->point_world);
     if (!(pixel > 0.0) || !(event->impulse > 0.0)) continue;
     const double radius = (2.5 + 3.5 * (1.0 - opacity)) * pixel * options_.height / 480.0;
-    flashes.instances.push_back(placed(event->point_world, Eigen::Matrix3d::Identity(),
-                                       Vector3d::Constant(radius), kFlashColor, 0.9 * opacity));
+    flashes.instances.push_back(placed(drawing.from_origin(event->point_world),
+                                       Eigen::Matrix3d::Identity(), Vector3d::Constant(radius),
+                                       kFlashColor, 0.9 * opacity));
     add_arrow(*event, event->body_a, 1.0, opacity);
     if (event->body_b >= 0) add_arrow(*event, event->body_b, -1.0, opacity);
   }
@@ -170,7 +175,7 @@ void Stage::add_sheets(Drawing& drawing) const {
   Batch sheets{kPlate, Pass::kGlass, {}};
   for (const effects::DrawnSheet& sheet : drawables_.sheets) {
     const Vector3d middle(scene_.camera.target_m.x(), scene_.camera.target_m.y(), sheet.height_m);
-    sheets.instances.push_back(placed(middle, Eigen::Matrix3d::Identity(),
+    sheets.instances.push_back(placed(drawing.from_origin(middle), Eigen::Matrix3d::Identity(),
                                       Vector3d(half, half, 1.0), sheet.color, kSheetOpacity));
   }
   drawing.batches.push_back(std::move(sheets));
@@ -197,7 +202,8 @@ void Stage::add_forces(const Frame& frame, Moment& moment) const {
                                                (force.point_world - then.com_world));
     const double length = 0.17 * sight_m() * std::sqrt(force.force_world.norm() / strongest);
     const Vector3d tail = tip - length * force.force_world.normalized();
-    arrows.instances.push_back(laid_between(tail, tip, length, kForceColor));
+    arrows.instances.push_back(laid_between(moment.drawing.from_origin(tail),
+                                            moment.drawing.from_origin(tip), length, kForceColor));
     moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_world.norm()), 0.0});
   }
   if (!arrows.instances.empty()) moment.drawing.batches.push_back(std::move(arrows));

@@ -16,12 +16,16 @@ namespace {
 constexpr int kShadowSide = 1024;
 using Matrix4f = Eigen::Matrix4f;  // column-major, as OpenGL needs it
 
-Matrix4f clip_from_world(const View& view, double aspect, double near_m, double far_m) {
+// In matrices and shaders the world's origin is the drawing's.
+Matrix4f clip_from_world(const Drawing& drawing, double aspect) {
+  const View& view = drawing.view;
+  const double near_m = drawing.near_m, far_m = drawing.far_m;
   Eigen::Matrix4d camera_from_world = Eigen::Matrix4d::Identity();
   camera_from_world.block<1, 3>(0, 0) = view.right_world.transpose();
   camera_from_world.block<1, 3>(1, 0) = view.up_world.transpose();
   camera_from_world.block<1, 3>(2, 0) = -view.forward_world.transpose();
-  camera_from_world.block<3, 1>(0, 3) = -camera_from_world.block<3, 3>(0, 0) * view.eye_world;
+  camera_from_world.block<3, 1>(0, 3) =
+      -camera_from_world.block<3, 3>(0, 0) * drawing.from_origin(view.eye_world);
   Eigen::Matrix4d clip_from_camera = Eigen::Matrix4d::Zero();
   clip_from_camera(0, 0) = 1.0 / (view.tan_half_height * aspect);
   clip_from_camera(1, 1) = 1.0 / view.tan_half_height;
@@ -40,7 +44,7 @@ Matrix4f shadow_from_world(const Drawing& drawing) {
   m.block<1, 3>(1, 0) = y.transpose();
   m.block<1, 3>(2, 0) = -z.transpose();
   m.block<3, 3>(0, 0) /= drawing.shadow_radius_m;
-  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * drawing.shadow_centre_world;
+  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * drawing.from_origin(drawing.shadow_centre_world);
   return m.cast<float>();
 }
 
@@ -75,8 +79,7 @@ class Painter::Body {
     gl_.Viewport(0, 0, width_, height_);
     gl_.Disable(gl::kFramebufferSrgb);  // needed for blending only
     gl_.Clear(gl::kColorBufferBit | gl::kDepthBufferBit);
-    const Matrix4f clip = clip_from_world(drawing.view, static_cast<double>(width_) / height_,
-                                          drawing.near_m, drawing.far_m);
+    const Matrix4f clip = clip_from_world(drawing, static_cast<double>(width_) / height_);
     gl_.Enable(gl::kDepthTest);
     // Surfaces are closed, so back faces are never visible. Blending costs more than lighting here:
     // it is enabled only where needed.
@@ -272,8 +275,9 @@ class Painter::Body {
     uniform(ground_, "clip_from_world", clip);
     use_shadow(ground_, shadow);
     const Ground& ground = drawing.ground;
-    uniform(ground_, "centre",
-            to_float({ground.centre_m.x(), ground.centre_m.y(), ground.height_m}));
+    uniform(
+        ground_, "centre",
+        to_float(drawing.from_origin({ground.centre_m.x(), ground.centre_m.y(), ground.height_m})));
     uniform(ground_, "reach", static_cast<float>(ground.fade_m));
     uniform(ground_, "spacing", static_cast<float>(ground.spacing_m));
     uniform(ground_, "picture",
@@ -289,7 +293,7 @@ class Painter::Body {
     uniform(bodies_, "clip_from_world", clip);
     use_shadow(bodies_, shadow);
     const View& view = drawing.view;
-    uniform(bodies_, "eye", to_float(view.eye_world));
+    uniform(bodies_, "eye", to_float(drawing.from_origin(view.eye_world)));
     uniform(bodies_, "to_light", to_float(drawing.to_light_world));
     uniform(bodies_, "to_fill",
             to_float((view.right_world * 0.8 - view.forward_world * 0.6 + view.up_world * 0.1)
@@ -304,7 +308,7 @@ class Painter::Body {
   void draw_unlit(const Drawing& drawing, const Matrix4f& clip, Pass pass) {
     gl_.UseProgram(marks_);
     uniform(marks_, "clip_from_world", clip);
-    uniform(marks_, "eye", to_float(drawing.view.eye_world));
+    uniform(marks_, "eye", to_float(drawing.from_origin(drawing.view.eye_world)));
     for (const Batch& batch : drawing.batches)
       if (batch.pass == pass) draw(batch);
   }

@@ -74,6 +74,8 @@ class Stage {
   void add_sheets(Drawing& drawing) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
   View view_at(const Frame& frame) const;
+  // of a drawing that looks at this point
+  Vector3d origin_near(const Vector3d& seen_world) const;
   TriangleMesh surface(const Actor& actor) const;  // body frame; empty for balls and planes
   double sight_m() const { return (scene_.camera.eye_m - scene_.camera.target_m).norm(); }
 

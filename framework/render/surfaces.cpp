@@ -155,26 +155,26 @@ Geometry unit_rod() {
   return rod;
 }
 
-Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_local,
+Instance placed(const Vector3d& place, const Eigen::Matrix3d& world_from_local,
                 const Vector3d& scale, const Vector3d& color, double opacity) {
   Instance instance{};
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column)
       instance.world_from_local[4 * row + column] =
           static_cast<float>(world_from_local(row, column) * scale[column]);
-    instance.world_from_local[4 * row + 3] = static_cast<float>(origin_world[row]);
+    instance.world_from_local[4 * row + 3] = static_cast<float>(place[row]);
     instance.color[row] = static_cast<float>(color[row]);
   }
   instance.color[3] = static_cast<float>(opacity);
   return instance;
 }
 
-Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width,
-                      const Vector3d& color, double opacity) {
-  const Vector3d along = to_world - from_world;
+Instance laid_between(const Vector3d& from, const Vector3d& to, double width, const Vector3d& color,
+                      double opacity) {
+  const Vector3d along = to - from;
   require(along.norm() > 0.0, "laid_between: the two points coincide");
   const Eigen::Matrix3d turned = shortest_turn(Vector3d::UnitZ(), along).toRotationMatrix();
-  return placed(from_world, turned, {width, width, along.norm()}, color, opacity);
+  return placed(from, turned, {width, width, along.norm()}, color, opacity);
 }
 
 bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world,

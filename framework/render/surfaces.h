@@ -22,15 +22,16 @@ Geometry unit_tube();
 /// The same with caps and more sides.
 Geometry unit_rod();
 
-/// An instance with position, rotation and scale.
+/// An instance with position, rotation and scale. Points are given from the drawing's origin
+/// (Drawing::from_origin), along the world's axes.
 /// @param scale  along the local axes
-Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_local,
+Instance placed(const Vector3d& place, const Eigen::Matrix3d& world_from_local,
                 const Vector3d& scale, const Vector3d& color, double opacity = 1.0);
 /// An instance with its local z axis from one point to another.
 /// @param width  scale across that axis
 /// @pre the points differ
-Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width,
-                      const Vector3d& color, double opacity = 1.0);
+Instance laid_between(const Vector3d& from, const Vector3d& to, double width, const Vector3d& color,
+                      double opacity = 1.0);
 
 /// Whether a body's surface occludes a point from the eye; the result is arbitrary for degenerate
 /// triangles.

@@ -36,6 +36,21 @@ TEST(Picture, SameRunSameBytes) {
 // The run ends at 0.5 s.
 TEST(Picture, FileHasTheTimeOfTheFrameThatIsDrawn) { EXPECT_EQ(png_bytes(99.0), png_bytes(0.5)); }
 
+// 5000 km away, floats are half a metre apart. The shift is a multiple of the strong lines' 5 m, so
+// that the grid is the same.
+TEST(Picture, FarFromTheOriginIsAsNearIt) {
+  scene::Scene scene = falling_ball();
+  Trajectory run = ball_at(2.0);
+  const Image near = make_picture(scene, run, 0.0, small());
+  const Vector3d away(5e6, -5e6, 1e6);
+  scene.camera.eye_m += away;
+  scene.camera.target_m += away;
+  for (Frame& frame : run.frames)
+    for (BodyPose& pose : frame.poses) pose.com_world += away;
+  // Roundings of 1e-9 m change a pixel on an edge here and there: much less than one level.
+  EXPECT_LT(colour_distance(near, make_picture(scene, run, 0.0, small())), 1.0);
+}
+
 TEST(Captions, SuccessiveFramesHaveDifferentTimes) {
   const auto times = [](double spacing_s) {
     Trajectory run = ball_at(2.0);

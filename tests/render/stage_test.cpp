@@ -24,6 +24,31 @@ PictureOptions as_shown() {
   return options;
 }
 
+/// The falling ball with an impulse, and its camera, moved by `shift`.
+struct ShiftedBall {
+  scene::Scene scene = falling_ball();
+  Trajectory run = ball_at(2.0);
+};
+
+ShiftedBall shifted(const Vector3d& shift) {
+  ShiftedBall moved;
+  moved.scene.camera.eye_m += shift;
+  moved.scene.camera.target_m += shift;
+  moved.run.events.push_back(
+      {0.5, EventKind::kCollision, 0, 1, {0, 0, 1.2}, {0, 0, 1}, 1.0, -1.0, 1.0});
+  for (Event& event : moved.run.events) event.point_world += shift;
+  for (Frame& frame : moved.run.frames)
+    for (BodyPose& pose : frame.poses) pose.com_world += shift;
+  return moved;
+}
+
+std::vector<Instance> instances_of(const ShiftedBall& ball) {
+  std::vector<Instance> all;
+  for (const Batch& batch : Stage(ball.scene, ball.run, as_shown()).moment(1).drawing.batches)
+    all.insert(all.end(), batch.instances.begin(), batch.instances.end());
+  return all;
+}
+
 // A low wall across the lower part of the picture, in front of the place where the bar would be
 // without it.
 TEST(Stage, ScaleBarIsWhereNoWallHidesIt) {
@@ -93,6 +118,19 @@ TEST(Stage, WhatIsLookedAtIsSeenHoweverFarABodyGoes) {
     EXPECT_GT(drawing.far_m, std::min(distance, 1e3 * sight)) << distance;
     EXPECT_LE(drawing.far_m, 1e4 * sight) << distance;
   }
+}
+
+// The same motion 5000 km away: its instances are placed as well as at the world's origin.
+TEST(Stage, FarFromTheOriginBodiesAreDrawnAsNearIt) {
+  const Vector3d away(5e6, -5e6, 1e6);  // on a crossing of the grid's lines, which are 1 m apart
+  const auto near = instances_of(shifted(Vector3d::Zero())), far = instances_of(shifted(away));
+  ASSERT_EQ(near.size(), far.size());
+  ASSERT_GT(near.size(), 5u);  // the ball, its path, the bar, the impulse
+  // Doubles at 5e6 m have a spacing of 1e-9 m, floats at 6 m one of 5e-7 m, but 0.5 m at 5e6 m.
+  constexpr float kRoundOff = 2e-6f;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    for (int k = 0; k < 12; ++k)
+      EXPECT_NEAR(near[i].world_from_local[k], far[i].world_from_local[k], kRoundOff);
 }
 
 // A tilt of 0.1 degrees is 9 mm over 5 m: bodies on a floor that is drawn level would penetrate it.
