@@ -1,9 +1,14 @@
 /// Draws a run frame by frame: stage, painter and captions together. Internal to framework/render.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "framework/render/captions.h"
 #include "framework/render/image.h"
 #include "framework/render/painter.h"
+#include "framework/render/picture.h"
 #include "framework/render/stage.h"
 
 namespace tumble::render {
@@ -34,6 +39,8 @@ class FramePainter {
   /// Time of the frame that is drawn for `time_s`.
   double drawn_s(double time_s) const { return run_.frames[stage_.frame_at(time_s)].time; }
   double end_s() const { return run_.frames.back().time; }
+  const CommonScale& scale() const { return stage_.scale(); }
+  void set_scale(const CommonScale& scale) { stage_.set_scale(scale); }
 
  private:
   const scene::Scene& scene_;
@@ -45,6 +52,12 @@ class FramePainter {
   Painter painter_;
   TextWriter writer_;
 };
+
+/// Painters of views side by side: the same impulse has the same length in all of them, and their
+/// grids lie at the same height.
+/// @throws UserError as make_picture
+std::vector<std::unique_ptr<FramePainter>> painters_side_by_side(
+    const scene::Scene& scene, const std::vector<LabelledRun>& runs, const PictureOptions& options);
 
 /// Provenance of this run, for the text chunks of a PNG.
 /// @param time_s  of the drawn frame

@@ -55,6 +55,7 @@ std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t last) {
 // The bar lies between two lines of the grid, at the lower left of the picture, where no immovable
 // body occludes it.
 void Stage::place_scale_bar() {
+  scale_bar_m_ = 0.0;
   if (!ground_.shown || ground_.spacing_m <= 0.0 || followed_ >= 0 || !options_.captions) return;
   const View view = view_of(scene_.camera);
   const double w = options_.width, h = options_.height, step = ground_.spacing_m;
@@ -141,7 +142,7 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
     const Actor& actor = actors_[static_cast<std::size_t>(body)];
     if (actor.immovable) return;
     const double strength =
-        strongest_impulse_ > 0.0 ? std::sqrt(event.impulse / strongest_impulse_) : 1.0;
+        scale_.strongest_impulse > 0.0 ? std::sqrt(event.impulse / scale_.strongest_impulse) : 1.0;
     const double length = strength * std::min(0.17 * sight_m(), 2.6 * actor.radius_m);
     if (!(length > 4e-3 * sight_m())) return;
     const Vector3d tip = event.point_world + sign * length * event.normal_b_to_a_world;

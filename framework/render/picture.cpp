@@ -61,6 +61,19 @@ Image FramePainter::with_words(Wordless painted) const {
   return std::move(painted.image);
 }
 
+std::vector<std::unique_ptr<FramePainter>> painters_side_by_side(
+    const scene::Scene& scene, const std::vector<LabelledRun>& runs,
+    const PictureOptions& options) {
+  std::vector<std::unique_ptr<FramePainter>> painters;
+  CommonScale common;
+  for (const LabelledRun& run : runs) {
+    painters.push_back(std::make_unique<FramePainter>(scene, run.trajectory, options, run.label));
+    common.include(painters.back()->scale());
+  }
+  for (const auto& painter : painters) painter->set_scale(common);
+  return painters;
+}
+
 ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s) {
   return {{"Title", scene.title.empty() ? scene.name : scene.title},
           {"Scene", run.info.scene_name},
@@ -110,13 +123,12 @@ void write_side_by_side_picture(const std::filesystem::path& png, const scene::S
   Image whole(
       static_cast<int>(runs.size()) * options.width + (static_cast<int>(runs.size()) - 1) * kSeam,
       options.height);
-  double drawn_s = 0.0;  // in the view of the first run, whose provenance the file has
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    FramePainter painter(scene, runs[i].trajectory, options, runs[i].label);
-    paste(painter.paint_at(time_s), static_cast<int>(i) * (options.width + kSeam), 0, whole);
-    if (i == 0) drawn_s = painter.drawn_s(time_s);
-  }
-  write_png(png, whole, notes_of(scene, runs.front().trajectory, drawn_s));
+  const auto painters = painters_side_by_side(scene, runs, options);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    paste(painters[i]->paint_at(time_s), static_cast<int>(i) * (options.width + kSeam), 0, whole);
+  // The file has the provenance of the first run.
+  write_png(png, whole,
+            notes_of(scene, runs.front().trajectory, painters.front()->drawn_s(time_s)));
 }
 
 double telling_instant(const Trajectory& run) {

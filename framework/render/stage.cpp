@@ -78,16 +78,22 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
   add_actors(shapes);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     if (scene.camera.follow == scene.bodies[i].name) followed_ = static_cast<int>(i);
-  for (const Event& event : run.events)
-    if (event.kind == EventKind::kCollision)
-      strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
   std::vector<double> radii;
   for (const Actor& actor : actors_) radii.push_back(actor.radius_m);
   drawables_ = effects::drawn(scene);
   links_ = SceneLinks(scene, run.frames.front(), sight_m(), radii);
   find_extent();
-  lay_ground();
   turn_walls_to_glass();
+  CommonScale alone;
+  for (const Event& event : run.events)
+    if (event.kind == EventKind::kCollision) alone.include({.strongest_impulse = event.impulse});
+  alone.include({.lowest_m = extent_.min().z()});
+  set_scale(alone);
+}
+
+void Stage::set_scale(const CommonScale& scale) {
+  scale_ = scale;
+  lay_ground();
   place_scale_bar();
 }
 
@@ -178,7 +184,7 @@ void Stage::lay_ground() {
   // A grid without a floor is only a scale: it lies below everything, so that no body seems to
   // penetrate it.
   else if (followed_ < 0)
-    ground_.height_m = std::min(ground_.height_m, extent_.min().z());
+    ground_.height_m = std::min(ground_.height_m, scale_.lowest_m);
   ground_.fade_m = 2.6 * sight_m();
 }
 

@@ -2,6 +2,8 @@
 /// OpenGL.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,10 +46,26 @@ struct Moment {
   std::vector<Label> labels;  // forces, the scale of the grid
 };
 
+/// What views side by side have in common, so that lengths and heights can be compared.
+struct CommonScale {
+  double strongest_impulse = 0.0;                             // of all collisions [N s]
+  double lowest_m = std::numeric_limits<double>::infinity();  // point of all bodies, by world z
+
+  void include(const CommonScale& other) {
+    strongest_impulse = std::max(strongest_impulse, other.strongest_impulse);
+    lowest_m = std::min(lowest_m, other.lowest_m);
+  }
+};
+
 class Stage {
  public:
   /// @throws UserError when the run is of another scene or has no frame
   Stage(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options);
+
+  /// That of this run alone, until another one is set.
+  const CommonScale& scale() const { return scale_; }
+  /// The length of arrows of impulses, and the height of a grid without a floor, follow from it.
+  void set_scale(const CommonScale& scale);
 
   const std::vector<Geometry>& geometries() const { return geometries_; }
   /// Index of the last frame that is not later than `time_s`.
@@ -93,8 +111,8 @@ class Stage {
   int floor_ = -1;  // the body whose plane is the ground
   int followed_ = -1;
   Vector3d scale_bar_from_ = Vector3d::Zero();
-  double scale_bar_m_ = 0.0;        // its length; 0: none
-  double strongest_impulse_ = 0.0;  // [N s]
+  double scale_bar_m_ = 0.0;  // its length; 0: none
+  CommonScale scale_;
 };
 
 }  // namespace tumble::render

@@ -39,12 +39,9 @@ std::vector<double> instants(double end_s, const PictureOptions& options) {
 void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene,
                               const std::vector<LabelledRun>& runs, const PictureOptions& options) {
   if (runs.empty()) throw UserError(mp4.string(), "there is no run to draw", "Give at least one.");
-  std::vector<std::unique_ptr<FramePainter>> painters;
+  const auto painters = painters_side_by_side(scene, runs, options);
   double end = 0.0;
-  for (const LabelledRun& run : runs) {
-    painters.push_back(std::make_unique<FramePainter>(scene, run.trajectory, options, run.label));
-    end = std::max(end, painters.back()->end_s());
-  }
+  for (const auto& painter : painters) end = std::max(end, painter->end_s());
   const int count = static_cast<int>(runs.size());
   Image whole(count * options.width + (count - 1) * kViewSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {

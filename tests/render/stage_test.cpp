@@ -149,6 +149,58 @@ TEST(Stage, OnlyALevelFloorIsDrawnAsTheGround) {
   EXPECT_FALSE(has_ground(2.0));
 }
 
+Trajectory with_impulse(Trajectory run, double impulse) {
+  run.events.push_back(
+      {0.5, EventKind::kCollision, 0, 1, {0, 0, 1.2}, {0, 0, 1}, impulse, -1.0, 1.0});
+  return run;
+}
+
+// The length of an arrow goes with the square root of its impulse.
+TEST(Stage, ArrowsOfRunsSideBySideCanBeCompared) {
+  const scene::Scene scene = falling_ball();
+  const Trajectory weak = with_impulse(ball_at(2.0), 1.0), strong = with_impulse(ball_at(2.0), 4.0);
+  Stage of_weak(scene, weak, as_shown()), of_strong(scene, strong, as_shown());
+  const auto length = [](const Stage& stage) {
+    for (const Batch& batch : stage.moment(1).drawing.batches)
+      if (batch.geometry == kArrow) {
+        const float* m = batch.instances.at(0).world_from_local;
+        return Vector3d(m[2], m[6], m[10]).norm();
+      }
+    return 0.0;
+  };
+  constexpr double kRoundOff = 1e-6;  // of single precision, below 1 m
+  ASSERT_GT(length(of_weak), 0.1);
+  EXPECT_NEAR(length(of_weak), length(of_strong), kRoundOff) << "each alone: the longest arrow";
+  CommonScale common = of_weak.scale();
+  common.include(of_strong.scale());
+  of_weak.set_scale(common);
+  of_strong.set_scale(common);
+  EXPECT_NEAR(2 * length(of_weak), length(of_strong), kRoundOff);
+}
+
+// A grid without a floor lies below everything that any of the runs shows.
+TEST(Stage, GridsOfRunsSideBySideLieAtOneHeight) {
+  scene::Scene scene = falling_ball();
+  scene.bodies.pop_back();
+  scene.grid_spacing_m = 0.5;
+  const auto without_floor = [](double height) {
+    Trajectory run = ball_at(height);
+    run.bodies.pop_back();
+    for (Frame& frame : run.frames) frame.poses.pop_back();
+    return run;
+  };
+  const Trajectory high = without_floor(2.0), low = without_floor(-1.0);
+  Stage of_high(scene, high, as_shown()), of_low(scene, low, as_shown());
+  const auto height = [](const Stage& stage) { return stage.moment(0).drawing.ground.height_m; };
+  CommonScale common = of_high.scale();
+  common.include(of_low.scale());
+  of_high.set_scale(common);
+  of_low.set_scale(common);
+  // falls from -1 m to -1.5 m, with a radius of 0.3 m; a few roundings
+  EXPECT_NEAR(height(of_low), -1.8, 1e-12);
+  EXPECT_EQ(height(of_high), height(of_low));
+}
+
 // A ball moves along x and reverses after 1003 steps; the path shows every twelfth of 2006 frames,
 // and the corner too.
 TEST(Stage, PathHasTheCornersOfTheMotion) {

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/render/frame_painter.h"
 #include "framework/render/picture.h"
 #include "tests/render/render_fixtures.h"
 
@@ -82,6 +83,20 @@ TEST_F(Pictures, SideBySideIsAsWideAsBothAndEachSideShowsItsRun) {
   write_side_by_side_picture(folder_ / "other.png", falling_ball(), {{high, ""}, {low, ""}}, 0.0,
                              options);
   EXPECT_NE(bytes_of(folder_ / "same.png"), bytes_of(folder_ / "other.png"));
+}
+
+TEST_F(Pictures, ViewsSideBySideHaveTheScaleOfAllRuns) {
+  Trajectory weak = ball_at(2.0), strong = ball_at(1.0);
+  for (auto& [run, impulse] : {std::pair<Trajectory&, double>(weak, 1.0), {strong, 4.0}})
+    run.events.push_back(
+        {0.5, EventKind::kCollision, 0, 1, {0, 0, 0.2}, {0, 0, 1}, impulse, -1.0, 1.0});
+  const auto painters =
+      painters_side_by_side(falling_ball(), {{weak, "submission"}, {strong, "reference"}}, small());
+  ASSERT_EQ(painters.size(), 2u);
+  for (const auto& painter : painters) {
+    EXPECT_EQ(painter->scale().strongest_impulse, 4.0);
+    EXPECT_EQ(painter->scale().lowest_m, 0.5 - 0.3);  // of the lower run, at its end
+  }
 }
 
 TEST_F(Pictures, ContactSheetIsAGridOfHalfSizeViews) {

@@ -289,6 +289,23 @@ TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
             std::string::npos);
 }
 
+TEST_F(PlayerInBrowser, TwoRunsAreDrawnToOneScale) {
+  Trajectory wrong = thrown_run();
+  wrong.events[0].impulse = 9.0;
+  wrong.frames.back().poses[0].com_world.z() = -5.0;
+  const std::string script = R"(
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const stages = tumble.picture.stages;
+      document.body.dataset.found = [...stages.map(s => s.marks.strongest.impulse.toFixed(3)),
+        ...stages.map(s => s.lowest.toFixed(3))].join(' '); };
+    wait();)";
+  const std::string elements = browser.elements(browser.serve(
+      player_page(thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}}), script));
+  EXPECT_EQ(body_data(elements, "error"), "");
+  // the stronger impulse; the lower end, less the ball's radius
+  EXPECT_EQ(body_data(elements, "found"), "9.000 9.000 -5.250 -5.250");
+}
+
 TEST_F(PlayerInBrowser, ARunThatStoppedIsNotCalledTheSame) {
   Trajectory stopped = thrown_run();
   stopped.frames.resize(13);

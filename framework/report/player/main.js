@@ -38,7 +38,7 @@ class Picture {
     this.renderer.setScissorTest(true);
     if (isSoftware) player.shown.shadows = false;
     this.ratio = this.fullRatio = this.playRatio = Math.min(2, window.devicePixelRatio || 1);
-    this.stages = player.runs.map(run => new Stage(player.about, run));
+    this.stages = player.runs.map(run => new Stage(player.about, run, player.runs));
     const first = this.stages[0];
     this.camera = new THREE.PerspectiveCamera(player.about.camera.fov, 1, 0.01 * first.sight, 40 * first.sight + 2 * first.extent.getSize(new THREE.Vector3()).length());
     this.camera.up.set(0, 0, 1);

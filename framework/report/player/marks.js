@@ -48,9 +48,9 @@ function laidBetween(from, to, width) {
 
 function ballAt(point, radius) { return new THREE.Matrix4().compose(point, new THREE.Quaternion(), new THREE.Vector3(radius, radius, radius)); }
 
-// Marks of one run.
+// Marks of one run. @param runs  all that are shown: the strongest of them sets the scale
 class Marks {
-  constructor(scene, run, about, sight) {
+  constructor(scene, run, about, sight, runs) {
     this.run = run;
     this.about = about;
     this.sight = sight;
@@ -61,9 +61,11 @@ class Marks {
     this.dots = new Pool(scene, ball, kColors.contact);
     this.supports = new Pool(scene, arrow, kColors.contact);
     this.strongest = { impulse: 0, contact: 0, force: 0 };
-    for (let i = 0; i < run.events.count; ++i) if (run.events.kind[i] === kCollision) this.strongest.impulse = Math.max(this.strongest.impulse, run.events.impulse[i]);
-    const f = run.contacts.slice(5);
-    for (let i = 0; i < run.head.contacts; ++i) this.strongest.contact = Math.max(this.strongest.contact, Math.hypot(f[0][i], f[1][i], f[2][i]));
+    for (const { events, contacts, head } of runs) {
+      for (let i = 0; i < events.count; ++i) if (events.kind[i] === kCollision) this.strongest.impulse = Math.max(this.strongest.impulse, events.impulse[i]);
+      const f = contacts.slice(5);
+      for (let i = 0; i < head.contacts; ++i) this.strongest.contact = Math.max(this.strongest.contact, Math.hypot(f[0][i], f[1][i], f[2][i]));
+    }
     for (const push of about.forces) this.strongest.force = Math.max(this.strongest.force, Math.hypot(...push.force));
     this.path = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: new THREE.Color(kColors.path).convertGammaToLinear(2.2) }));
     this.path.frustumCulled = false;

@@ -5,9 +5,11 @@ const kLevel = 1 - 1e-8;   // cosine: within 0.008 degrees of level a plane is t
 let kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd;   // a page that follows the dark scheme has others
 
 class Stage {
-  constructor(about, run) {
+  // @param runs  all that are shown: arrows have one scale, and grids one height
+  constructor(about, run, runs = [run]) {
     this.about = about;
     this.run = run;
+    this.runs = runs;
     this.eye = new THREE.Vector3(...about.camera.eye);
     this.target = new THREE.Vector3(...about.camera.target);
     this.sight = this.eye.distanceTo(this.target);
@@ -21,7 +23,7 @@ class Stage {
     this.addBodies();
     this.addLight();
     this.addGround();
-    this.marks = new Marks(this.scene, run, about, this.sight);
+    this.marks = new Marks(this.scene, run, about, this.sight, runs);
     this.addLinks();
     this.addSheets();
     this.addOutline();
@@ -36,17 +38,21 @@ class Stage {
     });
   }
 
-  // Extent of all finite bodies over the run.
   findExtent() {
-    this.extent = new THREE.Box3();
-    const frames = this.run.times.length, stride = Math.max(1, Math.floor(frames / 100));
+    this.extent = this.extentOf(this.run);
+    this.lowest = Math.min(...this.runs.map(run => (run === this.run ? this.extent : this.extentOf(run)).min.z));
+  }
+
+  // Extent of all finite bodies over a run.
+  extentOf(run) {
+    const extent = new THREE.Box3(), frames = run.times.length, stride = Math.max(1, Math.floor(frames / 100));
     this.about.bodies.forEach((body, i) => {
       if (body.radius === null) return;
-      const r = new THREE.Vector3().setScalar(body.radius), last = this.run.moving.has(i) ? frames : 1;
+      const r = new THREE.Vector3().setScalar(body.radius), last = run.moving.has(i) ? frames : 1;
       for (let k = 0; k < last; k += stride)
-        if (this.run.pose(i, { k, part: 0 }, this.place, this.turn)) this.extent.expandByPoint(this.place.clone().add(r)).expandByPoint(this.place.clone().sub(r));
+        if (run.pose(i, { k, part: 0 }, this.place, this.turn)) extent.expandByPoint(this.place.clone().add(r)).expandByPoint(this.place.clone().sub(r));
     });
-    if (this.extent.isEmpty()) this.extent.expandByPoint(this.target);
+    return extent.isEmpty() ? extent.expandByPoint(this.target) : extent;
   }
 
   // Bodies with equal geometry, colour and opacity are drawn by one call.
@@ -124,7 +130,7 @@ class Stage {
     const decade = Math.pow(10, Math.floor(Math.log10(sight / 12))), spacing = given || [1, 2, 5, 10].map(x => x * decade).find(x => x >= sight / 12 * (1 - 1e-9));
     let height = this.about.grid.height;
     if (this.floor >= 0) height = (this.run.pose(this.floor, { k: 0, part: 0 }, this.place, this.turn), this.place.z);
-    else if (this.about.camera.follow < 0) height = Math.min(height, this.extent.min.z);
+    else if (this.about.camera.follow < 0) height = Math.min(height, this.lowest);
     this.spacing = spacing;
     const sky = new THREE.Color(kSky).convertGammaToLinear(2.2), line = new THREE.Color(kLine).convertGammaToLinear(2.2), floor = new THREE.Color(kFloor).convertGammaToLinear(2.2);
     const cx = Math.round(this.target.x / spacing) * spacing, cy = Math.round(this.target.y / spacing) * spacing, reach = 2.6 * sight;
