@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/render/path.h"
 #include "framework/render/stage.h"
 #include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
@@ -18,37 +19,16 @@ constexpr double kFlashSeconds = 0.22;
 constexpr double kForceLinger = 0.12;
 constexpr std::size_t kMaxFlashes = 40;  // the latest; more would hide the bodies
 constexpr std::size_t kMaxPaths = 6;     // moving bodies; more paths would be confusing
-constexpr std::size_t kPathSegments = 160;
-// the first ones; later bounces of a settling ball are too small to see
-constexpr int kMaxCorners = 200;
+// of a body's path: the last ones; all of a longer path would cover the picture, and take its time
+constexpr std::ptrdiff_t kMaxPathPieces = 1000;
+// pixels at the camera's target: no frame is farther than half a pixel from its path
+constexpr double kPathSlack = 0.3;
 const Vector3d kImpulseColor(0.72, 0.10, 0.01);
 const Vector3d kFlashColor(1.0, 0.78, 0.22);
 const Vector3d kForceColor(0.45, 0.02, 0.20);
 constexpr double kSheetReach = 2.6;  // of the sight
 constexpr double kSheetOpacity = 0.35;
 const Vector3d kBarColor(0.03, 0.05, 0.07);
-
-// Frames through which a path is drawn: a subset of all, and those before and after each impact, so
-// that corners stay sharp.
-std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t last) {
-  std::vector<std::size_t> frames;
-  const std::size_t stride = std::max<std::size_t>(1, run.frames.size() / kPathSegments);
-  for (std::size_t f = stride; f < last; f += stride) frames.push_back(f);
-  int corners = 0;
-  for (const Event& event : run.events) {
-    if (event.kind != EventKind::kCollision || ++corners > kMaxCorners) continue;
-    const auto after =
-        std::lower_bound(run.frames.begin(), run.frames.end(), event.time,
-                         [](const Frame& frame, double time) { return frame.time < time; });
-    const auto f = static_cast<std::size_t>(after - run.frames.begin());
-    if (f > 0 && f - 1 <= last) frames.push_back(f - 1);
-    if (f <= last) frames.push_back(f);
-  }
-  frames.push_back(last);
-  std::sort(frames.begin(), frames.end());
-  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
-  return frames;
-}
 
 }  // namespace
 
@@ -111,27 +91,41 @@ void Stage::add_scale_bar(Moment& moment) const {
   moment.labels.push_back({0.5 * (from + to), fmt::format("{:g} m", scale_bar_m_), slant});
 }
 
-void Stage::add_path(std::size_t last, Drawing& drawing) const {
+void Stage::find_paths() {
+  if (!options_.paths) return;
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < actors_.size(); ++i)
     if (!actors_[i].immovable) moving.push_back(i);
-  if (moving.empty() || moving.size() > kMaxPaths) return;
-  const std::vector<std::size_t> shown = path_frames(run_, last);
+  if (moving.size() > kMaxPaths) return;
+  const double slack = kPathSlack * metres_per_pixel(view_of(scene_.camera), options_.height,
+                                                     scene_.camera.target_m);
+  for (const std::size_t i : moving) paths_.push_back({i, path_frames(run_, i, slack)});
+}
+
+void Stage::add_paths(std::size_t last, Drawing& drawing) const {
   const double width =
       0.9 * metres_per_pixel(drawing.view, options_.height,
                              drawing.view.eye_world + sight_m() * drawing.view.forward_world);
-  Batch path{kTube, Pass::kLine, {}};
-  for (const std::size_t i : moving) {
-    const Vector3d color = 0.75 * actors_[i].color;
-    Vector3d from = drawing.from_origin(run_.frames.front().poses[i].com_world);
-    for (const std::size_t f : shown) {
-      const Vector3d to = drawing.from_origin(run_.frames[f].poses[i].com_world);
-      if (!to.allFinite() || !((to - from).norm() > 0.5 * width)) continue;
-      path.instances.push_back(laid_between(from, to, width, color, 0.55));
-      from = to;
+  Batch pieces{kTube, Pass::kLine, {}};
+  for (const Path& path : paths_) {
+    const auto place = [&](std::size_t frame) -> const Vector3d& {
+      return run_.frames[frame].poses[path.body].com_world;
+    };
+    std::size_t tip = last;  // the last finite frame
+    while (tip > 0 && !place(tip).allFinite()) --tip;
+    auto end = std::lower_bound(path.frames.begin(), path.frames.end(), tip);
+    if (end == path.frames.begin()) continue;
+    std::vector<std::size_t> shown(end - std::min(kMaxPathPieces, end - path.frames.begin()), end);
+    shown.push_back(tip);
+    for (std::size_t k = 1; k < shown.size(); ++k) {
+      const Vector3d from = drawing.from_origin(place(shown[k - 1])),
+                     to = drawing.from_origin(place(shown[k]));
+      if (!((to - from).norm() > 0.0)) continue;
+      pieces.instances.push_back(
+          laid_between(from, to, width, 0.75 * actors_[path.body].color, 0.55));
     }
   }
-  if (!path.instances.empty()) drawing.batches.push_back(std::move(path));
+  if (!pieces.instances.empty()) drawing.batches.push_back(std::move(pieces));
 }
 
 void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {

@@ -89,6 +89,7 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
     if (event.kind == EventKind::kCollision) alone.include({.strongest_impulse = event.impulse});
   alone.include({.lowest_m = extent_.min().z()});
   set_scale(alone);
+  find_paths();
 }
 
 void Stage::set_scale(const CommonScale& scale) {
@@ -276,7 +277,7 @@ Moment Stage::moment(std::size_t index) const {
   add_bodies(frame, drawing);
   add_sheets(drawing);
   draw_links(links_.at(frame), options_.height, drawing);
-  if (options_.paths) add_path(index, drawing);
+  add_paths(index, drawing);
   add_scale_bar(moment);
   if (options_.marks) {
     add_impacts(frame, drawing);

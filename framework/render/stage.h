@@ -77,6 +77,11 @@ class Stage {
   bool has_scale_bar() const { return scale_bar_m_ > 0.0; }
 
  private:
+  struct Path {
+    std::size_t body;
+    std::vector<std::size_t> frames;  // see path.h
+  };
+
   void add_actors(const std::vector<Shape>& shapes);
   void add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index);
   int geometry_of(const TriangleMesh& mesh);
@@ -84,10 +89,11 @@ class Stage {
   void lay_ground();
   void turn_walls_to_glass();
   void place_scale_bar();
+  void find_paths();
 
   void add_bodies(const Frame& frame, Drawing& drawing) const;
   void add_scale_bar(Moment& moment) const;
-  void add_path(std::size_t frame, Drawing& drawing) const;
+  void add_paths(std::size_t last, Drawing& drawing) const;
   void add_forces(const Frame& frame, Moment& moment) const;
   void add_sheets(Drawing& drawing) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
@@ -104,6 +110,7 @@ class Stage {
   // of geometries_ from kFirstMesh on, to find models that are used twice
   std::vector<TriangleMesh> meshes_;
   std::vector<Actor> actors_;  // by body index
+  std::vector<Path> paths_;    // of moving bodies, where there are few
   SceneLinks links_;
   effects::Drawables drawables_;
   Eigen::AlignedBox3d extent_;  // of all finite bodies, over the run

@@ -201,11 +201,41 @@ TEST(Stage, GridsOfRunsSideBySideLieAtOneHeight) {
   EXPECT_EQ(height(of_high), height(of_low));
 }
 
-// A ball moves along x and reverses after 1003 steps; the path shows every twelfth of 2006 frames,
-// and the corner too.
+// A ball swings for longer than a path can show: the end of its motion is drawn, where it was.
+TEST(Stage, PathOfALongRunStaysWhereTheBodyWas) {
+  constexpr double kRadius = 0.5, kTurnPerFrame = 0.0613;  // m, rad: a turn has 102.5 frames
+  const scene::Scene scene = falling_ball();
+  Trajectory run = ball_at(1.0);
+  const Frame first = run.frames.front();
+  run.frames.assign(20000, first);
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const double angle = kTurnPerFrame * static_cast<double>(i);
+    run.frames[i].time = static_cast<double>(i);
+    run.frames[i].poses[0].com_world = {kRadius * std::cos(angle), 0,
+                                        1 + kRadius * std::sin(angle)};
+  }
+  const double pixel =
+      metres_per_pixel(view_of(scene.camera), as_shown().height, scene.camera.target_m);
+  PictureOptions options = as_shown();
+  options.captions = false;  // without the scale bar, which has tubes too
+  std::size_t pieces = 0;
+  for (const Batch& batch :
+       Stage(scene, run, options).moment(run.frames.size() - 1).drawing.batches)
+    for (const Instance& piece : batch.instances) {
+      if (batch.geometry != kTube) continue;
+      const float* m = piece.world_from_local;
+      const Vector3d middle(m[3] + 0.5 * m[2], m[7] + 0.5 * m[6], m[11] + 0.5 * m[10]);
+      EXPECT_NEAR((middle - Vector3d(0, 0, 1)).norm(), kRadius, 0.5 * pixel);
+      ++pieces;
+    }
+  EXPECT_GE(pieces, 500u);
+  EXPECT_LE(pieces, 1000u);
+}
+
+// A ball moves along x and reverses after 1003 steps; the path has the corner.
 TEST(Stage, PathHasTheCornersOfTheMotion) {
-  constexpr int kCorner = 1003;  // not a multiple of the stride of frames
-  // m: more than the width of a line, below which a path is simplified
+  constexpr int kCorner = 1003;
+  // m: more than the third of a pixel by which a path may deviate
   constexpr double kStride = 1e-2;
   const scene::Scene scene = falling_ball();
   Trajectory run = ball_at(1.0);
@@ -228,7 +258,7 @@ TEST(Stage, PathHasTheCornersOfTheMotion) {
           farthest =
               std::max({farthest, double(piece.world_from_local[3]),
                         double(piece.world_from_local[3]) + double(piece.world_from_local[2])});
-  // Single precision at 10 m; without the frames at the corner the result would be 5e-2 m less.
+  // Single precision at 10 m; without the frame at the corner the result would be 1e-2 m less.
   EXPECT_NEAR(farthest, kStride * kCorner, 1e-5);
 }
 
