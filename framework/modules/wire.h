@@ -132,11 +132,13 @@ class Reader {
                          rows == static_cast<std::uint32_t>(T::RowsAtCompileTime)) &&
                         (T::ColsAtCompileTime == Eigen::Dynamic ||
                          cols == static_cast<std::uint32_t>(T::ColsAtCompileTime));
-      const std::uint64_t size = std::uint64_t{rows} * cols * sizeof(typename T::Scalar);
-      if (!fits || size > static_cast<std::uint64_t>(end_ - at_))
+      // by division: the product of both and of the size of a number may not fit into 64 bits
+      const std::uint64_t most =
+          static_cast<std::uint64_t>(end_ - at_) / sizeof(typename T::Scalar);
+      if (!fits || (cols != 0 && rows > most / cols))
         throw WireError("a matrix of an impossible size");
       x.resize(rows, cols);
-      raw(x.data(), size);
+      raw(x.data(), std::uint64_t{rows} * cols * sizeof(typename T::Scalar));
     } else {
       static_assert(std::is_aggregate_v<T>);
       boost::pfr::for_each_field(x, [this](auto& field) { value(field); });

@@ -95,6 +95,19 @@ TEST(Wire, CountsThatTheMessageCannotHoldAllocateNothing) {
   EXPECT_LT(text.capacity() + list.capacity(), 100u);
 }
 
+// 2^31 x 2^30 numbers of 8 bytes are 2^64 bytes, which 64 bits hold as 0.
+TEST(Wire, MatrixWhoseSizeDoesNotFitInto64BitsIsRefused) {
+  for (const auto& [rows, cols] : {std::pair{1U << 31, 1U << 30}, {1U << 30, 1U << 31}}) {
+    modules::Writer writer;
+    writer.value(std::uint32_t{rows});
+    writer.value(std::uint32_t{cols});
+    modules::Reader reader(writer.bytes);
+    Eigen::MatrixXd matrix;
+    EXPECT_THROW(reader.value(matrix), modules::WireError) << rows << " x " << cols;
+    EXPECT_EQ(matrix.size(), 0);
+  }
+}
+
 TEST(Wire, MutatedMessagesAreReadOrRefusedAndNeverCrash) {
   const Bytes right = bytes_of(sample());
   std::mt19937 random(7);
