@@ -406,6 +406,19 @@ TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
   }
 }
 
+// A row of more bodies than are compared pair by pair in a frame (200), none of which has a size.
+TEST(Engines, MeasureTheSmallestGapOfManyPointMasses) {
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < 201; ++i)
+    bodies.push_back(ball("point" + std::to_string(i), 0.0, 1.0, {0.125 * i, 0, 0}, {0, 0, 1}));
+  for (const char* engine : kEventEngines) {
+    const Trajectory run = run_by(engine, scene_of(bodies, 0.02), {}, 100.0);
+    ASSERT_EQ(run.frames.size(), 3U) << engine;
+    // exact: differences of multiples of 1/8
+    for (const Frame& frame : run.frames) EXPECT_EQ(frame.smallest_gap, 0.125) << engine;
+  }
+}
+
 // Islands with their own local virtual times have no common step at whose end they could fall
 // asleep.
 TEST(Engines, RefuseSleepAndSaySo) {

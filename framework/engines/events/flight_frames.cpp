@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kFew = 200;  // movable bodies: up to this number every pair is checked
 // of the largest movable body's radius: the first margin of boxes where there are many
 constexpr double kFirstReach = 0.05;
+// m: where all are point masses; it grows until it is enough, so its size is no matter
+constexpr double kFirstReachOfPoints = 1e-3;
 
 double smaller_gap(const FlightWorld& world, const std::vector<RigidBodyState>& states, int i,
                    int j, double smallest) {
@@ -35,7 +37,7 @@ double smaller_gap(const FlightWorld& world, const std::vector<RigidBodyState>& 
 double gap_of_many(const FlightWorld& world, const std::vector<RigidBodyState>& states) {
   double largest = 0.0;
   for (const int i : world.movers()) largest = std::max(largest, world.radius(i));
-  for (double reach = kFirstReach * largest;; reach *= 4) {
+  for (double reach = largest > 0 ? kFirstReach * largest : kFirstReachOfPoints;; reach *= 4) {
     std::vector<collision::SweptBox> boxes;
     for (int i = 0; i < world.size(); ++i) {
       const Vector3d half = Vector3d::Constant(world.radius(i) + 0.5 * reach);
