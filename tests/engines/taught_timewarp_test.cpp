@@ -223,6 +223,21 @@ TEST(TaughtTimewarp, StopsWhereNothingBecomesCertain) {
   EXPECT_NE(stop_of(laws).find("still stands"), std::string::npos);
 }
 
+// A row of balls that fly along it side by side, each over the whole row in one step: all pairs are
+// due for a check in it, and nothing is certain before all of these are done.
+TEST(TaughtTimewarp, TakesManyChecksThatAreDueAtOnce) {
+  constexpr int kBalls = 205;  // 20910 pairs
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < kBalls; ++i)
+    bodies.push_back(
+        ball("ball" + std::to_string(i), 0.001, 1.0, {0.004 * i, 0, 0}, {100.0, 0, 0}));
+  scene::Scene scene = scene_of(std::move(bodies), 0.01);
+  scene.step_s = 0.01;
+  const Trajectory run = run_taught(scene, taught_laws());
+  EXPECT_EQ(run.stopped_by, "");
+  EXPECT_GE(run.counters.counts.at("pair_checks"), 20910U);
+}
+
 // For any answer, the run ends with a message.
 TEST(TaughtTimewarp, ToleratesAnyAnswer) {
   const std::vector<double> odd{-1.0, 0.0, 0.3, 1e9, kInfinity, -kInfinity, kUnset};

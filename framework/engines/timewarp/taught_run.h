@@ -62,6 +62,7 @@ class TaughtTimewarp {
   }
 
   void loop();
+  std::size_t most_events_at_one_gvt() const;
   void work_at(int id);
   void redraw(int id);
   const KeptState& state_at(int body, double t);

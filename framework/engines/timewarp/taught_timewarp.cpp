@@ -14,8 +14,10 @@ namespace {
 // with at most this number global virtual time is computed after every event; with more, once per
 // as many events as processes
 constexpr std::size_t kFewProcesses = 4;
-// after which a run in which nothing becomes certain is stopped
-constexpr std::size_t kMostEventsAtOneGvt = 20000;
+// Events after which a run in which nothing becomes certain is stopped: at least so many, and in a
+// large scene so many a check that may be due (of a pair, a group) and a process: in one step each
+// of them has a few, and global virtual time rises when the last of them is done.
+constexpr std::size_t kFewestEventsAtOneGvt = 20000, kEventsOfACheckAtOneGvt = 20;
 
 }  // namespace
 
@@ -66,16 +68,21 @@ void TaughtTimewarp::loop() {
       continue;
     }
     work_at(*id);
-    if (++since_gvt_ > kMostEventsAtOneGvt)
+    if (++since_gvt_ > most_events_at_one_gvt())
       throw StoppedRun(
           fmt::format("{} events were executed and global virtual time still stands at {:.9g} s. "
                       "Likely: it is not the least of all local times and safe times, or a check "
                       "returns to the queue at a time at which it was already",
-                      kMostEventsAtOneGvt, gvt_));
+                      since_gvt_ - 1, gvt_));
     if (++since_asked_ >= (world().movers().size() <= kFewProcesses ? 1 : world().movers().size()))
       look_at_gvt(false);
   }
   look_at_gvt(true);
+}
+
+std::size_t TaughtTimewarp::most_events_at_one_gvt() const {
+  return std::max(kFewestEventsAtOneGvt, kEventsOfACheckAtOneGvt * (pairs_.size() + groups_.size() +
+                                                                    world().movers().size()));
 }
 
 void TaughtTimewarp::work_at(int id) {
