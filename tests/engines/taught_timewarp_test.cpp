@@ -190,6 +190,25 @@ TEST(TaughtTimewarp, StopsWhereAnImpactIsLost) {
   EXPECT_NE(stop.find("is missing: expected"), std::string::npos) << stop;
 }
 
+// The law of impulses fails once, in the reference, which runs first: what comes later is compared
+// with nothing.
+TEST(TaughtTimewarp, SaysWhereTheReferenceStoppedAndNotThatAllIsItsOwn) {
+  Laws laws = taught_laws();
+  int left = 10;
+  laws.collision_impulse = [right = laws.collision_impulse, &left](const Contact& contact,
+                                                                   const Body& a, const Body& b,
+                                                                   double restitution) {
+    return --left == 0 ? kUnset : right(contact, a, b, restitution);
+  };
+  // a hundred impacts and more: CommitsTheReferencesTrace
+  const Trajectory run = run_taught(sized("gas", 30, 2.0), laws);
+  ASSERT_LT(left, 0);
+  EXPECT_TRUE(run.stopped_by.starts_with("the ordered reference stopped: ")) << run.stopped_by;
+  EXPECT_GT(run.events.size(), 10U);
+  for (const std::string& notice : run.counters.notices)
+    EXPECT_EQ(notice.find("committed trace"), std::string::npos) << notice;
+}
+
 TEST(TaughtTimewarp, StopsWhereAnAntiMessageIsMissing) {
   Laws laws = taught_laws();
   laws.scheduling.plan_rollback = [](const std::vector<Effect>&,

@@ -48,6 +48,8 @@ void TaughtTimewarp::run() {
   } catch (const StoppedRun& stop) {
     stopped_by = stop.what();
   }
+  if (stopped_by.empty() && !watch_.stop_of_reference().empty())
+    stopped_by = "the ordered reference stopped: " + watch_.stop_of_reference();
   sink_.virtual_times(times_);
   if (stopped_by.empty())
     run_.counters.notices.push_back(

@@ -23,6 +23,9 @@ class TraceWatch final : public PassingSink {
   /// Why the run is incomplete although it ended: an event of the reference is missing. Empty: none
   /// is.
   std::string missing() const;
+  /// Why the reference ended before the end of the run, so that what came later was compared with
+  /// nothing. Empty: it did not.
+  const std::string& stop_of_reference() const { return reference_.stopped_by; }
   std::size_t events() const { return events_; }
 
  private:
