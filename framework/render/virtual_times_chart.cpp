@@ -162,8 +162,10 @@ class Chart {
                    ? fmt::format("{} back from {:.4g} to {:.4g} s", name, move.from_s, move.to_s)
                    : fmt::format("{} forgets {:.4g} s", name, move.to_s));
     }
-    return fmt::format("After move {}, GVT {:.4g} s{}{}", until, gvt, back.empty() ? "" : ": ",
-                       back);
+    const std::string of_all =
+        times_.is_cut ? fmt::format(" of the first {}", times_.moves.size()) : "";
+    return fmt::format("After move {}{}, GVT {:.4g} s{}{}", until, of_all, gvt,
+                       back.empty() ? "" : ": ", back);
   }
 
   std::vector<double> ticks() const {
@@ -201,7 +203,8 @@ void write_virtual_times_chart(const std::filesystem::path& png, const VirtualTi
   for (const std::size_t move : options.moves)
     if (move < 1 || move > times.moves.size())
       throw UserError(fmt::format("move {}", move),
-                      fmt::format("this run has moves 1 to {}", times.moves.size()),
+                      fmt::format("this run has moves 1 to {}{}", times.moves.size(),
+                                  times.is_cut ? ", and more that are not recorded" : ""),
                       "Choose among these.");
   std::vector<std::size_t> sorted = options.moves;
   std::sort(sorted.begin(), sorted.end());

@@ -17,6 +17,8 @@ struct VirtualTimes {
   };
   std::vector<std::string> processes;
   std::vector<Move> moves;
+  // the engine made more moves than it records: these are the first ones
+  bool is_cut = false;
 };
 
 }  // namespace tumble

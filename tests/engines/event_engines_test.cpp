@@ -270,6 +270,21 @@ TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
     }
 }
 
+// More than 10^5 impacts, each of which moves two local virtual times or one, and advances between.
+TEST(VirtualTimesOfALongRun, AreTheFirstOnesInEpochsToo) {
+  VirtualTimes times;
+  OrderOfCommits sink;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp(&times);
+  options.faults.regions = 2;
+  options.frame_rate_hz = 1.0;
+  engines::run_scene(sized("gas", 300, 250.0), test_laws(), options, sink);
+  EXPECT_TRUE(times.is_cut);
+  EXPECT_EQ(times.moves.size(), engines::kMostMoves);
+  EXPECT_LT(times.moves.back().global_virtual_time_s, 250.0);
+}
+
 TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
   const Trajectory run = run_by("tw", sized("gas", 300, 250.0), {}, 1.0);
   ASSERT_GT(run.events.size(), 100000U);

@@ -183,6 +183,21 @@ TEST(TaughtTimewarp, RecordsVirtualTimes) {
   EXPECT_EQ(gvt, 1.5);
 }
 
+// Two balls that never meet, in 30,000 steps each: more moves than are recorded (50,000).
+TEST(TaughtTimewarp, RecordsTheFirstVirtualTimesOfALongRunAndSaysThatThereAreMore) {
+  scene::Scene scene = scene_of(
+      {ball("A", 0.1, 1.0, {0, 0, 0}, {-1, 0, 0}), ball("B", 0.1, 1.0, {1, 0, 0}, {1, 0, 0})}, 0.3);
+  scene.step_s = 1e-5;
+  const Trajectory run = run_taught(scene, taught_laws());
+  ASSERT_EQ(run.stopped_by, "");
+  const VirtualTimes& times = run.virtual_times;
+  EXPECT_TRUE(times.is_cut);
+  ASSERT_LT(times.moves.size(), run.counters.counts.at("integrations"));
+  // that of this move, and not the last of the run
+  EXPECT_LE(times.moves.back().global_virtual_time_s, times.moves.back().to_s);
+  EXPECT_FALSE(run_taught(sized("gas", 10, 0.1), taught_laws()).virtual_times.is_cut);
+}
+
 TEST(TaughtTimewarp, StopsWhereAnImpactIsLost) {
   Laws laws = taught_laws();
   lose_impacts_after(0.5, laws);

@@ -347,6 +347,20 @@ TEST_F(PlayerInBrowser, VirtualTimesShowTheMoveThatCommittedTheCursor) {
       std::string::npos);
 }
 
+TEST_F(PlayerInBrowser, VirtualTimesOfWhichOnlyTheFirstAreRecordedSayIt) {
+  VirtualTimes times = one_rollback();
+  times.is_cut = true;
+  report::PlayerOptions options;
+  options.panels = {report::virtual_times_panel(times)};
+  const std::string elements =
+      browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}, options)) +
+                       "#t=0.45&tab=virtual");
+  EXPECT_EQ(body_data(elements, "error"), "");
+  EXPECT_NE(elements.find("Move 5 of the first 5: B on from 0.2 to 0.6 s; global virtual time 0.5 "
+                          "s; 1 rollback so far; later moves are not recorded"),
+            std::string::npos);
+}
+
 TEST_F(PlayerInBrowser, DamagedDataLeaveTheStaticPlots) {
   std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
   page.replace(page.find("id=\"run0\">") + 10, 40, std::string(40, 'A'));

@@ -9,8 +9,8 @@ namespace tumble::engines {
 
 /// The engine of `--engine tw` where no module provides a scheduler; empty in a tree without one.
 /// Defined once: with the solutions, or in no_fast_timewarp.cpp.
-/// @param record  receives every change of a local virtual time, at most `kMostMoves` of them;
-///   null: none. Outlives the engine
+/// @param record  receives every change of a local virtual time, the first `kMostMoves` of them
+///   where there are more; null: none. Outlives the engine
 /// @param watch   for tests: rolls everything back repeatedly (rollback_check.h); null: never.
 ///   Outlives the engine
 Engine fast_timewarp(VirtualTimes* record = nullptr, const RollbackCheck* watch = nullptr);

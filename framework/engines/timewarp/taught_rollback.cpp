@@ -110,7 +110,8 @@ void TaughtTimewarp::look_at_gvt(bool is_over) {
   if (!(gvt > gvt_)) return;
   gvt_ = gvt;
   since_gvt_ = 0;
-  if (!times_.moves.empty())
+  // of the last move of all, and not of the last that is recorded
+  if (!times_.moves.empty() && !times_.is_cut)
     times_.moves.back().global_virtual_time_s = std::min(gvt_, run_.duration());
   tell_moves();
   commit();

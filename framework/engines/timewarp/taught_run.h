@@ -115,6 +115,8 @@ class TaughtTimewarp {
   void move(int body, double from, double to) {
     if (times_.moves.size() < kMostTaughtMoves)
       times_.moves.push_back({place_[static_cast<std::size_t>(body)], from, to, gvt_});
+    else
+      times_.is_cut = true;
   }
 
   TraceWatch watch_;

@@ -67,8 +67,9 @@ panelKinds.virtual_times = (box, data, player) => {
     g.fillStyle = '#a82c00';
     g.fillRect(x(cursor), kTop, 1.2, bottom - kTop);
     const last = k > 0 ? moves[k - 1] : null;
-    words.textContent = `Move ${k} of ${moves.length}: ` + (last ? `${names[last[0]]} ${last[2] <= last[1] ? 'rolled back' : 'on'} from ${short(last[1])} to ${short(last[2])} s; ` : '') +
-      `global virtual time ${short(gvt)} s; ${undone.length} rollback${undone.length === 1 ? '' : 's'} so far`;
+    words.textContent = `Move ${k} of ${data.is_cut ? 'the first ' : ''}${moves.length}: ` + (last ? `${names[last[0]]} ${last[2] <= last[1] ? 'rolled back' : 'on'} from ${short(last[1])} to ${short(last[2])} s; ` : '') +
+      `global virtual time ${short(gvt)} s; ${undone.length} rollback${undone.length === 1 ? '' : 's'} so far` +
+      (data.is_cut && k === moves.length ? '; later moves are not recorded' : '');
   };
   slider.addEventListener('input', draw);
   slider.addEventListener('keydown', event => event.stopPropagation());

@@ -268,10 +268,19 @@ void Coordinator::run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact
   alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
 }
 
+// As many as there is room for.
+void Coordinator::collect_moves(Worker& worker) {
+  const std::size_t taken =
+      std::min(worker.moves.size(), engines::kMostMoves - alone().moves.size());
+  const auto end = worker.moves.begin() + static_cast<std::ptrdiff_t>(taken);
+  alone().moves.insert(alone().moves.end(), worker.moves.begin(), end);
+  if (worker.has_more_moves || end != worker.moves.end()) alone().has_more_moves = true;
+  worker.moves.clear();
+}
+
 void Coordinator::collect_deferred() {
   for (std::size_t k = 1; k < workers_.size(); ++k) {
-    alone().moves.insert(alone().moves.end(), workers_[k]->moves.begin(), workers_[k]->moves.end());
-    workers_[k]->moves.clear();
+    collect_moves(*workers_[k]);
     Worker::Deferred& deferred = workers_[k]->deferred;
     for (const Due& due : deferred.due) all_.domains[kBoundary].queue.push(due);
     for (const EventStamp& callback : deferred.cancelled_callbacks)
@@ -385,7 +394,10 @@ void Coordinator::end(const std::string& stopped_by) {
         (*std::min_element(workers_.begin() + 1, workers_.end(), works_less))->worked_at;
   }
   all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
-  if (record_) record_->moves = std::move(alone().moves);
+  if (record_) {
+    record_->moves = std::move(alone().moves);
+    record_->is_cut = alone().has_more_moves;
+  }
   all_.run.end(stopped_by);
 }
 

@@ -62,6 +62,7 @@ class alignas(64) Worker {
   Deferred deferred;
   std::vector<Executed> executed;
   std::vector<VirtualTimes::Move> moves;
+  bool has_more_moves = false;  // than are recorded
   engines::RunCounters counters;
   engines::CheckCost cost;
   // largest number of states of a body since work_before began

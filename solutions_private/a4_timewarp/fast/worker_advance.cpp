@@ -229,7 +229,9 @@ void Worker::for_each_elsewhere(std::size_t owner, const Box& box, const Found& 
 // A body's local virtual time rises or falls.
 void Worker::move(int body, double t) {
   double& horizon = process(body).horizon;
-  if (all_.is_recorded && t != horizon && moves.size() < engines::kMostMoves) {
+  if (all_.is_recorded && t != horizon && moves.size() >= engines::kMostMoves) {
+    has_more_moves = true;
+  } else if (all_.is_recorded && t != horizon) {
     const auto until_end = [&](double time) { return std::min(time, all_.run.duration()); };
     const auto row = std::lower_bound(world().movers().begin(), world().movers().end(), body) -
                      world().movers().begin();
