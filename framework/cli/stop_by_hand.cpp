@@ -26,4 +26,9 @@ void StopByHand::frame(const Frame& frame) {
   if (is_asked()) throw StoppedByHand{};
 }
 
+void StopByHand::beat(double time_s) {
+  sink_.beat(time_s);
+  if (is_asked()) throw StoppedByHand{};
+}
+
 }  // namespace tumble::cli

@@ -1,4 +1,5 @@
-/// Ctrl-C during a run ends it at its next frame, so that what was simulated is kept.
+/// Ctrl-C during a run ends it at its next frame, so that what was simulated is kept, or at its next
+/// beat before the first frame.
 #pragma once
 
 #include <signal.h>
@@ -23,6 +24,7 @@ class StopByHand final : public PassingSink {
   static bool is_asked();
 
   void frame(const Frame& frame) override;
+  void beat(double time_s) override;
 
  private:
   struct sigaction before_ {};

@@ -18,6 +18,7 @@ class PassingSink : public TrajectorySink {
   void end(const Counters& counters, const std::string& stopped_by) override {
     sink_.end(counters, stopped_by);
   }
+  void beat(double time_s) override { sink_.beat(time_s); }
   void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  protected:

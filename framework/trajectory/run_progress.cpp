@@ -37,12 +37,20 @@ RunProgress::~RunProgress() {
 }
 
 void RunProgress::frame(const Frame& frame) {
-  {
-    const std::lock_guard lock(mutex_);
-    time_ = frame.time;
-    came_s_ = seconds_since(begun_);
-  }
+  note(frame.time, false);
   sink_.frame(frame);
+}
+
+void RunProgress::beat(double time_s) {
+  note(time_s, true);
+  sink_.beat(time_s);
+}
+
+void RunProgress::note(double time_s, bool is_of_a_beat) {
+  const std::lock_guard lock(mutex_);
+  time_ = time_s;
+  came_s_ = seconds_since(begun_);
+  is_of_a_beat_ = is_of_a_beat;
 }
 
 void RunProgress::report_until_done() {
@@ -58,15 +66,23 @@ void RunProgress::report_until_done() {
 }
 
 void RunProgress::report(double now_s) {
-  std::string line = fmt::format("tumble: {:.4g} of {:.4g} s simulated", time_, duration_);
+  const std::string so_far = fmt::format("{:.4g} of {:.4g} s", time_, duration_);
+  std::string line = is_of_a_beat_
+                         ? "tumble: the ordered reference, which runs first, is at " + so_far
+                         : "tumble: " + so_far + " simulated";
   // A line that is written every second says only after a while that no frame comes.
   constexpr double kPatience = 5.0;  // s
   if (time_ == reported_time_ && (!pace_.rewrites || now_s - came_s_ >= kPatience)) {
-    line += fmt::format(
-        ", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run",
-        now_s - came_s_);
-    if (time_ > 0) line += fmt::format("; --duration-s {:.4g} shows what came before", time_);
-  } else if (time_ > 0) {
+    const double waited = now_s - came_s_;
+    line += is_of_a_beat_
+                ? fmt::format(", for {:.0f} s now. Ctrl-C ends the run", waited)
+                : fmt::format(
+                      ", for {:.0f} s no frame has come: steps have become very short there. "
+                      "Ctrl-C ends the run",
+                      waited);
+    if (time_ > 0 && !is_of_a_beat_)
+      line += fmt::format("; --duration-s {:.4g} shows what came before", time_);
+  } else if (time_ > 0 && !is_of_a_beat_) {
     line += fmt::format(", about {:.0f} s left", came_s_ / time_ * (duration_ - time_));
   }
   reported_time_ = time_;

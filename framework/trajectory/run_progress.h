@@ -31,9 +31,11 @@ class RunProgress final : public PassingSink {
   RunProgress& operator=(const RunProgress&) = delete;
 
   void frame(const Frame& frame) override;
+  void beat(double time_s) override;
 
  private:
   using Clock = std::chrono::steady_clock;
+  void note(double time_s, bool is_of_a_beat);
   void report_until_done();
   void report(double now_s);
 
@@ -43,7 +45,8 @@ class RunProgress final : public PassingSink {
   std::mutex mutex_;  // guards the members below
   std::condition_variable ended_;
   bool is_over_ = false;
-  double time_ = 0.0, came_s_ = 0.0;  // of the last frame: simulated time, and arrival
+  double time_ = 0.0, came_s_ = 0.0;  // of the last frame or beat: simulated time, and arrival
+  bool is_of_a_beat_ = false;         // these are of the work before the first frame
   double reported_time_ = -1.0;       // simulated time in the last line
   std::thread reporter_;
 };

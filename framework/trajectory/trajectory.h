@@ -138,6 +138,10 @@ class TrajectorySink {
   virtual void frame(const Frame& frame) = 0;
   virtual void event(const Event& event) = 0;
   virtual void end(const Counters& counters, const std::string& stopped_by) = 0;
+  /// An engine that has work to do before its first frame has come to this time of it, and no frame
+  /// is due yet: teaching timewarp, whose ordered reference runs first. A sink may throw to end the
+  /// run.
+  virtual void beat(double /*time_s*/) {}
   /// The moves of a timewarp scheduler, called before end(); most engines have none.
   virtual void virtual_times(const VirtualTimes&) {}
 };

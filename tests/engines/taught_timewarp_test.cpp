@@ -198,6 +198,32 @@ TEST(TaughtTimewarp, RecordsTheFirstVirtualTimesOfALongRunAndSaysThatThereAreMor
   EXPECT_FALSE(run_taught(sized("gas", 10, 0.1), taught_laws()).virtual_times.is_cut);
 }
 
+// Ends the run by an exception of its own at a beat.
+class EndsAtABeat final : public TrajectorySink {
+ public:
+  struct Ended {};
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame&) override { ++frames; }
+  void event(const Event&) override {}
+  void end(const Counters&, const std::string&) override {}
+  void beat(double time_s) override {
+    if (time_s > 0.5) throw Ended{};
+    ++beats;
+  }
+  int frames = 0, beats = 0;
+};
+
+TEST(TaughtTimewarp, TellsHowFarTheReferenceIsAndMayBeEndedInIt) {
+  EndsAtABeat sink;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.frame_rate_hz = 10.0;
+  EXPECT_THROW(engines::run_scene(sized("gas", 10, 1.5), taught_laws(), options, sink),
+               EndsAtABeat::Ended);
+  EXPECT_EQ(sink.frames, 0);
+  EXPECT_EQ(sink.beats, 6);  // at 0, 0.1, ..., 0.5 s
+}
+
 TEST(TaughtTimewarp, StopsWhereAnImpactIsLost) {
   Laws laws = taught_laws();
   lose_impacts_after(0.5, laws);

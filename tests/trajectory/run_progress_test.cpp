@@ -45,5 +45,38 @@ TEST(RunProgress, ALongRunSaysHowFarItIsAndWhereItStandsStill) {
   EXPECT_NE(said.find("no frame has come"), std::string::npos) << said;
 }
 
+// Work before the first frame is told as what it is; frames that come then are told as ever.
+TEST(RunProgress, OfABeatBeforeTheFirstFrameIsToldAsTheReferences) {
+  TrajectoryRecorder recorder;
+  testing::internal::CaptureStderr();
+  {
+    RunProgress progress(recorder, 2.0, {0.05, 0.05});
+    progress.beat(1.5);
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.5));
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_TRUE(
+      said.starts_with("tumble: the ordered reference, which runs first, is at 1.5 of 2 s\n"))
+      << said;
+  EXPECT_EQ(said.find("simulated"), std::string::npos) << said;
+  EXPECT_TRUE(recorder.trajectory().frames.empty());
+}
+
+// A sink that stands between hands a beat on.
+TEST(PassingSink, HandsABeatOn) {
+  struct Beats final : TrajectorySink {
+    void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+    void frame(const Frame&) override {}
+    void event(const Event&) override {}
+    void end(const Counters&, const std::string&) override {}
+    void beat(double time_s) override { last = time_s; }
+    double last = 0.0;
+  } beats;
+  PassingSink between(beats);
+  RunProgress progress(between, 2.0, {100.0, 100.0, false});
+  progress.beat(0.25);
+  EXPECT_EQ(beats.last, 0.25);
+}
+
 }  // namespace
 }  // namespace tumble

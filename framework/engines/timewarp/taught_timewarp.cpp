@@ -19,6 +19,28 @@ constexpr std::size_t kFewProcesses = 4;
 // of them has a few, and global virtual time rises when the last of them is done.
 constexpr std::size_t kFewestEventsAtOneGvt = 20000, kEventsOfACheckAtOneGvt = 20;
 
+/// Records the ordered reference. The sink of the run sees nothing of it but how far it is.
+class ReferenceRecorder final : public TrajectorySink {
+ public:
+  explicit ReferenceRecorder(TrajectorySink& sink) : sink_(sink) {}
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
+    recorder_.begin(info, bodies);
+  }
+  void frame(const Frame& frame) override {
+    recorder_.frame(frame);
+    sink_.beat(frame.time);
+  }
+  void event(const Event& event) override { recorder_.event(event); }
+  void end(const Counters& counters, const std::string& stopped_by) override {
+    recorder_.end(counters, stopped_by);
+  }
+  const Trajectory& trajectory() const { return recorder_.trajectory(); }
+
+ private:
+  TrajectorySink& sink_;
+  TrajectoryRecorder recorder_;
+};
+
 }  // namespace
 
 TaughtTimewarp::TaughtTimewarp(const scene::Scene& scene, const Laws& laws,
@@ -213,7 +235,7 @@ void TaughtTimewarp::drop_pairs_of(int body) {
 
 void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options,
                          TrajectorySink& sink) {
-  TrajectoryRecorder reference;
+  ReferenceRecorder reference(sink);
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
   reference.begin({}, bodies);
