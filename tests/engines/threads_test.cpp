@@ -1,8 +1,13 @@
 // Timewarp on several threads commits the reference's trace, to the last bit, whatever the threads'
 // timing; and it keeps its limits.
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -96,6 +101,56 @@ TEST(Threads, OneUsesSeveralRegionsByItselfForVeryManyBodies) {
     EXPECT_EQ(difference(in_order, run), "") << threads << " threads";
     // speculation across boundaries was wrong, and rolled back
     EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";
+  }
+}
+
+// While it exists, the system gives a few threads more and no others: the stack of each takes a
+// quarter of the address space that is left.
+class FewThreads {
+ public:
+  FewThreads() {
+    constexpr std::size_t kStack = std::size_t{256} << 20;  // bytes
+    ::pthread_getattr_default_np(&before_);
+    pthread_attr_t large;
+    ::pthread_getattr_default_np(&large);
+    ::pthread_attr_setstacksize(&large, kStack);
+    ::pthread_setattr_default_np(&large);
+    ::pthread_attr_destroy(&large);
+    ::getrlimit(RLIMIT_AS, &limit_before_);
+    std::size_t pages = 0;  // of this process's address space
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit = limit_before_;
+    limit.rlim_cur = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + 4 * kStack;
+    is_limited_ = ::setrlimit(RLIMIT_AS, &limit) == 0;
+  }
+  ~FewThreads() {
+    ::setrlimit(RLIMIT_AS, &limit_before_);
+    ::pthread_setattr_default_np(&before_);
+    ::pthread_attr_destroy(&before_);
+  }
+  FewThreads(const FewThreads&) = delete;
+  FewThreads& operator=(const FewThreads&) = delete;
+  bool is_limited() const { return is_limited_; }
+
+ private:
+  pthread_attr_t before_{};
+  rlimit limit_before_{};
+  bool is_limited_ = false;
+};
+
+TEST(Threads, MoreThanTheSystemGivesAreRefusedWithTheNumberThatItGives) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer needs the address space";
+#endif
+  const scene::Scene scene = sized("gas", 60, 0.1);
+  const FewThreads few;
+  ASSERT_TRUE(few.is_limited());
+  try {
+    run_on({16}, scene);
+    FAIL() << "16 threads were given";
+  } catch (const UserError& error) {
+    EXPECT_EQ(error.where(), "--threads 16");
+    EXPECT_TRUE(error.problem().starts_with("the system gives only ")) << error.problem();
   }
 }
 

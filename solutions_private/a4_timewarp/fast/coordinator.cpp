@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
@@ -214,16 +215,26 @@ void Coordinator::run_in_epochs() {
       resolve_impact.arrive_and_wait();
     }
   };
-  for (int thread = 1; thread < all_.threads; ++thread)
-    threads.emplace_back([&, thread] {
-      for (;;) {
-        resolve_impact.arrive_and_wait();
-        if (is_over) return;
-        work_as(thread, end_of_epoch);
-        resolve_impact.arrive_and_wait();
-      }
-    });
+  threads.reserve(static_cast<std::size_t>(all_.threads));
+  // gone before the threads are: they are joined after it has ended them
   const Release release{resolve_impact, is_over};
+  try {
+    for (int thread = 1; thread < all_.threads; ++thread)
+      threads.emplace_back([&, thread] {
+        for (;;) {
+          resolve_impact.arrive_and_wait();
+          if (is_over) return;
+          work_as(thread, end_of_epoch);
+          resolve_impact.arrive_and_wait();
+        }
+      });
+  } catch (const std::system_error&) {
+    const int made = 1 + static_cast<int>(threads.size());
+    // those that are there wait for all: for the missing ones, too
+    for (int missing = made; missing < all_.threads; ++missing) resolve_impact.arrive_and_drop();
+    throw UserError("--threads " + std::to_string(all_.threads),
+                    fmt::format("the system gives only {} of them", made), "Give fewer.");
+  }
   while (next_time() <= all_.run.duration()) {
     if (is_injection_due()) inject_rollback([&] { run_epoch(end_of_epoch, resolve_impact); });
     run_epoch(end_of_epoch, resolve_impact);
