@@ -20,12 +20,15 @@
 // A string is its u64 length and its bytes. Times of stages are not in the file: they differ from
 // run to run.
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <string_view>
 #include <type_traits>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -118,6 +121,19 @@ class Reader {
                   std::to_string(bytes_.size() - at_) + " bytes follow");
     return count;
   }
+  /// Refuses what a reader of the run would index an array by, and what it would search by halves:
+  /// @param what  "a frame", "an event", "a contact": the item of which this was read last
+  void expect_time(const char* what, double time_s) const {
+    if (!std::isfinite(time_s)) fail(sizeof time_s, fmt::format("{} at {} s", what, time_s));
+  }
+  void expect_bodies(const char* what, int body_a, int body_b, std::size_t bodies) const {
+    const auto is_one = [&](int body) {
+      return body >= 0 && static_cast<std::size_t>(body) < bodies;
+    };
+    if (is_one(body_a) && (body_b == -1 || is_one(body_b))) return;
+    fail(sizeof body_a + sizeof body_b,
+         fmt::format("{} of the bodies {} and {}, in a run of {}", what, body_a, body_b, bodies));
+  }
   bool is_at_end() const { return at_ == bytes_.size(); }
   [[noreturn]] void fail(std::size_t back, const std::string& problem) const {
     throw UserError(where_ + ", byte " + std::to_string(at_ - back), problem,
@@ -160,9 +176,17 @@ void pass_frames(Archive& archive, Run& run) {
                         kFrameBytes = 10 * sizeof(double) + 4 * sizeof(std::uint64_t);
   constexpr std::size_t kContactBytes = 2 * sizeof(std::int32_t) + 9 * sizeof(double);
   const std::size_t bodies = run.bodies.size();
+  [[maybe_unused]] double before_s = 0.0;
   pass_list(archive, run.frames, kFrameBytes + bodies * kPoseBytes, [&](auto& frame) {
     archive(frame.time);
-    if constexpr (std::is_same_v<Archive, Reader>) frame.poses.resize(bodies);
+    if constexpr (std::is_same_v<Archive, Reader>) {
+      archive.expect_time("a frame", frame.time);
+      if (frame.time < before_s)
+        archive.fail(sizeof frame.time,
+                     fmt::format("a frame at {} s, before {} s", frame.time, before_s));
+      before_s = frame.time;
+      frame.poses.resize(bodies);
+    }
     for (auto& pose : frame.poses)
       pass(archive, pose.com_world, pose.world_from_body, pose.velocity_world, pose.omega_world);
     pass(archive, frame.kinetic_energy, frame.potential_energy, frame.momentum_world,
@@ -170,8 +194,10 @@ void pass_frames(Archive& archive, Run& run) {
     for (auto* forces : {&frame.spring_forces, &frame.rod_tensions, &frame.joint_forces})
       pass_list(archive, *forces, sizeof(double), [&](auto& force) { archive(force); });
     pass_list(archive, frame.contacts, kContactBytes, [&](auto& contact) {
-      pass(archive, contact.body_a, contact.body_b, contact.point_world,
-           contact.normal_b_to_a_world, contact.force_on_a_world);
+      pass(archive, contact.body_a, contact.body_b);
+      if constexpr (std::is_same_v<Archive, Reader>)
+        archive.expect_bodies("a contact", contact.body_a, contact.body_b, bodies);
+      pass(archive, contact.point_world, contact.normal_b_to_a_world, contact.force_on_a_world);
     });
   });
 }
@@ -186,9 +212,13 @@ void pass_run(Archive& archive, Run& run) {
   pass_list(archive, run.bodies, 9, [&](auto& body) { pass(archive, body.name, body.immovable); });
   pass_frames(archive, run);
   pass_list(archive, run.events, 9 + 10 * sizeof(double), [&](auto& event) {
-    pass(archive, event.time, event.kind, event.body_a, event.body_b, event.point_world,
-         event.normal_b_to_a_world, event.impulse, event.normal_velocity_before,
-         event.normal_velocity_after);
+    archive(event.time);
+    if constexpr (std::is_same_v<Archive, Reader>) archive.expect_time("an event", event.time);
+    pass(archive, event.kind, event.body_a, event.body_b);
+    if constexpr (std::is_same_v<Archive, Reader>)
+      archive.expect_bodies("an event", event.body_a, event.body_b, run.bodies.size());
+    pass(archive, event.point_world, event.normal_b_to_a_world, event.impulse,
+         event.normal_velocity_before, event.normal_velocity_after);
   });
 }
 

@@ -155,6 +155,51 @@ TEST(TrajectoryFile, AnEventOfAnUnknownKindIsNamed) {
   EXPECT_NE(problem_of(bytes).find("an event of kind 12, expected 1 to 11"), std::string::npos);
 }
 
+// Bytes of a value of a plain type.
+template <class T>
+std::string as_bytes(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+// What is said of the small run, where the first place that holds `had` holds `has` instead.
+std::string problem_with(const std::string& had, const std::string& has) {
+  std::string bytes = good_bytes();
+  const std::size_t at = bytes.find(had);
+  EXPECT_NE(at, std::string::npos);
+  if (at != std::string::npos) bytes.replace(at, had.size(), has);
+  return problem_of(bytes);
+}
+
+// Who reads a run finds its bodies by these numbers.
+TEST(TrajectoryFile, BodiesOfEventsAndContactsThatTheRunDoesNotHaveAreRefused) {
+  const double time = 0.3;
+  const std::string event = as_bytes(time) + as_bytes(EventKind::kCollision),
+                    contact = as_bytes(std::uint64_t{1});  // one contact, of the bodies 0 and 1
+  const auto bodies = [](std::int32_t a, std::int32_t b) { return as_bytes(a) + as_bytes(b); };
+  for (const auto& [a, b] : {std::pair{0, 2}, {2, 1}, {-1, 1}, {0, -2}, {0, 1 << 30}}) {
+    const std::string numbers = std::to_string(a) + " and " + std::to_string(b);
+    EXPECT_NE(problem_with(event + bodies(0, 1), event + bodies(a, b))
+                  .find("an event of the bodies " + numbers + ", in a run of 2"),
+              std::string::npos);
+    EXPECT_NE(problem_with(contact + bodies(0, 1), contact + bodies(a, b))
+                  .find("a contact of the bodies " + numbers + ", in a run of 2"),
+              std::string::npos);
+  }
+  EXPECT_EQ(problem_with(event + bodies(0, 1), event + bodies(0, -1)), "no error");
+}
+
+TEST(TrajectoryFile, TimesThatAreNoNumbersOrGoBackAreRefused) {
+  const double kNan = std::numeric_limits<double>::quiet_NaN(),
+               kInfinity = std::numeric_limits<double>::infinity();
+  const std::string frame = as_bytes(1.0 / 3.0), event = as_bytes(0.4);
+  for (const double time : {kNan, kInfinity, -kInfinity}) {
+    EXPECT_NE(problem_with(frame, as_bytes(time)).find(", byte "), std::string::npos) << time;
+    EXPECT_NE(problem_with(event, as_bytes(time)).find("an event at "), std::string::npos) << time;
+  }
+  EXPECT_NE(problem_with(frame, as_bytes(-1.0)).find("a frame at -1 s, before 0 s"),
+            std::string::npos);
+}
+
 TEST(TrajectoryFile, CountBeyondTheFileIsRefusedBeforeMemoryIsTaken) {
   std::string bytes = good_bytes();
   // the length of the first string
