@@ -14,6 +14,7 @@
 #include "framework/grading/worker/worker_connection.h"
 #include "framework/report/player.h"
 #include "framework/report/virtual_times_panel.h"
+#include "framework/trajectory/fault_words.h"
 
 namespace tumble::cli {
 namespace {
@@ -59,6 +60,8 @@ ModuleWords with_changes(ModuleWords words, const ModuleWords& changes) {
 
 Second recorded(const std::string& file, const scene::Scene& scene) {
   Second second{read_trajectory(file), fs::path(file).stem().string(), "this run"};
+  if (const std::string faults = in_words(second.run.counters.faults); !faults.empty())
+    fmt::print(stderr, "{}: cannot be trusted: {}\n", file, faults);
   const TrajectoryInfo& info = second.run.info;
   if (info.scene_digest.empty() || scene.digest.empty() || info.scene_digest == scene.digest)
     return second;
@@ -168,7 +171,14 @@ void check_page_words(const Context& context, const scene::Scene& scene, const R
   if (!fs::exists(beside.recording))
     throw UserError(beside.recording, "there is no such recording",
                     "Make one with --trajectory FILE.");
-  const std::size_t bodies = read_trajectory(beside.recording).bodies.size();
+  const Trajectory recording = read_trajectory(beside.recording);
+  if (recording.frames.empty())
+    throw UserError(beside.recording,
+                    "has no frame" + (recording.stopped_by.empty()
+                                          ? std::string()
+                                          : ": its run stopped: " + recording.stopped_by),
+                    "Record a run that comes to its first frame.");
+  const std::size_t bodies = recording.bodies.size();
   if (bodies != scene.bodies.size())
     throw UserError(beside.recording,
                     fmt::format("has {} bodies, and the scene has {}", bodies, scene.bodies.size()),

@@ -100,9 +100,9 @@ struct Counters {
   std::map<std::string, std::uint64_t> counts;
   // "integration", "collision", "forces", ...; kept out of anything compared byte by byte
   std::map<std::string, double> stage_seconds;
-  // for the user, e.g. that steps were shortened and why; not kept in files
+  // for the user, e.g. that steps were shortened and why
   std::vector<std::string> notices;
-  std::vector<RunFault> faults{};  // each counts as a failed check; not kept in files
+  std::vector<RunFault> faults{};  // each counts as a failed check
 };
 
 struct TrajectoryBody {

@@ -2,7 +2,7 @@
 //
 //   "TUMBLE\r\n"                8 bytes: a transfer that converts line ends damages them, and is
 //       detected
-//   version                     u32, 3
+//   version                     u32, 4
 //   info                        strings command, version, scene_name, scene_digest, engine,
 //       impulse_source, integrator_source; f64 step_s, frame_rate_hz; seeds: u64 count, u64 each;
 //       string constraint_source
@@ -14,6 +14,9 @@
 //   events                      u64 count; each: f64 time; u8 kind; i32 body_a, body_b; point (3),
 //       normal (3); f64 impulse, normal velocity before, after
 //   counts                      u64 count; each: string name, u64 value; in order of name
+//   faults                      u64 count; each: strings kind, subject; f64 worst, allowed; string
+//       unit; f64 first_s, worst_s; u64 count; strings meaning, remedy
+//   notices                     u64 count, string each
 //   stopped_by                  string
 //   "end\n"                     4 bytes, and nothing after them
 //
@@ -41,7 +44,7 @@ static_assert(std::endian::native == std::endian::little,
               "the format is little-endian, a copy of memory");
 
 constexpr std::string_view kMagic = "TUMBLE\r\n", kEnd = "end\n";
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 class Writer {
  public:
@@ -222,6 +225,18 @@ void pass_run(Archive& archive, Run& run) {
   });
 }
 
+// Why the run is not to be trusted, and what it says of itself.
+template <class Archive, class Counted>
+void pass_warnings(Archive& archive, Counted& counters) {
+  constexpr std::size_t kFaultBytes = 5 * sizeof(std::uint64_t) + 4 * sizeof(double) + 8;
+  pass_list(archive, counters.faults, kFaultBytes, [&](auto& fault) {
+    pass(archive, fault.kind, fault.subject, fault.worst, fault.allowed, fault.unit, fault.first_s,
+         fault.worst_s, fault.count, fault.meaning, fault.remedy);
+  });
+  pass_list(archive, counters.notices, sizeof(std::uint64_t),
+            [&](auto& notice) { archive(notice); });
+}
+
 }  // namespace
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
@@ -234,6 +249,7 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
   pass_run(writer, trajectory);
   writer.size(trajectory.counters.counts.size(), 16);
   for (const auto& [name, value] : trajectory.counters.counts) pass(writer, name, value);
+  pass_warnings(writer, trajectory.counters);
   writer(trajectory.stopped_by);
   writer.word(kEnd);
   write_whole(file, writer.bytes());
@@ -260,6 +276,7 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     reader(name);
     reader(run.counters.counts[name]);
   }
+  pass_warnings(reader, run.counters);
   reader(run.stopped_by);
   reader.word(kEnd);
   if (!reader.is_at_end()) reader.fail(0, "bytes follow the end of the run");

@@ -12,6 +12,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/trajectory/fault_words.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble {
@@ -97,6 +98,38 @@ TEST(TrajectoryFile, ComesBackBitForBit) {
   std::filesystem::remove(second);
 }
 
+// A run that is not to be trusted is not to be trusted as a recording either.
+TEST(TrajectoryFile, KeepsFaultsAndNotices) {
+  const auto file = scratch("faulty");
+  Trajectory run = small_run();
+  RunFault fault;
+  fault.kind = "link_open";
+  fault.subject = "'wire'";
+  fault.worst = 161.0;
+  fault.allowed = 1e-6;
+  fault.unit = "m";
+  fault.first_s = 0.25;
+  fault.count = 12;
+  fault.meaning = "a link has come apart";
+  fault.remedy = "smaller steps";
+  run.counters.faults = {fault, RunFault{}};
+  run.counters.notices = {"steps were shortened", ""};
+  write_trajectory(file, run);
+  const Trajectory read = read_trajectory(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(read.counters.faults.size(), 2u);
+  const RunFault& kept = read.counters.faults[0];
+  EXPECT_EQ(in_words(kept), in_words(fault));
+  EXPECT_EQ(kept.unit, "m");
+  EXPECT_TRUE(std::isnan(kept.worst_s));  // as it was
+  EXPECT_EQ(kept.meaning, fault.meaning);
+  EXPECT_EQ(kept.remedy, fault.remedy);
+  EXPECT_EQ(read.counters.faults[1].kind, "");
+  EXPECT_EQ(read.counters.notices, run.counters.notices);
+  EXPECT_EQ(read.counters.counts, run.counters.counts);
+  EXPECT_EQ(read.stopped_by, run.stopped_by);
+}
+
 TEST(TrajectoryFile, SameRunOtherStageTimesSameBytes) {
   const auto file = scratch("timed");
   Trajectory run = small_run();
@@ -122,7 +155,7 @@ TEST(TrajectoryFile, OtherVersionIsNamedAsOlderOrNewer) {
   std::string bytes = good_bytes();
   bytes[8] = 1;
   EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format "
-                                   "version 1, this program reads 3"),
+                                   "version 1, this program reads 4"),
             std::string::npos);
   bytes[8] = 9;
   EXPECT_NE(problem_of(bytes).find("byte 8: recorded by a newer version"), std::string::npos);
@@ -145,9 +178,9 @@ TEST(TrajectoryFile, AnyByteChangedIsReadOrRefusedAndNothingElse) {
 
 TEST(TrajectoryFile, AnEventOfAnUnknownKindIsNamed) {
   const std::string good = good_bytes();
-  // Seen from the end: "end\n", stopped_by (8 + 13), counts (8 + 8 + 12 + 8 + 8 + 9 + 8), and the
-  // last event but its time.
-  const std::size_t kind_at = good.size() - 4 - (8 + small_run().stopped_by.size()) -
+  // Seen from the end: "end\n", stopped_by (8 + 13), no faults and no notices (8 + 8), counts (8 + 8
+  // + 12 + 8 + 8 + 9 + 8), and the last event but its time.
+  const std::size_t kind_at = good.size() - 4 - (8 + small_run().stopped_by.size()) - (8 + 8) -
                               (8 + (8 + 12 + 8) + (8 + 9 + 8)) - (1 + 8 + 9 * 8);
   std::string bytes = good;
   ASSERT_EQ(bytes[kind_at], static_cast<char>(EventKind::kControl));
