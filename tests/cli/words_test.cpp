@@ -9,6 +9,7 @@
 
 #include "tests/support/places.h"
 #include "framework/core/files.h"
+#include "framework/trajectory/trajectory.h"
 #include "tests/cli/command_line.h"
 
 namespace tumble::testing {
@@ -232,6 +233,23 @@ TEST_F(CommandLine, ARecordingOfAnotherSceneIsShownWithANote) {
   const Said said = type("run two.json --modules library --beside recording=one.run --html p.html");
   EXPECT_TRUE(holds(said.err, "the recording is of another scene, one")) << said.err;
   EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "the recording is of another scene, one"));
+}
+
+TEST_F(CommandLine, ARecordingThatCannotBeTrustedIsShownWithAWarning) {
+  write_whole(folder_ / "one.json", R"({"title": "one", "duration_s": 0.1, "bodies": [{
+        "name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}]})");
+  ASSERT_EQ(type("run one.json --modules library --trajectory one.run").code, 0);
+  Trajectory run = read_trajectory(folder_ / "one.run");
+  RunFault fault;
+  fault.kind = "energy_rises";
+  fault.subject = "'b'";
+  fault.first_s = 0.05;
+  fault.count = 1;
+  run.counters.faults = {fault};
+  write_trajectory(folder_ / "one.run", run);
+  const Said said = type("run one.json --modules library --beside recording=one.run --html p.html");
+  EXPECT_TRUE(holds(said.err, "one.run: cannot be trusted: energy_rises of 'b'")) << said.err;
+  EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "energy_rises of 'b'"));
 }
 
 TEST_F(CommandLine, APathThatIsNoPlainFileSaysSo) {
