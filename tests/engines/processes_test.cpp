@@ -252,6 +252,39 @@ TEST(LateCallback, ChangesProcessesToo) {
 
 // The tower has fallen together, been hit and come apart when a callback throws its lowest block up
 // before all that.
+// A ball hits a chain of n balls at 0.3 s; a callback that is executed late turns it back at 0.1 s.
+// So one event of n + 1 processes is rolled back, and the ball tells the n others.
+TEST(LateCallback, ThatUndoesAnImpactOnAChainCountsAnAntiMessageForEachOfItsBodies) {
+  for (const int n : {2, 3, 6}) {
+    scene::Scene scene;
+    scene.name = "chain";
+    scene.duration_s = 0.5;
+    scene.bodies.push_back(ball("shot", 0.1, 1.0, {-0.5, 0, 0}, {1, 0, 0}));
+    for (int i = 0; i < n; ++i) {
+      scene.bodies.push_back(
+          ball("link" + std::to_string(i), 0.1, 1.0, {0, 0.5 * (i - n / 2), 0}, {0, 0, 0}));
+      if (i > 0)
+        scene.effects.of<effects::RodSpec>().push_back(
+            {"rod" + std::to_string(i),
+             {"link" + std::to_string(i - 1), Vector3d::Zero()},
+             {"link" + std::to_string(i), Vector3d::Zero()},
+             0.5});
+    }
+    scene.stabilisation = scene::StabilisationSpec{};
+    ASSERT_EQ(run_with("tw", scene).counters.counts.at("discontinuities"), 1U) << n;
+    engines::RunOptions options;
+    options.engine = "tw";
+    options.faults.late_callbacks = true;
+    options.callbacks = {
+        {0.1, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
+    const Trajectory run = run_as_told(std::move(options), scene, laws());
+    ASSERT_EQ(run.stopped_by, "") << n;
+    ASSERT_EQ(run.events.size(), 1U) << n;
+    EXPECT_EQ(run.events[0].kind, EventKind::kControl) << n;
+    EXPECT_EQ(run.counters.counts.at("anti_messages"), static_cast<std::uint64_t>(n)) << n;
+  }
+}
+
 TEST(LateCallback, BelowAGroupsBirthDissolvesIt) {
   const scene::Scene scene = tower_and_projectile(5.0);
   const std::vector<engines::Callback> callbacks{{0.02, {1}, [](int, RigidBodyState& state) {

@@ -29,7 +29,9 @@ struct RunCounters {
                 contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0,
                 contacts_ended = 0, contact_activations = 0, large_island_steps = 0,
                 friction_points = 0;
-  // states_kept: the most at any time
+  // anti_messages: one for each receiver of a cancelled message. The first process that rolls an
+  // event back sends them to the others that it changed, so an event of k processes has k - 1, in
+  // both timewarps. states_kept: the most at any time
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;
   // island segments of processes; fewer are let go where the run ends on some

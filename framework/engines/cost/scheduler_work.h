@@ -25,6 +25,7 @@ struct SchedulerRun {
   std::uint64_t integrations = 0, undone = 0;  // undone: integrations that were rolled back
   std::uint64_t rollbacks = 0;                 // bodies rolled back, once for each rollback
   std::uint64_t impacts = 0;                   // executed, committed or not
+  // anti_messages: k - 1 for each event of k processes that is rolled back
   std::uint64_t anti_messages = 0, checks = 0;
   std::uint64_t states_kept = 0;  // the largest number at any time
   double cpu_s = kUnset;          // of the engine, without the reference run

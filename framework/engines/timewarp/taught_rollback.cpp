@@ -31,7 +31,8 @@ void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::st
   }
   std::erase_if(executed_, [&](const Executed& executed) {
     const bool is_gone = executed.rolled_back.size() == executed.effect.processes.size();
-    if (is_gone && executed.effect.processes.size() > 1) ++run_.counters.anti_messages;
+    if (is_gone && executed.effect.processes.size() > 1)
+      run_.counters.anti_messages += executed.effect.processes.size() - 1;
     if (is_gone && executed.key.kind == StampKind::kCallback) expect_callback(executed.key);
     return is_gone;
   });

@@ -13,6 +13,17 @@ bool Coordinator::is_current(int body, std::uint32_t version) const {
          all_.histories[body].find(version) < all_.histories[body].size();
 }
 
+bool Coordinator::is_rolled_back(const Executed& event) const {
+  return !is_current(event.key.body_a, event.version_a) ||
+         !is_current(event.key.body_b, event.version_b);
+}
+
+// Counted by events, and not where a message is delivered: members of an island cancel each other's
+// flights, and of two messages that cross neither finds anything left.
+std::uint64_t Coordinator::anti_messages_of(const Executed& rolled_back) {
+  return rolled_back.processes > 1 ? rolled_back.processes - 1 : 0;
+}
+
 // A commit is final: it lies before all pending events, and global virtual time never falls.
 void Coordinator::require_certain(const EventStamp& key) const {
   if (key.time < all_.committed)
@@ -54,10 +65,10 @@ void Coordinator::commit_before(const EventStamp& key) {
   std::size_t done = 0;
   for (; done < executed.size() && executed[done].key < key; ++done) {
     const Executed& event = executed[done];
-    // rolled back
-    if (!is_current(event.key.body_a, event.version_a) ||
-        !is_current(event.key.body_b, event.version_b))
+    if (is_rolled_back(event)) {
+      alone().counters.anti_messages += anti_messages_of(event);
       continue;
+    }
     draw_before(event.key.time);
     if (event.is_silent)
       all_.run.pass(event.key);

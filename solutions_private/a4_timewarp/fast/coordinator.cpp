@@ -392,6 +392,8 @@ void Coordinator::check_nothing_leaked() {
 
 void Coordinator::end(const std::string& stopped_by) {
   for (const auto& worker : workers_) {
+    for (const Executed& event : worker->executed)  // of a run that was stopped
+      if (is_rolled_back(event)) worker->counters.anti_messages += anti_messages_of(event);
     all_.run.counters.add(worker->counters);
     all_.run.cost.pair_checks += worker->cost.pair_checks;
     all_.run.cost.narrow.gap_evaluations += worker->cost.narrow.gap_evaluations;

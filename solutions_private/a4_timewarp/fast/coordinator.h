@@ -67,6 +67,8 @@ class Coordinator {
   void commit_before(double t) { commit_before(EventStamp{t, 0, StampKind::kRecheck, -1, -1}); }
   void note_kept();
   bool is_current(int body, std::uint32_t version) const;
+  bool is_rolled_back(const Executed& event) const;
+  static std::uint64_t anti_messages_of(const Executed& rolled_back);
 
   Shared all_;
   std::vector<std::unique_ptr<Worker>> workers_;  // by domain

@@ -65,7 +65,8 @@ struct Executed {
   std::uint32_t version_a, version_b;  // of the flights that began with it
   Event first;
   std::vector<Event> more;
-  bool is_silent = false;  // no event is recorded
+  bool is_silent = false;     // no event is recorded
+  std::size_t processes = 0;  // on which flights began with it
 };
 
 /// One region with its queue, or the boundary.

@@ -87,8 +87,10 @@ void Worker::collide(const Due& due) {
   discontinuity.b.partner_version = version_a;
   if (world().can_move(bodies[0])) begin_flight(bodies[0], discontinuity.a, version_a);
   if (world().can_move(bodies[1])) begin_flight(bodies[1], discontinuity.b, version_b);
-  executed.push_back(
-      {due.key, version_a, version_b, discontinuity.first, std::move(discontinuity.more)});
+  const auto processes = static_cast<std::size_t>(std::count_if(
+      std::begin(bodies), std::end(bodies), [&](int body) { return world().can_move(body); }));
+  executed.push_back({due.key, version_a, version_b, discontinuity.first,
+                      std::move(discontinuity.more), false, processes});
   for (const int body : bodies)
     if (world().can_move(body)) advance_or_defer(body);
 }
@@ -137,7 +139,8 @@ void Worker::begin_flights(const Due& due, engines::Discontinuity discontinuity)
     begin_flight(begun.body, begun.flight, version);
   }
   executed.push_back({due.key, versions[0], versions[1], discontinuity.first,
-                      std::move(discontinuity.more), discontinuity.is_silent});
+                      std::move(discontinuity.more), discontinuity.is_silent,
+                      discontinuity.begun.size()});
   for (const engines::BegunFlight& begun : discontinuity.begun)
     if (all_.first_member(begun.body) == begun.body) advance_or_defer(begun.body);
 }
@@ -193,7 +196,6 @@ void Worker::forget(const Flight& flight) {
 void Worker::roll_back_from(int body, std::uint32_t version) {
   const std::size_t place = history(body).find(version);
   if (place == history(body).size()) return;  // already rolled back
-  ++counters.anti_messages;
   roll_back(body, place);
 }
 
@@ -202,7 +204,6 @@ void Worker::cancel(int body, std::uint32_t version) {
   if (!is_mine(body)) return deferred.anti_messages.push_back({body, version});
   const std::size_t effect = history(body).find(version);
   if (effect == history(body).size()) return;  // already rolled back
-  ++counters.anti_messages;
   to_drop_.emplace_back(body, effect);
 }
 
