@@ -33,8 +33,8 @@ void check(const SpreadWords& words);
 std::string key_of(const Context& context, const scene::Scene& scene, const ModuleWords& words,
                    const std::string& options);
 
-/// The folder is this command's until `parts` ends. A task that --on started has it from the command
-/// that waits for it.
+/// The folder is this command's until `parts` ends. A task that --on started has it from the
+/// command that waits for it.
 /// @throws UserError when another command holds it
 void hold(const SpreadWords& words, farm::KeptParts& parts);
 

@@ -1,5 +1,5 @@
-/// Ctrl-C during a run ends it at its next frame, so that what was simulated is kept, or at its next
-/// beat before the first frame.
+/// Ctrl-C during a run ends it at its next frame, so that what was simulated is kept, or at its
+/// next beat before the first frame.
 #pragma once
 
 #include <signal.h>

@@ -1,7 +1,7 @@
 /// The arguments of a call in words, derived from their types like the wire format: for the story
 /// of a call that never returned.
-///   (0, 0, 5) for vectors, {time: 1, point: (0, 0, 5)} for structs, [n: ..., ...] for lists, "f" for
-///   functions
+///   (0, 0, 5) for vectors, {time: 1, point: (0, 0, 5)} for structs, [n: ..., ...] for lists,
+///   "f" for functions
 #pragma once
 
 #include <algorithm>
