@@ -9,7 +9,7 @@
 
 namespace tumble::render {
 
-/// kTimeOnly: of these the labels, the time, and what stopped the run, as in the views of a sheet.
+/// kTimeOnly is for the views of a sheet: labels, the time, and what stopped the run.
 enum class Words { kAll, kTimeOnly };
 
 /// "t = 0.25 s": at least two decimals, and so many that successive frames have different times

@@ -8,10 +8,11 @@
 #include "framework/render/captions.h"
 #include "framework/render/image.h"
 #include "framework/render/painter.h"
-#include "framework/render/picture.h"
 #include "framework/render/stage.h"
 
 namespace tumble::render {
+
+struct LabelledRun;  // picture.h
 
 class FramePainter {
  public:

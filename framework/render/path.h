@@ -14,8 +14,9 @@ namespace tumble::render {
 /// subset. For every frame between two neighbours the same holds for the line from the former
 /// neighbour to it, so a path may end at any frame.
 /// Frames with a pose that is not finite are left out.
-/// Source: the sleeves of R. Williams, Cartographic Journal 15(2), 1978, in space: here the
-///   intersection of two cones is replaced by the largest cone within it.   Cost: O(frames)
+/// Source: C. M. Williams, Computer Graphics and Image Processing 8(2), 1978, for planar curves; in
+///   space the intersection of two cones is replaced by the largest cone within it.
+/// Cost: O(frames)
 /// @param slack_m  above 0
 std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t body, double slack_m);
 

@@ -90,8 +90,9 @@ TEST_F(Pictures, ViewsSideBySideHaveTheScaleOfAllRuns) {
   for (auto& [run, impulse] : {std::pair<Trajectory&, double>(weak, 1.0), {strong, 4.0}})
     run.events.push_back(
         {0.5, EventKind::kCollision, 0, 1, {0, 0, 0.2}, {0, 0, 1}, impulse, -1.0, 1.0});
+  const scene::Scene scene = falling_ball();
   const auto painters =
-      painters_side_by_side(falling_ball(), {{weak, "submission"}, {strong, "reference"}}, small());
+      painters_side_by_side(scene, {{weak, "submission"}, {strong, "reference"}}, small());
   ASSERT_EQ(painters.size(), 2u);
   for (const auto& painter : painters) {
     EXPECT_EQ(painter->scale().strongest_impulse, 4.0);
