@@ -25,16 +25,10 @@ AnchorState anchor_state(const Anchor& anchor, const World& world,
 
 std::pair<Vector6d, Vector6d> distance_jacobians(const Anchor& a, const Anchor& b,
                                                  const std::vector<RigidBodyState>& states) {
-  const Vector3d apart = anchor_point(a, states) - anchor_point(b, states);
-  const double length = apart.norm();
-  return jacobians_along(length > 0 ? Vector3d(apart / length) : Vector3d(Vector3d::UnitZ()), a, b,
-                         states);
-}
-
-std::pair<Vector6d, Vector6d> jacobians_along(const Vector3d& along, const Anchor& a,
-                                              const Anchor& b,
-                                              const std::vector<RigidBodyState>& states) {
   const Vector3d at_a = anchor_point(a, states), at_b = anchor_point(b, states);
+  const double length = (at_a - at_b).norm();
+  const Vector3d along =
+      length > 0 ? Vector3d((at_a - at_b) / length) : Vector3d(Vector3d::UnitZ());
   const auto of = [&](const Anchor& anchor, const Vector3d& point, double sign) {
     Vector6d jacobian = Vector6d::Zero();
     if (anchor.body >= 0)

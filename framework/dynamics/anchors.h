@@ -25,9 +25,4 @@ AnchorState anchor_state(const Anchor& anchor, const World& world,
 std::pair<Vector6d, Vector6d> distance_jacobians(const Anchor& a, const Anchor& b,
                                                  const std::vector<RigidBodyState>& states);
 
-/// The same for the part of their difference along a direction of the world, a unit vector.
-std::pair<Vector6d, Vector6d> jacobians_along(const Vector3d& along, const Anchor& a,
-                                              const Anchor& b,
-                                              const std::vector<RigidBodyState>& states);
-
 }  // namespace tumble

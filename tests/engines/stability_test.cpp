@@ -196,28 +196,6 @@ TEST(LargestStep, OfASpringOnAHingedBodyIsThatOfTheSwingItsHingeAllows) {
   }
 }
 
-// Two stretched springs hold a bar by its ends. Each holds its end across as well, by k (x - l) / x:
-// the bar turns by I phi'' = -2 r^2 k (x - l) / x phi, faster than it moves along.
-TEST(LargestStep, OfAStretchedSpringIsAlsoThatOfTheSwingAcrossIt) {
-  const double m = 1.0, r = 0.5, k = 1e4, moment = 0.08;
-  for (const double rest : {0.0, 0.25, 1.0}) {
-    scene::BodySpec bar = ball("bar", 0.1, m, Vector3d::Zero(), Vector3d::Zero());
-    bar.inertia_body_kg_m2 = moment * Matrix3d::Identity();
-    scene::Scene scene = scene_of({bar}, 1.0);
-    for (const double side : {-1.0, 1.0})
-      scene.effects.of<effects::SpringSpec>().push_back({side < 0 ? "left" : "right",
-                                                         {"", Vector3d(side * (r + 1.0), 0, 0)},
-                                                         {"bar", Vector3d(side * r, 0, 0)},
-                                                         k,
-                                                         0.0,
-                                                         rest});
-    const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 1e-3);
-    ASSERT_TRUE(judged);
-    const double along = 2 * k / m, turning = 2 * r * r * k * (1.0 - rest) / moment;
-    EXPECT_NEAR(judged->angular_frequency, std::sqrt(std::max(along, turning)), 1e-6) << rest;
-  }
-}
-
 // A net of more bodies than are factorised together is judged too, spring by spring: n equal
 // springs in a row have 2 sqrt(k / m) sin(pi n / (2 n + 2)).
 TEST(LargestStep, OfManySpringsIsThatOfTheRow) {

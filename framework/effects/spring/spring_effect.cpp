@@ -13,8 +13,6 @@ extern const char* const kSpringSchema;  // schema.json
 
 namespace {
 
-constexpr double kNegligible = 1e-9;  // of its length: a spring stretched by less is at rest
-
 class SpringTerms final : public GroupTerms {
  public:
   SpringTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
@@ -119,27 +117,13 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
       sum += link.spring.stiffness * stretch * (stretch + a.norm() + b.norm());
     }
   }
-  // Along the spring k, and what it is stretched by, x - l at a length of x, holds it across: by
-  // k (x - l) / x, undamped. (It also turns the bodies at its ends by their arms; left out.)
   void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start,
                          std::vector<StiffRow>& rows) const override {
     for (const SpringLink& link : held(world)) {
-      const auto append = [&](const std::pair<Vector6d, Vector6d>& jacobians, double stiffness,
-                              double damping) {
-        rows.push_back({link.a.body, link.b.body, jacobians.first, jacobians.second, stiffness,
-                        damping, "spring '" + link.name + "'", "a softer spring or more damping",
-                        "damp the spring"});
-      };
-      append(distance_jacobians(link.a, link.b, start), link.spring.stiffness, link.spring.damping);
-      const Vector3d apart = anchor_point(link.a, start) - anchor_point(link.b, start);
-      const double length = apart.norm(), rest = link.spring.rest_length;
-      const double stretched = length > 0.0 ? (length - rest) / length : rest > 0.0 ? 0.0 : 1.0;
-      if (!(stretched > kNegligible)) continue;
-      const Vector3d along = length > 0.0 ? Vector3d(apart / length) : Vector3d(Vector3d::UnitZ()),
-                     across = along.unitOrthogonal();
-      for (const Vector3d& direction : {across, Vector3d(along.cross(across))})
-        append(jacobians_along(direction, link.a, link.b, start), stretched * link.spring.stiffness,
-               0.0);
+      const auto [of_a, of_b] = distance_jacobians(link.a, link.b, start);
+      rows.push_back({link.a.body, link.b.body, of_a, of_b, link.spring.stiffness,
+                      link.spring.damping, "spring '" + link.name + "'",
+                      "a softer spring or more damping", "damp the spring"});
     }
   }
 
