@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -43,11 +44,16 @@ std::string printable(std::string line) {
   return line;
 }
 
+// With a shell's word for the signal that ended what said it: "no such model (Killed)".
 std::string last_line_of(const std::string& text) {
+  static const std::set<std::string> signals = {"Killed", "Terminated", "Aborted", "Hangup",
+                                                "Segmentation fault"};
   std::istringstream in(text);
   std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    last = !last.empty() && signals.contains(line) ? last + " (" + line + ")" : line;
+  }
   return printable(last);
 }
 
