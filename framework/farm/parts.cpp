@@ -43,7 +43,7 @@ void KeptParts::hold(const std::string& shard) {
   const fs::path file = folder_ / name;
   const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock < 0)
-    throw UserError(file.string(), "cannot be opened",
+    throw UserError(file.string(), "cannot be written",
                     "Give --out a folder that you may write to.");
   held_ = std::shared_ptr<const int>(new int(lock), [](const int* descriptor) {
     ::close(*descriptor);

@@ -73,13 +73,16 @@ Level next_level(const Level& last, Readings readings, const std::vector<Quantit
 
 /// Remaining error of quantity i at the finest level: a fifteenth of the last change, or 1 / (2^p -
 /// 1) of it where changes still decrease with order p < 4. Where the last change happens to cross
-/// zero, the change before it is used, reduced by the same factor.
+/// zero, the changes before it are used, reduced by the same factor for each level.
 double truncation(const std::vector<Level>& levels, std::size_t i) {
   const Level &last = levels.back(), &before = levels[levels.size() - 2];
   const double shrinks = last.state_change > kAboveRoundOff
                              ? std::clamp(before.state_change / last.state_change, 2.0, 16.0)
                              : 16.0;
-  return kNextTerm * std::max(last.changes[i], before.changes[i] / shrinks) / (shrinks - 1.0);
+  double change = std::max(last.changes[i], before.changes[i] / shrinks);
+  if (levels.size() > 3)
+    change = std::max(change, levels[levels.size() - 3].changes[i] / (shrinks * shrinks));
+  return kNextTerm * change / (shrinks - 1.0);
 }
 
 /// The order of the finest change above round-off, and whether the one before agrees.
@@ -237,7 +240,7 @@ void compare_in_its_coordinates(const RefinedRun& run, const Laws& laws,
                        note + ": too large to tell right from wrong");
       continue;
     }
-    comparison.check(q.output, error, q.error_floor, std::max(rounding, predicted), note);
+    comparison.check(q.output, error, q.error_floor, rounding + predicted, note);
   }
 }
 
