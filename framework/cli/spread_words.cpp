@@ -91,6 +91,9 @@ std::string key_of(const Context& context, const scene::Scene& scene, const Modu
 }
 
 void hold(const SpreadWords& words, farm::KeptParts& parts) {
+  // refused before anything is made
+  if (!words.shard.empty()) farm::shard_of(words.shard);
+  if (words.on != "local") farm::cluster_of(words.on);
   if (std::getenv(kTask) == nullptr) parts.hold(words.shard);
 }
 

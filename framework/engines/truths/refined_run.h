@@ -54,9 +54,10 @@ struct RefinedRun {
 
 /// Halves the step until the order has settled and the change by a halving is small, though still
 /// above round-off, or the time limit is reached. Then compares each quantity with a tolerance, the
-/// predicted truncation error and the largest of 100 floors, the round-off found, and the growth of
-/// the rounding of all steps (8 eps sqrt(steps) `growth`), and the order with 4. Scenes of rods and joints run twice,
-/// in six coordinates a body and in joint coordinates, each with lines of its own.
+/// predicted truncation error and the largest of 100 floors, the round-off found, and the growth
+/// of the rounding of all steps (8 eps sqrt(steps) `growth`), and the order with 4. Scenes of rods
+/// and joints run twice, in six coordinates a body and in joint coordinates, each with lines of
+/// its own.
 void compare_refined(const RefinedRun& run, const Laws& laws,
                      const std::vector<Quantity>& quantities, Comparison& comparison);
 
