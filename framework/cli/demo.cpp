@@ -124,10 +124,14 @@ void add_scenes(report::Page& page, const Graded& graded) {
   page.thumbnails(figures);
 }
 
-void write_index(const Context& context, const std::vector<Graded>& all, const fs::path& out) {
-  report::Page page(
-      "Tumble",
-      "three submissions of each assignment, graded; every scene, submission beside reference");
+void write_index(const Context& context, const std::vector<Graded>& all,
+                 const DemoOptions& options) {
+  const fs::path out = fs::absolute(options.out);
+  const std::string scenes = options.scenes > 0
+                                 ? fmt::format("the first {} scenes of each", options.scenes)
+                                 : "every scene";
+  report::Page page("Tumble", "three submissions of each assignment, graded; " + scenes +
+                                  ", submission beside reference");
   std::vector<report::Cell> links{{"Scores", "#scores"}};
   for (const Graded& graded : all)
     links.push_back({"Scenes of " + graded.kind->id, "#scenes-" + graded.kind->id});
@@ -200,7 +204,7 @@ void demo(Context& context, const DemoOptions& options) {
   engines.three_file = fs::path("../..") / kThree;           // from engines/SCENE
   engines.small = engines.no_videos = engines.quiet = true;  // tumble engines makes the whole page
   engines_of_all(context, engines);
-  write_index(context, all, out);
+  write_index(context, all, options);
   const int surprises = print_table(all);
   fmt::print("{}\n", (out / "index.html").string());
   if (surprises > 0) {
