@@ -19,6 +19,9 @@ double extent(const collision::CollisionShape& shape) {
   return shape.is_half_space() ? 0.0 : shape.bounding_radius();
 }
 
+// of the gap that rounding explains: of surfaces that are one, the rounding of the gap itself
+constexpr double kSurfacesCross = 1e-3;
+
 std::string both(const scene::Scene& scene, const StartPair& pair) {
   return fmt::format("bodies '{}' and '{}'",
                      scene.bodies[static_cast<std::size_t>(pair.body_a)].name,
@@ -26,8 +29,10 @@ std::string both(const scene::Scene& scene, const StartPair& pair) {
 }
 
 std::string refusal(const scene::Scene& scene, const StartPair& pair) {
-  if (!(pair.gap < 0))
-    return fmt::format("at the start one of the {} is inside the other", both(scene, pair));
+  // Their surfaces do not cross: the gap is one of surfaces, and says nothing of their insides.
+  if (!(pair.gap < -kSurfacesCross * pair.explained))
+    return fmt::format("at the start one of the {} is inside the other, or where it is",
+                       both(scene, pair));
   return fmt::format(
       "{} overlap at the start, by about {:.3g} m; the rounding of decimals and of "
       "single-precision models explains {:.2g} m here",
