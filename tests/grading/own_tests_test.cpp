@@ -1,6 +1,8 @@
-// The rule for points of a student's own tests, on runs that are given.
+// The rule for points of a student's own tests, on runs that are given, and what a page shows of
+// them.
 #include <gtest/gtest.h>
 
+#include "framework/grading/grades/own_test_names.h"
 #include "framework/grading/grades/own_tests.h"
 
 namespace tumble::grading {
@@ -23,8 +25,38 @@ TEST(OwnTests, EachSlipCaughtEarnsItsShare) {
                        {slip(1, {"S.A"}, {"S.A"}), slip(2, {"S.B"}, {"S.B"}), slip(3, {}, {}),
                         slip(4, {"S.A", "S.B"}, {"S.A", "S.B"}), right({}, {})});
   EXPECT_EQ(grade.score, 3.0);
-  EXPECT_NE(grade.story.find("slip 3: not caught"), std::string::npos);
-  EXPECT_EQ(grade.story.find("secret"), std::string::npos);
+  EXPECT_NE(grade.names.find("slip 3 is secret, not caught"), std::string::npos) << grade.names;
+}
+
+// Which of its slips a test fails for is a bit for each of them, chosen by what the slip answered.
+TEST(OwnTests, AStudentIsToldOfEachTestOnlyWhetherItCaughtASlip) {
+  const auto told = [](const Failed& by_first, const Failed& by_second) {
+    return graded_own_tests(kFourSlips, {"S.A", "S.B"},
+                            {slip(1, by_first, by_first), slip(2, by_second, by_second),
+                             slip(3, {}, {}), slip(4, {}, {}), right({}, {})})
+        .story;
+  };
+  const std::string story = told({"S.A"}, {"S.A", "S.B"});
+  EXPECT_EQ(story, told({"S.A", "S.B"}, {"S.A"})) << "it depends on which slip a test caught";
+  EXPECT_NE(story.find("S.A caught at least one slip\n"), std::string::npos) << story;
+  EXPECT_NE(told({"S.A"}, {}).find("S.B caught no slip\n"), std::string::npos);
+  EXPECT_EQ(story.find("secret"), std::string::npos) << story;
+}
+
+TEST(OwnTestNames, AreThoseThatStandInTheFile) {
+  EXPECT_EQ(names_of_tests("TEST(Ray, Hits) {}\nTEST_F ( Hit ,\n Twice ) {}\nMY_TEST(No, One)\n"
+                           "TEST_P(Many, Each) {} TYPED_TEST(Kind, Of) {} TEST(S, JOIN(a, b)) {}"),
+            (Failed{"Ray.Hits", "Hit.Twice", "Many.Each", "Kind.Of"}));
+}
+
+TEST(OwnTestNames, WhatTheProgramReportsOnlyChoosesOneOfThem) {
+  const Failed in_file = {"Ray.Hits", "Many.Each", "Kind.Of"};
+  EXPECT_EQ(name_in_file("Ray.Hits", in_file), "Ray.Hits");
+  EXPECT_EQ(name_in_file("Some/Many.Each/3", in_file), "Many.Each");
+  EXPECT_EQ(name_in_file("Kind/0.Of", in_file), "Kind.Of");
+  // an answer of the module, written as a name while the tests ran
+  for (const char* made : {"Answer.3fe999999999999a", "Ray.Hits7", "Ray_.Hits", "x", ".", "Ray."})
+    EXPECT_EQ(name_in_file(made, in_file), kUnnamedTest) << made;
 }
 
 TEST(OwnTests, ATestThatAccusesARightSolutionCatchesNothingAndTakesOneBack) {

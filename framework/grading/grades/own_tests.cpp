@@ -15,6 +15,7 @@
 #include "framework/grading/course/build_submission.h"
 #include "framework/core/run_program.h"
 #include "framework/grading/grades/audit.h"
+#include "framework/grading/grades/own_test_names.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/verdicts/plain_text.h"
@@ -189,18 +190,20 @@ OwnTestsGrade judge_own_tests(const Course& course, const std::string& id, const
         names.push_back(result.test);
     runs.emplace_back(i, std::move(*results));
   }
-  std::sort(names.begin(), names.end());
-  // A test that did not run did not pass.
+  // A test that did not run did not pass. From here on its name is that of the file.
+  const std::vector<std::string> in_file = names_of_tests(text_of(tests));
+  std::set<std::string> shown;
+  for (const std::string& name : names) shown.insert(name_in_file(name, in_file));
   for (const auto& [i, results] : runs) {
-    std::vector<std::string> failed;
+    std::set<std::string> failed;
     for (const std::string& name : names)
       if (std::none_of(results.begin(), results.end(), [&](const TestResult& r) {
             return r.test == name && r.verdict == Verdict::kRight;
           }))
-        failed.push_back(name);
-    tried[i].failed.push_back(failed);
+        failed.insert(name_in_file(name, in_file));
+    tried[i].failed.push_back({failed.begin(), failed.end()});
   }
-  return graded_own_tests(rule, names, tried);
+  return graded_own_tests(rule, {shown.begin(), shown.end()}, tried);
 }
 
 OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::string>& tests,
@@ -220,11 +223,14 @@ OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::
   std::set<std::string> bad = unsteady;
   for (const auto& [test, right] : accuses) bad.insert(test);
 
-  std::string lines;
   OwnTestsGrade grade;
   grade.is_there = true;
   grade.possible = rule.points;
   std::size_t slips = 0, caught = 0;
+  std::set<std::string> catching;
+  const auto name_for_grader = [&](const TriedModule& module, const std::string& how) {
+    grade.names += (grade.names.empty() ? "" : "; ") + module.shown + " is " + module.name + how;
+  };
   for (const TriedModule& module : modules) {
     if (module.is_right) continue;
     ++slips;
@@ -232,19 +238,30 @@ OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::
     for (const std::string& test : module.failed[0])
       if (!bad.contains(test)) by.push_back(test);
     caught += !by.empty();
-    lines +=
-        module.shown + (by.empty() ? ": not caught\n" : ": caught by " + joined_names(by) + '\n');
-    grade.names += (grade.names.empty() ? "" : ", ") + module.shown + " is " + module.name;
+    catching.insert(by.begin(), by.end());
+    name_for_grader(module, by.empty() ? ", not caught" : ", caught by " + joined_names(by));
   }
-  for (const auto& [test, right] : accuses)
-    lines += fmt::format("{} accuses {}: it catches nothing, and takes one slip back\n", test,
-                         joined_names({right.begin(), right.end()}));
-  for (const std::string& test : unsteady)
-    if (!accuses.contains(test))
-      lines +=
-          test + " gave two verdicts for one module: it catches nothing, and takes one slip back\n";
-  for (const TriedModule& module : modules)
-    if (module.is_right) grade.names += ", " + module.shown + " is " + module.name;
+  for (const TriedModule& module : modules) {
+    if (!module.is_right) continue;
+    std::vector<std::string> by;
+    for (const auto& [test, right] : accuses)
+      if (right.contains(module.shown)) by.push_back(test);
+    name_for_grader(module, by.empty() ? "" : ", accused by " + joined_names(by));
+  }
+  // For the student one word a test: which slips it catches would tell what a test can compute of
+  // each of them.
+  std::string lines;
+  for (const std::string& test : tests) {
+    const char* const what =
+        accuses.contains(test)
+            ? " accuses a right solution: it catches nothing, and takes one slip "
+              "back"
+        : unsteady.contains(test)
+            ? " gave two verdicts for one module: it catches nothing, and takes one slip back"
+        : catching.contains(test) ? " caught at least one slip"
+                                  : " caught no slip";
+    lines += test + what + '\n';
+  }
   // at least one, or a file without tests would have all points
   const std::size_t needed = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(rule.share * static_cast<double>(slips) - 1e-9)));

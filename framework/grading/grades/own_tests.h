@@ -18,7 +18,9 @@
 ///                                    that is not repeated counts against its test
 ///   failing always, or by chance     accuses right solutions, or is not repeated
 /// What it does learn is what a test is for: the answers. They are those of right solutions, too,
-/// so pages show a student the names of tests, and nothing that the tests printed.
+/// so nothing that it makes of them is shown: not what it prints, not the names that it reports
+/// (own_test_names.h), not which slips each test catches. A student's page has the names that stand
+/// in the file, each with whether it caught a slip, and how many slips were caught in all.
 #pragma once
 
 #include <filesystem>
@@ -54,7 +56,7 @@ struct TriedModule {
 };
 
 /// The rule above, on runs that have been made.
-/// @param tests  all that ran, in their order
+/// @param tests  all that ran, by their names in the file
 OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::string>& tests,
                                const std::vector<TriedModule>& modules);
 

@@ -11,8 +11,8 @@ struct OwnTestsGrade {
   bool is_there = false;  // the submission has such a file and the rubric a rule
   bool is_final = true;   // false: the grader failed, or the machine was too busy
   double score = 0.0, possible = 0.0;
-  std::string story;  // for the student: slips have numbers
-  std::string names;  // for the grader only: which slip has which number
+  std::string story;  // for the student: of each test whether it caught a slip
+  std::string names;  // for the grader only: each slip, and which tests caught it
 };
 
 }  // namespace tumble::grading
