@@ -1,7 +1,9 @@
-// The rule for points of a student's own tests, on runs that are given, and what a page shows of
-// them.
+// The rule for points of a student's own tests, on runs that are given, what a page shows of them,
+// and the modules that are kept for them.
 #include <gtest/gtest.h>
 
+#include "framework/core/files.h"
+#include "framework/grading/grades/kept_module.h"
 #include "framework/grading/grades/own_test_names.h"
 #include "framework/grading/grades/own_tests.h"
 
@@ -95,6 +97,32 @@ TEST(OwnTests, TheShareIsEnoughForAllPoints) {
 
 TEST(OwnTests, WithoutTestsThereAreNoPoints) {
   EXPECT_EQ(graded_own_tests(kFourSlips, {}, {slip(1, {}, {}), right({}, {})}).score, 0.0);
+}
+
+TEST(KeptModule, CountsOnlyWholeAndUnderItsOwnName) {
+  const PrivateFolder folder;
+  const auto file = folder.path() / "one.module";
+  const std::string bytes(
+      "\x7f"
+      "ELF\0\n slip",
+      11);
+  EXPECT_FALSE(kept_module(file)) << "there is none";
+  keep_module(file, bytes);
+  ASSERT_EQ(kept_module(file), bytes);
+  const std::string whole = text_of(file);
+
+  std::string changed = whole;
+  changed.back() ^= 1;
+  for (const std::string& text : {changed, whole + 'x', whole.substr(0, whole.size() - 1),
+                                  whole.substr(0, 65), whole.substr(0, 20), std::string(), bytes}) {
+    write_whole(file, text);
+    EXPECT_FALSE(kept_module(file)) << text.size();
+  }
+  write_whole(folder.path() / "other.module", whole);
+  EXPECT_FALSE(kept_module(folder.path() / "other.module")) << "another module's bytes";
+
+  keep_module(file, bytes);
+  EXPECT_EQ(kept_module(file), bytes) << "it cannot be made again";
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "framework/grading/course/build_submission.h"
 #include "framework/core/run_program.h"
 #include "framework/grading/grades/audit.h"
+#include "framework/grading/grades/kept_module.h"
 #include "framework/grading/grades/own_test_names.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/sandbox/protection.h"
@@ -32,7 +33,7 @@ constexpr int kMostSlow = 4;        // runs that end out of time; then the rest 
 struct Module {
   Candidate candidate;
   std::string text;
-  fs::path object;
+  fs::path kept;  // compiled (kept_module.h)
 };
 
 std::string joined_names(const std::vector<std::string>& names) {
@@ -72,30 +73,33 @@ std::vector<Module> modules_of(const Course& course, const std::string& id) {
   const fs::path kept = (course.kept.empty() ? course.build : course.kept) / "own_tests" / id;
   std::vector<Module> modules;
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    modules.push_back({chosen[i], sources[i].text,
-                       kept / (digest(made_by + digest(sources[i].text)).substr(0, 32) + ".so")});
+    modules.push_back(
+        {chosen[i], sources[i].text,
+         kept / (digest(made_by + digest(sources[i].text)).substr(0, 32) + ".module")});
   return modules;
 }
 
 void build(const Course& course, const std::string& id, const Module& module) {
   const PrivateFolder folder;
-  const fs::path file = folder.path() / (module.candidate.file.stem().string() + ".cpp");
+  const fs::path file = folder.path() / (module.candidate.file.stem().string() + ".cpp"),
+                 object = folder.path() / "module.so";
   write_whole(file, module.text);
-  std::string said;
-  make_whole(module.object, [&](const fs::path& draft) {
-    const BuiltSubmission built = build_submission(course, id, file, draft);
-    if (built.outcome != BuiltSubmission::Outcome::kBuilt) said = built.said + " ";
-  });
-  if (!said.empty()) throw UserError(module.candidate.file.string(), "does not compile: " + said);
+  const BuiltSubmission built = build_submission(course, id, file, object);
+  if (built.outcome != BuiltSubmission::Outcome::kBuilt)
+    throw UserError(module.candidate.file.string(), "does not compile: " + built.said);
+  keep_module(module.kept, text_of(object));
 }
 
 // One run of all tests on one module. @return nothing where the grader failed
 std::optional<std::vector<TestResult>> run_once(const Course& course, const std::string& id,
-                                                const fs::path& program, const fs::path& module) {
+                                                const fs::path& program, const fs::path& kept) {
+  // whole when the grading began: the next one makes it again
+  const std::optional<std::string> module = kept_module(kept);
+  if (!module) return std::nullopt;
   const PrivateFolder folder;
   // A name that is the same for every module.
   const fs::path object = folder.path() / "module.so", record = folder.path() / "results.json";
-  fs::copy_file(module, object);
+  write_whole(object, *module);
   const ProgramOutcome outcome =
       run_program({relay_of(course, id).string(), "--tests", program.string(), "--submission",
                    object.string(), "--json", record.string(), "--quick"},
@@ -122,9 +126,7 @@ void prepare_own_tests(const Course& course, const std::string& id) {
     if (!fs::exists(file))
       throw UserError(file.string(), "is not built", "Build it: ninja -C build own_tests_" + id);
   for (const Module& module : modules_of(course, id)) {
-    if (fs::exists(module.object)) continue;
-    fs::create_directories(module.object.parent_path());
-    build(course, id, module);
+    if (!kept_module(module.kept)) build(course, id, module);
   }
 }
 
@@ -171,7 +173,7 @@ OwnTestsGrade judge_own_tests(const Course& course, const std::string& id, const
   std::vector<std::pair<std::size_t, std::vector<TestResult>>> runs;
   int slow = 0;
   for (const std::size_t i : order) {
-    auto results = run_once(course, id, program, modules[i].object);
+    auto results = run_once(course, id, program, modules[i].kept);
     if (!results || std::any_of(results->begin(), results->end(),
                                 [](const TestResult& r) { return !is_final_verdict(r.verdict); })) {
       grade.is_final = false;

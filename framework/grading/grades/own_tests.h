@@ -36,7 +36,8 @@ namespace tumble::grading {
 /// Whether the course has a rule for own tests and the modules to try them on.
 bool wants_own_tests(const Course& course, const std::string& id);
 
-/// Compiles every slip and right solution of the rule, where BUILD/own_tests has it not yet.
+/// Compiles every slip and right solution of the rule, where BUILD/own_tests has it not yet, or not
+/// whole (kept_module.h).
 /// @throws UserError when one is missing, does not compile, or a program is not built
 void prepare_own_tests(const Course& course, const std::string& id);
 
