@@ -50,12 +50,14 @@ void print_table(const std::vector<grading::Grade>& grades) {
 bool keep_scores(const std::string& id, const fs::path& out,
                  const std::vector<grading::Lowering>& lowerings) {
   for (const grading::Lowering& lowering : lowerings)
-    fmt::print(stderr, "not lowered: {} ({})\n", grading::plain_name(lowering.name),
-               lowering.change);
-  fmt::print(stderr,
-             "These files are the same as before, so their scores stay. To see why, and to decide: "
-             "tumble regrade {} {}\n",
-             id, out.string());
+    fmt::print(stderr, "not lowered: {} ({}){}\n", grading::plain_name(lowering.name),
+               lowering.change,
+               lowering.is_only_in_ledger ? "; its score is blank until that is decided" : "");
+  fmt::print(
+      stderr,
+      "These files are the same as before, so no score is lowered. To see why, and to decide: "
+      "tumble regrade {} {}\n",
+      id, out.string());
   return false;
 }
 
@@ -231,8 +233,8 @@ void add_grade(CLI::App& app, Context& context) {
               "without it takes over what is finished")
       .type_name("K/N");
   verb.footer(
-      "Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 "
-      "something to repair, "
+      "Exit: 0 all graded, 1 a submission without a file, or a score that tumble regrade has to "
+      "ask about (blank, with the reason), 2 something to repair, "
       "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it "
       "again).\n"
       "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else "

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/random.h"
+#include "framework/grading/grades/ledger.h"
 #include "tests/cli/busy_loops.h"
 #include "tests/cli/grading_fixture.h"
 #include "tests/support/whole.h"
@@ -221,6 +222,52 @@ TEST_F(Lowering, NeedsAYes) {
   EXPECT_NE(ledger().back()["change"].get<std::string>().find("the rubric changed"),
             std::string::npos);
   EXPECT_EQ(tumble({"ledger", "verify", (root / "out").string()}).code, 0);
+}
+
+TEST_F(Lowering, NeedsAYesAlsoWhereTheResultIsLostOrItsKey) {
+  const std::string held = text_of(root / "out/blaise/results.json");
+  fs::remove(root / "grader.key");
+  const ProgramOutcome without_key = grade("out");
+  EXPECT_EQ(without_key.code, 1) << without_key.printed;
+  EXPECT_TRUE(says(without_key, "not lowered: blaise")) << without_key.printed;
+  EXPECT_TRUE(says(without_key, "the ledger holds")) << without_key.printed;
+  EXPECT_TRUE(says(without_key, "tumble regrade a1")) << without_key.printed;
+  EXPECT_EQ(text_of(root / "out/blaise/results.json"), held) << "it was touched without a yes";
+  const std::string gradebook = text_of(root / "out/gradebook.csv");
+  EXPECT_NE(gradebook.find("\nblaise,,blaise,,\n"), std::string::npos) << gradebook;
+  EXPECT_EQ(tumble({"ledger", "verify", (root / "out").string()}).code, 0);
+
+  fs::remove_all(root / "out/blaise");
+  EXPECT_EQ(regrade().code, 1);
+  EXPECT_NE(text_of(root / "out/blaise/index.html").find("This result is missing"),
+            std::string::npos);
+
+  const ProgramOutcome agreed = regrade({"--yes"});
+  EXPECT_EQ(agreed.code, 0) << agreed.printed;
+  EXPECT_EQ(results("blaise")["score"], before - 0.5);
+  EXPECT_NE(ledger().back()["change"].get<std::string>().find("the ledger holds"),
+            std::string::npos);
+  EXPECT_EQ(tumble({"ledger", "verify", (root / "out").string()}).code, 0);
+}
+
+// As where a folder of results was put back from an older copy, with its valid record.
+TEST_F(Grading, AResultThatIsOlderThanTheLedgerDoesNotLowerIt) {
+  put("ada/a1_impulse.cpp", "int x = ;\n");
+  ASSERT_EQ(grade("out").code, 0);
+  {
+    const fs::path file = root / "out" / kLedgerFile;
+    LedgerEntry later = read_ledger(file).entries.back();
+    later.score = 10.0;
+    Ledger(file).append(later);
+  }
+  const ProgramOutcome again = grade("out");
+  EXPECT_EQ(again.code, 1) << again.printed;
+  EXPECT_TRUE(says(again, "not lowered: ada (10 -> 0: ")) << again.printed;
+  EXPECT_EQ(ledger().back()["score"], 10.0);
+  const ProgramOutcome agreed = tumble({"regrade", "a1", (root / "out").string(), "--yes"});
+  EXPECT_EQ(agreed.code, 0) << agreed.printed;
+  EXPECT_EQ(ledger().back()["score"], 0.0);
+  EXPECT_EQ(grade("out").code, 0) << "what was agreed to is asked again";
 }
 
 TEST_F(Overnight, OneStudentAgainLeavesTheOthersAndChangesNothing) {

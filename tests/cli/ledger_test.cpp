@@ -76,6 +76,20 @@ TEST_F(LedgerOfThree, GrowsOnlyByWhatIsNew) {
   EXPECT_EQ(latest_entries(read_ledger(file())).at("ada").score, 90.0);
 }
 
+// A fault of the grader has no score: who lowers the next one lowers the one before it.
+TEST_F(LedgerOfThree, HoldsTheLastScoreBehindAnEntryWithoutOne) {
+  LedgerEntry fault = entry("ada", 0.0);
+  fault.score.reset();
+  fault.is_final = false;
+  Ledger ledger(file());
+  ledger.append(fault);
+  ASSERT_NE(ledger.last_score("ada"), nullptr);
+  EXPECT_EQ(ledger.last_score("ada")->score, 80.0);
+  EXPECT_EQ(Ledger(file()).last_score("ada")->score, 80.0) << "it is lost by reading it again";
+  EXPECT_EQ(Ledger(file()).last_score("ada")->submission, digest("ada"));
+  EXPECT_EQ(ledger.last_score("dora"), nullptr);
+}
+
 // The name of a folder with a line break: escaped once, and the same after it was read again.
 TEST_F(LedgerOfThree, AnEscapedNameStaysAsItIs) {
   const LedgerEntry odd = entry("a\\x0Ab", 80.0);

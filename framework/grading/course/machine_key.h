@@ -3,7 +3,8 @@
 ///
 /// The key file is $TUMBLE_GRADER_KEY, else $XDG_STATE_HOME/tumble/grader.key, else
 /// ~/.local/state/tumble/grader.key: 32 random bytes, mode 0600, created on first use, never in a
-/// folder of results. Losing it costs only time: everything is graded again.
+/// folder of results. Losing it costs time: everything is graded again, and a
+/// score that comes out lower than the ledger's waits for `tumble regrade`.
 #pragma once
 
 #include <filesystem>

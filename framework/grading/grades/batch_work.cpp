@@ -104,7 +104,7 @@ void report_distrusted(const std::vector<GradedWork>& all, const Notice& notice)
   constexpr std::size_t kNamed = 5;
   std::size_t count = 0;
   for (const GradedWork& work : all) {
-    if (work.earlier.problem.empty()) continue;
+    if (work.earlier.problem.empty() || work.is_left_out) continue;
     if (++count <= kNamed)
       notice(plain_name(work.submission->name) + ": the earlier result is not reused, because " +
              work.earlier.problem + "; graded again");

@@ -54,7 +54,8 @@ void remark_equal_files(std::vector<GradedWork>& all);
 /// which a gradebook keeps the last. They get a remark and a notice.
 void report_doubles(std::vector<GradedWork>& all, const Notice& notice);
 
-/// A notice for each of the first earlier results that are not reused, with the reason.
+/// A notice for each of the first earlier results that are not reused, with the reason. Those that
+/// are left out are not graded again: their notice is the overview's.
 void report_distrusted(const std::vector<GradedWork>& all, const Notice& notice);
 
 /// Results are published; the key that signs them must not be.

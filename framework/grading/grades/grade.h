@@ -96,6 +96,9 @@ struct Grade {
   double score = 0.0, possible = 0.0;
   // nothing has changed since an earlier run, whose results are kept
   bool taken_over = false;
+  // lower than the ledger's score, whose own result is lost or not trusted, and nobody has agreed:
+  // it has no score
+  bool is_held = false;
   // "80 -> 85: the tests changed"; empty without an earlier, different result
   std::string change;
   std::vector<TestChange> changes;   // test by test
@@ -111,8 +114,10 @@ struct Grade {
   std::size_t count(Verdict verdict) const;
   /// Whether no test ended in a fault of the grader or because the machine was too busy.
   bool is_final() const;
-  /// Whether a gradebook may have the score: it is final, and a file was found.
-  bool has_score() const { return is_final() && state != GradeState::kNothingToCompile; }
+  /// Whether a gradebook may have the score: it is final, a file was found, and it is not held.
+  bool has_score() const {
+    return is_final() && state != GradeState::kNothingToCompile && !is_held;
+  }
 };
 
 struct GradeProgress {
@@ -125,6 +130,9 @@ struct GradeProgress {
 struct Lowering {
   std::string name, change;         // "80 -> 75: the tests changed"
   std::vector<TestChange> changes;  // test by test
+  // the higher score stands in the ledger alone: without a yes it is not put in its place, and the
+  // gradebook has none
+  bool is_only_in_ledger = false;
 };
 
 struct GradeOptions {

@@ -169,11 +169,21 @@ class Batch {
     work.earlier_place = place_of(work);
     if (output_->owns(work.folder))
       work.earlier = read_earlier_run(work.earlier_place, id_, key_.bytes);
+    distrust_older_than_ledger(work);
     const fs::path of_class = out_ / work.folder;
     if (!options_.shard || work.earlier.record || !fs::is_directory(fs::symlink_status(of_class)))
       return;
     work.earlier_place = of_class;
     work.earlier = read_earlier_run(of_class, id_, key_.bytes);
+  }
+
+  // A signed result may be an old one that was put back.
+  void distrust_older_than_ledger(Work& work) const {
+    if (!ledger_ || !work.earlier.record || !work.earlier.record->grade.has_score()) return;
+    const LedgerScore* last = ledger_->last_score(work.folder);
+    if (last && last->submission == work.earlier.record->key.submission &&
+        work.earlier.record->grade.score < last->score)
+      work.earlier = {{}, "it is older than the ledger's last score of the same file"};
   }
 
   void take_over_or_open(Work& work) {
@@ -247,7 +257,7 @@ class Batch {
   void log_settled() {
     if (!ledger_) return;
     for (; logged_ < work_.size() && work_[logged_].is_settled; ++logged_)
-      if (!work_[logged_].is_left_out)
+      if (!work_[logged_].is_left_out && !work_[logged_].record.grade.is_held)
         ledger_->append(std::exchange(work_[logged_].entry, LedgerEntry()));
   }
 
@@ -360,7 +370,10 @@ class Batch {
     const bool old_stands = earlier && earlier->grade.is_final() &&
                             earlier->key.submission == work.key.submission &&
                             !record->grade.is_final();
-    if (!options_.shard && !old_stands && would_lower(work, *record)) {
+    const LedgerScore* above = lowers_ledger(work, *record);
+    if (!options_.shard && !old_stands && (lowers_earlier(work, *record) || above)) {
+      if (!lowers_earlier(work, *record))
+        record->grade.change = change_from_ledger(work, record->grade, *above);
       marks_.let_go_of_details(*record);
       work.record = std::move(*record);  // until decide_lowerings
       held_.push_back(&work);
@@ -378,12 +391,30 @@ class Batch {
     fs::remove_all(draft, ignored);
   }
 
-  // Whether somebody has to agree before this result replaces the earlier one.
-  bool would_lower(const Work& work, const GradeRecord& now) const {
+  // Whether somebody has to agree before this result replaces one of this score.
+  bool is_lower(const GradeRecord& now, double score, const std::string& submission) const {
+    if (!now.grade.is_final()) return false;
+    if (!options_.guard_changed_files && submission != now.key.submission) return false;
+    return !now.grade.has_score() || now.grade.score < score;
+  }
+  bool lowers_earlier(const Work& work, const GradeRecord& now) const {
     const std::optional<GradeRecord>& old = work.earlier.record;
-    if (!old || !old->grade.has_score() || !now.grade.is_final()) return false;
-    if (!options_.guard_changed_files && old->key.submission != work.key.submission) return false;
-    return !now.grade.has_score() || now.grade.score < old->grade.score;
+    return old && old->grade.has_score() && is_lower(now, old->grade.score, old->key.submission);
+  }
+  // The ledger keeps a score whose result was lost, changed, or signed by a key that was lost.
+  const LedgerScore* lowers_ledger(const Work& work, const GradeRecord& now) const {
+    const LedgerScore* last = ledger_ ? ledger_->last_score(work.folder) : nullptr;
+    return last && is_lower(now, last->score, last->submission) ? last : nullptr;
+  }
+  static std::string change_from_ledger(const Work& work, const Grade& now,
+                                        const LedgerScore& last) {
+    const bool is_lost = work.earlier.problem.empty() && !work.earlier.record;
+    return fmt::format("{0} -> {1}: the ledger holds {0}, and {2}", points_text(last.score),
+                       now.has_score() ? points_text(now.score) : "none",
+                       is_lost ? "the result itself is missing"
+                       : work.earlier.problem.empty()
+                           ? "the result in place is another one"
+                           : "that result does not count: " + work.earlier.problem);
   }
 
   // Asks once for all; results that may not be lowered stay as they were.
@@ -393,7 +424,8 @@ class Batch {
     std::vector<Lowering> lowerings;
     for (const Work* work : held_) {
       const Grade& grade = work->record.grade;
-      lowerings.push_back({work->submission->name, grade.change, grade.changes});
+      lowerings.push_back({work->submission->name, grade.change, grade.changes,
+                           !lowers_earlier(*work, work->record)});
     }
     const bool may = options_.may_lower && options_.may_lower(lowerings);
     for (Work* work : held_) {
@@ -403,6 +435,9 @@ class Batch {
         settle_with(
             *work,
             read_earlier_run(place_of(*work), id_, key_.bytes).record.value_or(work->record));
+        work->record.grade.change = work->entry.change = change;
+      } else if (!lowers_earlier(*work, work->record)) {
+        leave_blank(*work);
       } else {
         take_over(*work, earlier_record(*work).value_or(*work->earlier.record));
         work->record.grade.change = "not lowered (" + change + ")";
@@ -411,6 +446,24 @@ class Batch {
       fs::remove_all(draft_of(*work), ignored);
     }
     log_settled();
+  }
+
+  // What lies in place does not count, and is left as it is. No score is written, so that a system
+  // that reads the gradebook keeps the one it has; the ledger gets no entry.
+  void leave_blank(Work& work) {
+    Grade& grade = work.record.grade;
+    if (!fs::exists(fs::symlink_status(place_of(work)))) {
+      write_whole(draft_of(work) / "fault.txt",
+                  "This result is missing, and a new one would be lower than the ledger's: "
+                  "tumble regrade asks whether it may be.");
+      write_fault(work, 0);
+      put_in_place(made_of(work), place_of(work), draft_of(work) / "old");
+    }
+    grade.name = work.submission->name;
+    grade.is_held = true;
+    grade.change = "not lowered (" + grade.change + ")";
+    grade.media.clear();
+    work.is_settled = true;
   }
 
   // The grading process itself failed: writes a page that says so, without a score.
@@ -447,9 +500,9 @@ class Batch {
     std::vector<Grade> grades;
     nlohmann::ordered_json times = {{"command", course_.command},
                                     {"seconds", nlohmann::ordered_json::object()}};
-    std::size_t left_out = 0;
+    std::size_t left_out = 0, distrusted = 0;
     for (Work& work : work_) {
-      left_out += work.is_left_out;
+      (work.earlier.problem.empty() ? left_out : distrusted) += work.is_left_out;
       if (work.is_left_out) continue;
       work.record.grade.remarks = work.remarks;
       work.record.grade.student_id = work.submission->student_id;
@@ -461,6 +514,11 @@ class Batch {
           fmt::format("{} submissions were never graded and are not in the overview: grade all "
                       "of them with tumble grade",
                       left_out));
+    if (distrusted > 0)
+      notice(
+          fmt::format("the earlier results of {} submissions do not count, and they are not in the "
+                      "overview: grade all of them with tumble grade",
+                      distrusted));
     const fs::path& out = output_->path();
     write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
     index_page(kind_, grades, static_cast<bool>(options_.overview)).write(out / "index.html");

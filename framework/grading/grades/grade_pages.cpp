@@ -149,6 +149,7 @@ void add_checks(report::Page& page, const SceneMedia& scene, bool passed) {
 }  // namespace
 
 std::string summary_of(const Grade& grade) {
+  if (grade.is_held) return "no score: it would be lower than the ledger's, and nobody has agreed";
   switch (grade.state) {
     case GradeState::kNothingToCompile: return "nothing to compile";
     case GradeState::kDoesNotCompile: return "does not compile";
@@ -349,10 +350,12 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
   links.insert(links.end(), {{"gradebook.csv", "gradebook.csv"}, {"ledger.jsonl", "ledger.jsonl"}});
   page.links(links);
   std::vector<double> scores;
-  std::size_t faults = 0, not_found = 0;
+  std::size_t faults = 0, not_found = 0, held = 0;
   for (const Grade& grade : grades) {
     if (grade.has_score())
       scores.push_back(grade.score);
+    else if (grade.is_held)
+      ++held;
     else if (grade.is_final())
       ++not_found;
     else
@@ -377,6 +380,13 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
                                "scores in the gradebook are blank.",
                                not_found),
                    Look::kWarning);
+  if (held > 0)
+    page.paragraph(
+        fmt::format("{} would be lower than in the ledger, and the result that has that score is "
+                    "missing or does not count. tumble regrade shows them and asks; until then "
+                    "their scores in the gradebook are blank.",
+                    held),
+        Look::kWarning);
   if (std::any_of(grades.begin(), grades.end(),
                   [](const Grade& grade) { return !grade.is_official; }))
     page.paragraph(

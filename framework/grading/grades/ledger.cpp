@@ -221,11 +221,18 @@ Ledger::Ledger(const fs::path& file) : file_(file) {
                     "Nothing was graded. Keep this folder as it is, find out who changed it, and "
                     "give --out another one.");
   latest_ = latest_entries(ledger);
+  for (const LedgerEntry& entry : ledger.entries)
+    if (entry.score) scores_[entry.folder] = {entry.submission, *entry.score};
   count_ = ledger.entries.size();
   head_ = ledger.head;
   was_mended_ = !ledger.unfinished.empty();
   if (was_mended_ && ::truncate(file.c_str(), static_cast<off_t>(ledger.whole_bytes)) != 0)
     throw cannot_append(file);
+}
+
+const LedgerScore* Ledger::last_score(const std::string& folder) const {
+  const auto found = scores_.find(folder);
+  return found == scores_.end() ? nullptr : &found->second;
 }
 
 void Ledger::append(const LedgerEntry& entry) {
@@ -250,6 +257,7 @@ void Ledger::append(const LedgerEntry& entry) {
   std::string body;
   head_ = digest_in(line.substr(0, line.size() - 1), body);
   latest_[entry.folder] = entry;
+  if (entry.score) scores_[entry.folder] = {entry.submission, *entry.score};
   ++count_;
 }
 

@@ -77,6 +77,12 @@ std::map<std::string, LedgerEntry> latest_entries(const LedgerContent& ledger);
 std::vector<std::string> differences_from_results(const LedgerContent& ledger,
                                                   const std::filesystem::path& out);
 
+/// A score of a folder of results, and the submission that has it.
+struct LedgerScore {
+  std::string submission;  // digest
+  double score = 0.0;
+};
+
 /// A ledger open for appending.
 class Ledger {
  public:
@@ -88,6 +94,9 @@ class Ledger {
   /// Whether a line was unfinished.
   bool was_mended() const { return was_mended_; }
 
+  /// The last score of a folder, also where later entries have none; null: it never had one.
+  const LedgerScore* last_score(const std::string& folder) const;
+
   /// Appends the entry, unless the last entry of its folder says the same.
   /// @throws UserError when the file cannot be written
   void append(const LedgerEntry& entry);
@@ -95,6 +104,7 @@ class Ledger {
  private:
   std::filesystem::path file_;
   std::map<std::string, LedgerEntry> latest_;
+  std::map<std::string, LedgerScore> scores_;  // by folder
   std::size_t count_ = 0;
   std::string head_;
   bool was_mended_ = false;

@@ -115,6 +115,13 @@ Standing best_of(const Policy& policy, const Person& person, const std::vector<A
       chosen.why = plain_name(chosen.submission) + " has no final result: grade it again";
       return chosen;
     }
+    if (attempt.grade->is_held) {
+      chosen = standing_of(policy, person, attempt);
+      chosen.attempts = attempts.size();
+      chosen.why = plain_name(chosen.submission) +
+                   " would be lower than in the ledger: no score until tumble regrade is answered";
+      return chosen;
+    }
     if (counted && !attempt.grade->has_score()) continue;
     const Standing standing = standing_of(policy, person, attempt);
     if (counted && chosen.before && !counts_more(policy, attempt, standing, *counted, chosen))
