@@ -23,7 +23,7 @@ struct GradeWords {
   bool no_media = false;
   std::string code_in_pages;  // empty: by no_media
   std::string sandbox, accepted_sandbox, policy;
-  bool no_policy = false;
+  bool no_policy = false, mend_list = false;
   std::string shard, on, hosts;
   int shards = 0;
 };
@@ -94,7 +94,11 @@ void grade_shards(const Context& context, const GradeWords& words, std::size_t t
   job.jobs = words.jobs;
   job.progress = options.progress;
   job.notice = options.notice;
-  { const grading::OutputFolder check(out, words.folder, words.id); }  // refused before any job
+  {  // refused before any job
+    const grading::OutputFolder check(
+        out, words.folder, words.id, {},
+        words.mend_list ? grading::BrokenList::kMend : grading::BrokenList::kRefuse);
+  }
   grading::grade_on(job);
 }
 
@@ -111,11 +115,15 @@ void refuse_contradictions(const GradeWords& words) {
 
 /// The policy of the last grading into this folder; empty: it had none, or is no folder of results,
 /// which is for the grading itself to say.
-fs::path policy_before(const fs::path& out) {
+fs::path policy_before(const fs::path& out, bool mend_list) {
+  if (!grading::has_manifest(out)) return {};
   try {
     return grading::settings_of(out).policy;
   } catch (const UserError&) {
-    return {};
+    if (!mend_list) throw;
+    throw UserError(out.string(),
+                    "whether its last grading went by a policy is in no list that can be read",
+                    "Add --policy FILE.json, or --no-policy if there was none.");
   }
 }
 
@@ -123,7 +131,7 @@ fs::path policy_before(const fs::path& out) {
 void refuse_to_drop_policy(const GradeWords& words, const fs::path& out) {
   // a part of a class makes no gradebook: the command that asked for it does
   if (!words.policy.empty() || words.no_policy || !words.shard.empty()) return;
-  const fs::path before = policy_before(out);
+  const fs::path before = policy_before(out, words.mend_list);
   if (before.empty()) return;
   throw UserError(
       out.string(),
@@ -150,6 +158,7 @@ void grade(Context& context, const GradeWords& words) {
   if (!words.code_in_pages.empty())
     request.options.code_in_pages = grading::code_in_pages_of(words.code_in_pages);
   request.options.accepted_sandbox = words.accepted_sandbox;
+  request.options.mend_list = words.mend_list;
   request.options.may_lower = [&](const std::vector<grading::Lowering>& lowerings) {
     return keep_scores(words.id, out, lowerings);
   };
@@ -208,6 +217,9 @@ void add_grade(CLI::App& app, Context& context) {
       .type_name("FILE.json");
   verb.flag("--no-policy", words->no_policy,
             "Grade without one into a folder whose last grading had one");
+  verb.flag("--mend-list", words->mend_list,
+            "Make the list of results in the folder (.tumble-grade.json) anew where it cannot be "
+            "read: from the ledger and the records");
   verb.option("--sandbox", words->sandbox,
               "namespaces, landlock or bare; default: the strongest that this machine has (tumble "
               "doctor)")

@@ -182,6 +182,14 @@ TEST_F(Grading, APolicyIsNotDroppedBecauseAWordWasForgotten) {
   EXPECT_NE(grade("out", {"--no-media", "--no-policy"}).code, 2);
   EXPECT_NE(text_of(root / "out/gradebook.csv"), gradebook);
   EXPECT_NE(grade("out").code, 2) << "the last grading had none";
+
+  write_whole(root / "out/.tumble-grade.json", "{\"assignment\": ");
+  EXPECT_TRUE(says(grade("out"), "--mend-list"));
+  const ProgramOutcome unsaid = grade("out", {"--no-media", "--mend-list"});
+  EXPECT_EQ(unsaid.code, 2) << "nobody knows whether there was a policy";
+  EXPECT_TRUE(says(unsaid, "--no-policy")) << unsaid.printed;
+  EXPECT_NE(grade("out", {"--no-media", "--mend-list", "--policy", policy}).code, 2);
+  EXPECT_EQ(text_of(root / "out/gradebook.csv"), gradebook);
 }
 
 TEST_F(Grading, EveryStudentsPageIsOneCommandAndOutsideOfTheResults) {

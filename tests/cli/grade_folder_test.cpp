@@ -15,6 +15,7 @@
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/course/machine_key.h"
+#include "framework/grading/grades/ledger.h"
 #include "framework/grading/grades/output_folder.h"
 #include "framework/grading/grades/scoring.h"
 
@@ -207,6 +208,60 @@ TEST_F(Output, AManifestThatLeadsElsewhereIsRefusedAndNothingIsTouched) {
     EXPECT_TRUE(names(refusal(root() / "out"), "was not written by this grader")) << name;
     EXPECT_TRUE(fs::exists(root() / "victim/thesis.txt")) << name;
   }
+}
+
+TEST_F(Output, AListThatCannotBeReadIsSaidWithTheWayOnAndNothingIsTouched) {
+  const fs::path list = root() / "out/.tumble-grade.json";
+  make(root() / "out", "alice");
+  const std::string whole = text_of(list);
+  for (const std::string& text : {std::string(), whole.substr(0, whole.size() / 2),
+                                  std::string("[]"), std::string(R"({"assignment": "a1"})"),
+                                  std::string(R"({"assignment": 1, "folders": []})")}) {
+    write_whole(list, text);
+    const std::string said = refusal(root() / "out");
+    EXPECT_TRUE(names(said, "cannot be read as the list")) << text << said;
+    EXPECT_TRUE(names(said, "--mend-list")) << text << said;
+    EXPECT_EQ(text_of(list), text);
+    EXPECT_TRUE(fs::exists(root() / "out/alice/record.json")) << text;
+    EXPECT_THROW(settings_of(root() / "out"), UserError) << text;
+  }
+}
+
+TEST_F(Output, AListIsMadeAnewFromLedgerRecordsAndDraftsAndOfNothingElse) {
+  const fs::path out = root() / "out";
+  for (const char* name : {"alice", "bob"}) make(out, name);
+  LedgerEntry entry;
+  entry.assignment = "a1";
+  entry.name = entry.folder = "alice";
+  Ledger(out / kLedgerFile).append(entry);
+  write_whole(out / "bob/record.json", R"({"assignment": "a1", "folder": "bob"})");
+  write_whole(out / ".making-carl/fault.txt", "half");
+  write_whole(out / ".tumble-grade.json", "{");
+  {
+    const OutputFolder mended(out, subs(), "a1", {}, BrokenList::kMend);
+    EXPECT_EQ(mended.folders(), (std::set<std::string>{"alice", "bob", "carl"}));
+  }
+  EXPECT_EQ(refusal(out), "") << "the list is not written again";
+  EXPECT_FALSE(fs::exists(out / ".making-carl"));
+
+  write_whole(out / ".tumble-grade.json", "{");
+  const auto mend = [&](const std::string& id) {
+    EXPECT_THROW(OutputFolder(out, subs(), id, {}, BrokenList::kMend), UserError) << id;
+  };
+  mend("a2");
+  write_whole(out / "thesis/index.html", "years of work");
+  mend("a1");
+  EXPECT_EQ(text_of(out / "thesis/index.html"), "years of work");
+  EXPECT_EQ(text_of(out / ".tumble-grade.json"), "{") << "the list is made for what is refused";
+}
+
+TEST_F(Output, SettingsStayWhereAFolderIsOpenedWithoutAny) {
+  const RunSettings settings{"a1", subs(), 7.0, false, "/policy.json", "none"};
+  { const OutputFolder graded(root() / "out", subs(), "a1", settings); }
+  { const OutputFolder looked_at(root() / "out", subs(), "a1"); }
+  EXPECT_EQ(settings_of(root() / "out").policy, "/policy.json");
+  EXPECT_EQ(settings_of(root() / "out").submissions, subs());
+  EXPECT_EQ(settings_of(root() / "out").budget_s, 7.0);
 }
 
 TEST_F(Output, ALinkAmongOursIsForeign) {

@@ -166,6 +166,7 @@ struct GradeOptions {
   std::function<bool(const std::vector<Lowering>&)> may_lower;
   bool guard_changed_files = false;
   std::filesystem::path policy;  // kept in the manifest
+  bool mend_list = false;        // a manifest that cannot be read is made anew
   // called with each grade once its result lies in place, in any order: the one time that its
   // stories are at hand
   std::function<void(const Grade&)> each;

@@ -58,7 +58,8 @@ class Batch {
     if (options.shard) fs::remove(done_file(out, *options.shard));
     output_.emplace(options.shard ? shard_folder(out, *options.shard) : out, submissions, id,
                     RunSettings{id, fs::canonical(submissions), options.budget_s, options.media,
-                                options.policy, word_of(options.page_code())});
+                                options.policy, word_of(options.page_code())},
+                    options.mend_list && !options.shard ? BrokenList::kMend : BrokenList::kRefuse);
     if (!options.shard) ledger_.emplace(output_->path() / kLedgerFile);
     if (ledger_ && ledger_->was_mended())
       notice(

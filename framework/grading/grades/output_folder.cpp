@@ -15,6 +15,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/grading/grades/ledger.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -98,6 +99,29 @@ bool is_one_component(const std::string& name) {
          name.find('\0') == std::string::npos;
 }
 
+UserError broken_list(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  if (folder.parent_path().filename() == kShards)
+    return {shown(file), "cannot be read: it is half-written, or was edited",
+            "Remove the folder " + shown(folder) +
+                ": it holds parts of a grading, which are made again."};
+  return {
+      shown(file),
+      "cannot be read as the list of what the grader made here: it is half-written, was edited, "
+      "or is of another version. Nothing was changed",
+      "Say tumble grade with this folder as --out and --mend-list: the list is made anew from "
+      "the ledger and the records. Or give --out a folder that does not exist yet."};
+}
+
+// Whether the record of a folder of results says that it is one, of this assignment.
+bool says_its_name(const fs::path& folder, const std::string& id) {
+  const auto record = nlohmann::json::parse(text_of(folder / "record.json"), nullptr, false);
+  const auto says = [&](const char* field, const std::string& value) {
+    return record.contains(field) && record[field] == value;
+  };
+  return record.is_object() && says("assignment", id) && says("folder", folder.filename());
+}
+
 // Whether the process that took this lock, and wrote its id into it, is still alive.
 bool holder_lives(int lock) {
   char text[24] = {};
@@ -109,6 +133,8 @@ bool holder_lives(int lock) {
 }  // namespace
 
 std::string draft_name(const std::string& folder) { return kDraft + folder; }
+
+bool has_manifest(const fs::path& out) { return is_there(out / kManifest); }
 
 RunSettings settings_of(const fs::path& out) {
   const fs::path file = out / kManifest;
@@ -127,14 +153,13 @@ RunSettings settings_of(const fs::path& out) {
     settings.policy = json.at("policy").get<std::string>();
     return settings;
   } catch (const nlohmann::json::exception&) {
-    throw UserError(shown(file), "cannot be read as the list of a folder of results",
-                    "Run tumble grade with this folder as --out once.");
+    throw broken_list(file);
   }
 }
 
 OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id,
-                           const RunSettings& settings)
-    : id_(id), settings_(settings) {
+                           const RunSettings& settings, BrokenList broken)
+    : id_(id), settings_(settings), broken_(broken) {
   std::error_code failed;
   path_ = fs::weakly_canonical(fs::absolute(out), failed);
   if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
@@ -180,8 +205,8 @@ void OutputFolder::read_manifest() {
   const fs::path file = path_ / kManifest;
   folders_.clear();
   if (!is_there(file)) return;
+  if (!fs::is_regular_file(fs::symlink_status(file))) refuse_foreign(file);
   try {
-    if (!fs::is_regular_file(fs::symlink_status(file))) refuse_foreign(file);
     std::ifstream in(file);
     const auto manifest = nlohmann::json::parse(in);
     const std::string other = manifest.at("assignment");
@@ -190,11 +215,44 @@ void OutputFolder::read_manifest() {
                       kElsewhere);
     for (const std::string folder : manifest.at("folders")) {
       // not from this grader: it could lead out of this folder
+      if (!is_one_component(folder) && broken_ == BrokenList::kMend) return list_anew();
       if (!is_one_component(folder)) refuse_foreign(file);
       folders_.insert(folder);
     }
   } catch (const nlohmann::json::exception&) {
-    refuse_foreign(file);
+    if (broken_ == BrokenList::kRefuse) throw broken_list(file);
+    return list_anew();
+  }
+  if (!settings_.assignment.empty()) return;
+  try {
+    settings_ = settings_of(path_);
+  } catch (const UserError&) {
+    // a manifest without settings has none to keep
+  }
+}
+
+void OutputFolder::list_anew() {
+  folders_.clear();
+  const LedgerContent ledger = read_ledger(path_ / kLedgerFile);
+  if (!ledger.fault.empty())
+    throw UserError(shown(path_ / kLedgerFile), "does not fit together: " + ledger.fault,
+                    "Nothing was changed. Keep this folder as it is, and give --out another one.");
+  std::set<std::string> named;
+  for (const LedgerEntry& entry : ledger.entries) {
+    if (entry.assignment != id_)
+      throw UserError(shown(path_),
+                      "holds results of " + plain_name(entry.assignment) + ", not of " + id_,
+                      kElsewhere);
+    named.insert(entry.folder);
+  }
+  for (const auto& entry : fs::directory_iterator(path_)) {
+    if (!fs::is_directory(entry.symlink_status())) continue;
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kDraft)) {
+      const std::string of = name.substr(std::string_view(kDraft).size());
+      if (is_one_component(of)) folders_.insert(of);
+    }
+    if (named.contains(name) || says_its_name(entry.path(), id_)) folders_.insert(name);
   }
 }
 

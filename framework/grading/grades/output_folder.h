@@ -4,7 +4,8 @@
 ///   OUT/.tumble-lock         held while a grading runs; the kernel releases it when the last of
 ///   its processes has ended
 ///   OUT/.shards/             results of parts of the class (shard.h)
-/// If OUT contains any other file, nothing is written.
+/// If OUT contains any other file, nothing is written. Where the list itself cannot be read, it is
+/// made anew only if the user says so (BrokenList).
 #pragma once
 
 #include <filesystem>
@@ -23,9 +24,20 @@ struct RunSettings {
   std::string code_in_pages = "own";
 };
 
+/// Whether OUT has a manifest, readable or not.
+bool has_manifest(const std::filesystem::path& out);
+
 /// The settings of the last grading into a folder of results.
-/// @throws UserError when the folder has no manifest of this grader
+/// @throws UserError when the folder has no manifest of this grader, or one that cannot be read
 RunSettings settings_of(const std::filesystem::path& out);
+
+/// What is done with a manifest that is half-written, edited or of another version.
+enum class BrokenList {
+  kRefuse,
+  // Made anew: a folder is this grader's where the ledger or its own record names it, or where it
+  // is a draft. What else lies there stays foreign; the settings are those of the command.
+  kMend,
+};
 
 class OutputFolder {
  public:
@@ -33,12 +45,13 @@ class OutputFolder {
   /// everything has been checked.
   /// @param out          may be a relative path, or lead through links
   /// @param submissions  the folder to be graded
-  /// @param settings     kept in the manifest
+  /// @param settings     kept in the manifest; without an assignment: those that are there stay
   /// @throws UserError with the obstacle: OUT is, contains or is inside `submissions`, contains a
   ///   file that this grader did not write or the results of another assignment, or another grading
   ///   runs there
   OutputFolder(const std::filesystem::path& out, const std::filesystem::path& submissions,
-               const std::string& id, const RunSettings& settings = {});
+               const std::string& id, const RunSettings& settings = {},
+               BrokenList broken = BrokenList::kRefuse);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
@@ -58,6 +71,7 @@ class OutputFolder {
 
  private:
   void read_manifest();
+  void list_anew();
   void refuse_foreign_files() const;
   void lock();
   void sweep_drafts() const;
@@ -65,6 +79,7 @@ class OutputFolder {
   std::filesystem::path path_;
   std::string id_;
   RunSettings settings_;
+  BrokenList broken_;
   std::set<std::string> folders_;  // in the manifest
   int lock_ = -1;
 };
