@@ -64,6 +64,7 @@ void tell_progress(const std::string& id, const grading::GradeProgress& progress
 // none.
 std::string surprise(int which, const Grade& grade) {
   if (!grade.is_final()) return "the grader failed";
+  if (!grade.faults.empty()) return "the grader failed, at " + grade.faults.front();
   const bool fine = which == kReference ? grade.score == grade.possible
                     : which == kStarter ? grade.score == 0.0
                                         : grade.score > 0.0 && grade.score < grade.possible;

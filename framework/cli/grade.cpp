@@ -247,8 +247,9 @@ void add_grade(CLI::App& app, Context& context) {
   verb.footer(
       "Exit: 0 all graded, 1 a submission without a file, or a score that tumble regrade has to "
       "ask about (blank, with the reason), 2 something to repair, "
-      "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it "
-      "again).\n"
+      "3 the grader failed or the machine was too busy somewhere (those scores are blank, or a "
+      "page "
+      "says what is missing; run it again).\n"
       "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else "
       "~/.local/state/tumble/grader.key, made on first use).");
   verb.runs([&context, words] { grade(context, *words); });

@@ -40,7 +40,10 @@ void tell_standings(const fs::path& out) {
 
 void set_exit(Context& context, const std::vector<grading::Grade>& grades) {
   for (const auto& grade : grades) {
-    if (!grade.is_final())
+    for (const std::string& fault : grade.faults)
+      fmt::print(stderr, "{}: the grader failed, at {}\n", grading::plain_name(grade.name),
+                 grading::plain_text(fault));
+    if (!grade.is_final() || !grade.faults.empty())
       context.exit = ExitCode::kOurBug;
     else if (!grade.has_score() && context.exit == ExitCode::kFine)
       context.exit = ExitCode::kCheckFailed;
@@ -70,10 +73,18 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   };
   grading::SlipTally slips({});
   if (!options.shard) slips = grading::SlipTally(grading::known_slips(course, request.id));
+  bool has_failed = false;
+  options.failed = [&](const std::string& what, const std::string& why) {
+    fmt::print(stderr,
+               "the grader failed at {}: {}\nEvery grade is in place; the same command makes it "
+               "again.\n",
+               what, grading::plain_text(why));
+    has_failed = true;
+  };
   options.each = [&](const grading::Grade& grade) { slips.add(grade); };
   options.overview = [&](const fs::path& out, const std::vector<grading::Grade>& grades) {
     grading::write_class_files(course, kind, request.folder, policy ? &*policy : nullptr, out,
-                               grades, slips);
+                               grades, slips, options.failed);
   };
   for (const std::string& name : found.passed_over)
     fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
@@ -83,8 +94,9 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   if (request.before) request.before(found.all.size(), options);
   const auto grades =
       grading::grade_submissions(course, request.id, found, fs::absolute(request.out), options);
-  if (policy) tell_standings(request.out);
+  if (policy && !has_failed) tell_standings(request.out);
   set_exit(context, grades);
+  if (has_failed) context.exit = ExitCode::kOurBug;
   return grades;
 }
 

@@ -25,7 +25,7 @@ struct GradingRequest {
 int default_jobs();
 
 /// Grades, with progress on stderr, and writes every file of the folder of results. Sets the exit
-/// code of `context` where a score is missing.
+/// code of `context` where a score or a page is missing.
 /// @throws UserError as grade_submissions
 std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& request);
 

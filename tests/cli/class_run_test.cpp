@@ -90,20 +90,83 @@ TEST_F(OneScene, HasTheSameBytesInResultsPagesPicturesAndVideosBesideAnyLoad) {
   }
 }
 
+TEST_F(OtherRubric, ABrokenFileOfCausesTakesNoVerdict) {
+  put("carl/a1_impulse.cpp", text_of(kStub));
+  const fs::path causes = course / "solutions_private/a1_impulse/causes.json";
+  write_whole(causes, "{\"slips\": [");
+  const ProgramOutcome broken = grade("out");
+  EXPECT_EQ(broken.code, 3) << broken.printed;
+  EXPECT_TRUE(says(broken, "what to mend first")) << broken.printed;
+  EXPECT_EQ(results("carl")["extra_data"]["state"], "judged");
+  EXPECT_EQ(results("carl")["score"], 0.0);
+  EXPECT_NE(text_of(root / "out/gradebook.csv").find("\ncarl,,carl,,0\n"), std::string::npos);
+  EXPECT_NE(text_of(root / "out/carl/index.html").find("causes.json"), std::string::npos);
+  EXPECT_NE(text_of(root / "out/carl/student.html").find("what to mend first"), std::string::npos);
+  EXPECT_EQ(text_of(root / "out/carl/student.html").find("causes.json"), std::string::npos);
+  fs::remove(causes);
+  EXPECT_EQ(grade("out").code, 0);
+  EXPECT_EQ(text_of(root / "out/carl/index.html").find("the grader failed"), std::string::npos);
+}
+
+TEST_F(OneScene, ASceneThatCannotBeDrawnTakesNoVerdictAndIsDrawnNextTime) {
+  put("carl/a1_impulse.cpp", text_of(kStub));
+  const fs::path scene = course / "assignments/a1_impulse/scenes/aaa.json";
+  write_whole(scene, "{");
+  const ProgramOutcome broken = grade("out", {"--jobs", "1"});
+  EXPECT_EQ(broken.code, 3) << broken.printed;
+  EXPECT_TRUE(says(broken, "the pictures")) << broken.printed;
+  EXPECT_EQ(results("carl")["extra_data"]["final"], true);
+  EXPECT_NE(text_of(root / "out/gradebook.csv").find("\ncarl,,carl,,0\n"), std::string::npos);
+  const ProgramOutcome again = grade("out", {"--jobs", "1"});
+  EXPECT_TRUE(says(again, "[1/1] carl")) << "a result without its pictures is taken over";
+}
+
+// Begins a grading whose words go to no terminal.
+pid_t start_words(const std::vector<std::string>& words) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(nothing, 1);
+  ::dup2(nothing, 2);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
+}
+
+void kill_children_of(pid_t parent) {
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string stat = text_of(entry.path() / "stat");
+    const auto end = stat.rfind(')');  // of the name: then the state, then the parent
+    if (end != std::string::npos && end + 4 < stat.size() &&
+        std::atoi(stat.c_str() + end + 4) == parent)
+      ::kill(std::atoi(name.c_str()), SIGKILL);
+  }
+}
+
+// As where a picture takes more memory than there is.
+TEST_F(OneScene, AProcessThatDiesBehindTheVerdictsLeavesThem) {
+  put("blaise/a1_impulse.cpp", with_wrong_sign());
+  const pid_t child = start_words(words_for("out", {"--jobs", "1"}));
+  const fs::path verdicts = root / "out/.making-blaise/.verdicts/blaise/record.json";
+  for (int i = 0; i < 60'000 && !fs::exists(verdicts); ++i) ::usleep(2'000);
+  kill_children_of(child);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << status;
+  EXPECT_EQ(results("blaise")["extra_data"]["state"], "judged");
+  EXPECT_GT(results("blaise")["score"].get<double>(), 0.0);
+  EXPECT_NE(text_of(root / "out/blaise/index.html").find("signal 9"), std::string::npos);
+  EXPECT_FALSE(fs::exists(root / "out/.making-blaise"));
+}
+
 class Overnight : public Grading {
  protected:
   pid_t start(const std::string& out) const {
-    const auto words = words_for(out, {"--no-media", "--jobs", "2"});
-    const pid_t child = ::fork();
-    if (child != 0) return child;
-    std::vector<char*> argv;
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    const int nothing = ::open("/dev/null", O_RDWR);
-    ::dup2(nothing, 1);
-    ::dup2(nothing, 2);
-    ::execv(argv[0], argv.data());
-    ::_exit(127);
+    return start_words(words_for(out, {"--no-media", "--jobs", "2"}));
   }
 };
 

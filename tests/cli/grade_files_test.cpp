@@ -16,6 +16,7 @@
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/grades/stages.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/core/run_program.h"
 #include "framework/grading/grades/scoring.h"
@@ -377,6 +378,21 @@ TEST(Grades, AMachineTooBusyIsNotFinalAndNoLostPoint) {
   EXPECT_NE(summary_of(grade).find("not final: machine too busy"), std::string::npos)
       << summary_of(grade);
   EXPECT_EQ(exit_code({result("S.Shut", Verdict::kMachineBusy)}), ExitCode::kOurBug);
+}
+
+TEST(Stages, AFailureBehindTheVerdictsIsNotedAndTakesNothingAway) {
+  Grade grade;
+  grade.state = GradeState::kJudged;
+  grade.score = 80.0;
+  EXPECT_TRUE(run_stage(grade, "the costs", [] {}));
+  EXPECT_TRUE(grade.notes.empty() && grade.faults.empty());
+  EXPECT_FALSE(run_stage(grade, "the pictures", [] { throw std::runtime_error("/private: no"); }));
+  EXPECT_TRUE(grade.has_score());
+  EXPECT_EQ(grade.score, 80.0);
+  ASSERT_EQ(grade.notes.size(), 1u);
+  EXPECT_NE(grade.notes[0].find("the pictures"), std::string::npos) << grade.notes[0];
+  EXPECT_EQ(grade.notes[0].find("/private"), std::string::npos) << "students read notes";
+  EXPECT_EQ(grade.faults, std::vector<std::string>{"the pictures: /private: no"});
 }
 
 TEST(ShellWord, WhateverANameHoldsStaysOneWord) {

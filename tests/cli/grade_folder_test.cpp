@@ -235,7 +235,7 @@ TEST_F(Output, AListIsMadeAnewFromLedgerRecordsAndDraftsAndOfNothingElse) {
   entry.name = entry.folder = "alice";
   Ledger(out / kLedgerFile).append(entry);
   write_whole(out / "bob/record.json", R"({"assignment": "a1", "folder": "bob"})");
-  write_whole(out / ".making-carl/fault.txt", "half");
+  write_whole(out / ".making-carl/.fault.txt", "half");
   write_whole(out / ".tumble-grade.json", "{");
   {
     const OutputFolder mended(out, subs(), "a1", {}, BrokenList::kMend);
@@ -363,6 +363,18 @@ TEST_F(Record, IsReadAsItWasWritten) {
   EXPECT_TRUE(std::isinf(run.record->grade.media[0].checks[0].value));
   EXPECT_EQ(run.record->grade.cost.plots.at(0).curves.at(0).x, (std::vector<double>{1.0, 0.5}));
   EXPECT_EQ(run.record->grade.cost.tables.at(0).rows.at(0).at(1).look, report::Look::kBad);
+}
+
+TEST_F(Record, KeepsFaultsBehindTheVerdictsForTheGraderAlone) {
+  grade.faults = {"the pictures: secret_file.json"};
+  write_grade(kind, grade, {"s", "j", "r", "p"}, place(), key);
+  const EarlierRun run = read(key);
+  ASSERT_TRUE(run.record) << run.problem;
+  EXPECT_EQ(run.record->grade.faults, grade.faults);
+  EXPECT_TRUE(run.record->grade.has_score());
+  EXPECT_NE(text_of(place() / "index.html").find("secret_file"), std::string::npos);
+  for (const char* file : {"student.html", "results.json"})
+    EXPECT_EQ(text_of(place() / file).find("secret_file"), std::string::npos) << file;
 }
 
 TEST_F(Record, CountsOnlyWithTheKeyThatSignedIt) {

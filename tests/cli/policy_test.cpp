@@ -142,6 +142,16 @@ TEST(Standing, NobodyGetsASilentZero) {
   EXPECT_EQ(csv.find(",0,"), std::string::npos) << csv;
 }
 
+TEST(Standing, AScoreThatWaitsForAnAnswerIsBlankAndSaysSo) {
+  Grade held = scored("ada", 75.0);
+  held.is_held = true;
+  const Standing ada = only(apply_policy(rules(), {{"ada", "7", "", {}}}, {}, {held}));
+  EXPECT_FALSE(ada.before);
+  EXPECT_FALSE(ada.after);
+  EXPECT_NE(ada.why.find("no score until tumble regrade is answered"), std::string::npos)
+      << ada.why;
+}
+
 TEST(Standing, IsReadAsItWasWritten) {
   const PrivateFolder folder;
   const auto all = apply_policy(rules(), {{"ada", "7", "x", {}}, {"bo", "8", "", {}}},
@@ -337,6 +347,27 @@ TEST(SlipsOf, AreThoseWhoseTestsAllFailAndWhoseKeywordIsSaid) {
   EXPECT_EQ(slips_of(failing({{"J.B", "of a kind not known"}}), known),
             Slips{"of a kind not known"});
   EXPECT_EQ(slips_of(failing({}), known), Slips{});
+}
+
+// The submissions may have been moved away while they were graded.
+TEST(ClassFiles, APageThatCannotBeMadeSaysSoAndTheOthersAreMade) {
+  const PrivateFolder out;
+  modules::ModuleKind kind;
+  kind.id = "a9";
+  kind.title = "Thing";
+  std::vector<std::string> failed;
+  write_class_files({}, kind, out.path() / "gone", nullptr, out.path(), {scored("ada", 80.0)},
+                    SlipTally({}), [&](const std::string& what, const std::string& why) {
+                      failed.push_back(what);
+                      EXPECT_NE(why.find("gone"), std::string::npos) << why;
+                    });
+  EXPECT_EQ(failed, std::vector<std::string>{"similar.html"});
+  EXPECT_NE(text_of(out.path() / "similar.html").find("The grader failed at this page"),
+            std::string::npos);
+  for (const char* file : {"class.html", "pictures.html"}) {
+    EXPECT_FALSE(text_of(out.path() / file).empty()) << file;
+    EXPECT_EQ(text_of(out.path() / file).find("The grader failed"), std::string::npos) << file;
+  }
 }
 
 TEST(LetGoOfDetails, KeepsWhatThePagesOfAClassShow) {

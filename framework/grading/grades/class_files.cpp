@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
@@ -142,9 +141,29 @@ std::string starter_of(const Course& course, const modules::ModuleKind& kind) {
   return text_of(course.root / "assignments" / kind.folder / (kind.folder + ".cpp"));
 }
 
+namespace {
+
+// Files that are alike, as far as they can be compared.
+report::Page page_of_similar(const Course& course, const modules::ModuleKind& kind,
+                             const fs::path& submissions) {
+  const auto sources = sources_in(submissions, kind);
+  std::vector<SimilarPair> pairs;
+  std::string problem;
+  if (!can_compare_sources())
+    problem =
+        "Nothing was compared, because sim_c++ is not installed: sudo apt-get install "
+        "similarity-tester, then run the same command again.";
+  else
+    pairs = similar_pairs(sources, starter_of(course, kind));
+  return similar_page(kind, sources, pairs, problem);
+}
+
+}  // namespace
+
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const fs::path& submissions, const PolicyFile* policy, const fs::path& out,
-                       const std::vector<Grade>& grades, const SlipTally& slips) {
+                       const std::vector<Grade>& grades, const SlipTally& slips,
+                       const std::function<void(const std::string&, const std::string&)>& failed) {
   std::vector<Standing> standings;
   if (policy) {
     standings = apply_policy(policy->policy, policy->roster, policy->hand_ins, grades);
@@ -159,22 +178,21 @@ void write_class_files(const Course& course, const modules::ModuleKind& kind,
   } else {
     fs::remove(out / kStandingFile);
   }
-  class_page(kind, grades, slips, standings).write(out / "class.html");
-  pictures_page(kind, grades, out).write(out / "pictures.html");
-  const auto sources = sources_in(submissions, kind);
-  std::vector<SimilarPair> pairs;
-  std::string problem;
-  if (!can_compare_sources())
-    problem =
-        "Nothing was compared, because sim_c++ is not installed: sudo apt-get install "
-        "similarity-tester, then run the same command again.";
-  else
+  const auto write_page = [&](const std::string& file, const std::function<report::Page()>& make) {
     try {
-      pairs = similar_pairs(sources, starter_of(course, kind));
-    } catch (const std::runtime_error& error) {  // no grade depends on it
-      problem = fmt::format("Nothing was compared: {}.", error.what());
+      make().write(out / file);
+    } catch (const std::exception& error) {
+      report::Page page(kind.title + ": " + file, kind.id);
+      page.paragraph("The grader failed at this page: " + plain_text(error.what()) +
+                         ". No grade depends on it; the same command makes it again.",
+                     report::Look::kWarning);
+      page.write(out / file);
+      failed(file, error.what());
     }
-  similar_page(kind, sources, pairs, problem).write(out / "similar.html");
+  };
+  write_page("class.html", [&] { return class_page(kind, grades, slips, standings); });
+  write_page("pictures.html", [&] { return pictures_page(kind, grades, out); });
+  write_page("similar.html", [&] { return page_of_similar(course, kind, submissions); });
 }
 
 }  // namespace tumble::grading

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,9 +41,13 @@ std::string starter_of(const Course& course, const modules::ModuleKind& kind);
 /// Writes class.html, pictures.html, similar.html, and with a policy gradebook.csv and
 /// standing.json (without one, an earlier standing.json is removed).
 /// @param policy  none: nullptr
+/// @param failed  called with each of the three pages that could not be made, and why; the page
+///   says so, too
+/// @throws UserError, and whatever the policy throws: without it there is no gradebook
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const std::filesystem::path& submissions, const PolicyFile* policy,
                        const std::filesystem::path& out, const std::vector<Grade>& grades,
-                       const SlipTally& slips);
+                       const SlipTally& slips,
+                       const std::function<void(const std::string&, const std::string&)>& failed);
 
 }  // namespace tumble::grading

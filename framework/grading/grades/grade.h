@@ -108,6 +108,9 @@ struct Grade {
   bool is_official = true;           // the policy accepts that protection
   bool has_handout = false;          // OUT/handout.html, which stories link to
   std::string no_page_code = {};     // why its code does not run in its page, where it was to
+  // for the grader only: "the pictures: why", of each stage behind the verdicts that failed
+  // (stages.h)
+  std::vector<std::string> faults = {};
 
   /// Calls `see` with every test, also where only marks are left.
   void each_verdict(const std::function<void(const RubricItem&, Verdict)>& see) const;
@@ -173,6 +176,9 @@ struct GradeOptions {
   // called with the folder of results and all grades, without their stories, before the folder is
   // released: writes more pages
   std::function<void(const std::filesystem::path&, const std::vector<Grade>&)> overview;
+  // called where a page of the class could not be made, with the reason, when all grades are in
+  // place; empty: the exception goes on
+  std::function<void(const std::string& what, const std::string& why)> failed;
   std::function<void(const GradeProgress&)> progress;
   // called with a sentence for the user; may be empty
   std::function<void(const std::string&)> notice;

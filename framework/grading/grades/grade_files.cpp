@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -191,6 +192,7 @@ GradeRecord record_of(const Json& json) {
   grade.is_official = json.at("official");
   grade.has_handout = json.value("handout", false);
   grade.no_page_code = json.value("no_page_code", std::string());
+  grade.faults = json.value("faults", std::vector<std::string>());
   for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
   for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
   if (json.contains("own_tests")) {
@@ -354,6 +356,7 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   json["media"] = Json::array();
   for (const SceneMedia& media : grade.media) json["media"].push_back(media_json(media));
   json["no_page_code"] = grade.no_page_code;
+  if (!grade.faults.empty()) json["faults"] = grade.faults;
   json["cost"] = cost_json(grade.cost);
   json["files"] = record.files;
   // Converted to text and back, so that the signature is of the data as read later, after invalid
@@ -390,19 +393,38 @@ void write_grade(const modules::ModuleKind& kind, const Grade& grade, const Grad
                  const fs::path& folder, const std::string& machine_key, const PageLaws& laws) {
   write_whole(folder / "results.json", gradescope_json(grade));
   const std::string record = graded_from(grade, key);
+  Grade written = grade;
+  // A page that cannot be made takes nothing from the results beside it.
+  const auto write_page = [&](const char* file, const std::function<report::Page()>& make) {
+    try {
+      make().write(folder / file);
+    } catch (const std::exception& error) {
+      report::Page page(plain_name(grade.name),
+                        fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
+      page.paragraph(
+          "The grader failed at this page. Verdicts and points stand, in results.json beside it.",
+          report::Look::kWarning);
+      page.write(folder / file);
+      written.faults.push_back(std::string(file) + ": " + error.what());
+    }
+  };
   PageView view;
   if (grade.has_handout) view = {std::string("../") + kHandoutPage, kind.folder};
-  view.bench = bench_of(folder, laws.script, laws.right);
-  view.no_right_law = laws.why_no_right;
-  submission_page(kind, grade, record, view).write(folder / "index.html");
+  write_page("index.html", [&] {
+    view.bench = bench_of(folder, laws.script, laws.right);
+    view.no_right_law = laws.why_no_right;
+    return submission_page(kind, grade, record, view);
+  });
   view.is_alone = true;
-  view.bench = bench_of(folder, laws.script);
-  view.no_right_law = laws.is_for_students && !laws.why_no_right.empty()
-                          ? "it could not be compiled for a page on the grader's machine"
-                          : "";
-  submission_page(kind, for_student(grade), record, view).write(folder / "student.html");
+  write_page("student.html", [&] {
+    view.bench = bench_of(folder, laws.script);
+    view.no_right_law = laws.is_for_students && !laws.why_no_right.empty()
+                            ? "it could not be compiled for a page on the grader's machine"
+                            : "";
+    return submission_page(kind, for_student(grade), record, view);
+  });
   write_whole(folder / kRecord,
-              record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
+              record_json({written, key, kind.id, digests_below(folder)}, machine_key));
 }
 
 }  // namespace tumble::grading

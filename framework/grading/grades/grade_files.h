@@ -50,7 +50,7 @@ EarlierRun read_earlier_run(const std::filesystem::path& folder, const std::stri
 std::map<std::string, std::string> digests_below(const std::filesystem::path& folder);
 
 /// Writes results.json, index.html and record.json of a grade into its folder, which already has
-/// its pictures.
+/// its pictures. A page that cannot be made says so, and is a fault of the record.
 /// @param laws  without a script: its code does not run in its pages
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key,
                  const std::filesystem::path& folder, const std::string& machine_key,

@@ -28,6 +28,7 @@
 #include "framework/grading/grades/grade_submission.h"
 #include "framework/grading/grades/output_folder.h"
 #include "framework/grading/grades/own_tests.h"
+#include "framework/grading/grades/stages.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_user.h"
 #include "framework/grading/verdicts/plain_text.h"
@@ -268,6 +269,7 @@ class Batch {
   }
   bool verdicts_stand(const Work& work) const {
     if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
+    if (!work.earlier.record->grade.faults.empty()) return false;
     const GradeKey& old = work.earlier.record->key;
     return old.submission == work.key.submission && old.judging == work.key.judging &&
            pictures_do(work);
@@ -278,7 +280,7 @@ class Batch {
 
   void grade_open_ones() {
     start_ = Clock::now();
-    if (!open_.empty()) page_code_.emplace(course_, id_, options_.page_code());
+    if (!open_.empty()) prepare_page_code();
     if (page_code_ && !page_code_->laws().why_no_right.empty())
       notice("the right law is in no page: " + page_code_->laws().why_no_right);
     report_progress("");
@@ -299,6 +301,15 @@ class Batch {
         });
   }
 
+  void prepare_page_code() {
+    try {
+      page_code_.emplace(course_, id_, options_.page_code());
+    } catch (const std::exception& error) {
+      page_code_fault_ = error.what();
+      page_code_.emplace(course_, id_, CodeInPages::kNone);
+    }
+  }
+
   // Removes unfinished results; finished ones stay, and are reused by the next run.
   void clear_drafts() const {
     std::error_code ignored;
@@ -314,8 +325,13 @@ class Batch {
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
   fs::path draft_of(const Work& work) const { return output_->path() / draft_name(work.folder); }
-  // The draft's folder has the final name inside, because the written files contain it.
+  // The draft's folder has the final name inside, because the written files contain it. What lies
+  // beside it begins with a dot, as no folder of a submission does.
   fs::path made_of(const Work& work) const { return draft_of(work) / work.folder; }
+  // A record of the verdicts alone, for the case that a stage behind them ends the process.
+  fs::path verdicts_of(const Work& work) const {
+    return draft_of(work) / ".verdicts" / work.folder;
+  }
 
   // Runs in a separate process. The message of an exception is left beside the draft, for the
   // parent.
@@ -332,7 +348,8 @@ class Batch {
       GradeKey key = work.key;
       const bool is_rerun = !grade;
       if (is_rerun) {
-        grade = grade_submission(course_, id_, *work.submission, made_of(work), own);
+        grade = grade_submission(course_, id_, *work.submission, made_of(work), own,
+                                 [&](const Grade& judged) { keep_verdicts(work, judged); });
         note_protection(*grade);
       }
       grade->folder = work.folder;
@@ -340,8 +357,7 @@ class Batch {
         keep_media(work.earlier_place, made_of(work), earlier, *grade, key);
       if (is_rerun) {
         forget_page_code(made_of(work));
-        if (grade->state == GradeState::kJudged)
-          grade->no_page_code = page_code_->add(work.submission->source, made_of(work));
+        if (grade->state == GradeState::kJudged) add_page_code(work, *grade);
       }
       grade->change.clear();
       grade->changes.clear();
@@ -350,9 +366,26 @@ class Batch {
       laws.script = page_script(course_, id_);  // also for modules that an earlier run has made
       write_grade(kind_, *grade, key, made_of(work), key_.bytes, laws);
     } catch (const std::exception& error) {
-      write_whole(draft_of(work) / "fault.txt", error.what());
+      write_whole(draft_of(work) / ".fault.txt", error.what());
       throw;
     }
+  }
+
+  void keep_verdicts(const Work& work, Grade judged) const {
+    note_protection(judged);
+    judged.folder = work.folder;
+    GradeKey key = work.key;
+    key.pictures.clear();
+    write_whole(verdicts_of(work) / "record.json",
+                record_json({std::move(judged), key, id_, {}}, key_.bytes));
+  }
+
+  void add_page_code(const Work& work, Grade& grade) const {
+    const char* const what = "the code in its page";
+    if (!page_code_fault_.empty()) return note_failed_stage(grade, what, page_code_fault_);
+    run_stage(grade, what, [&] {
+      grade.no_page_code = page_code_->add(work.submission->source, made_of(work));
+    });
   }
 
   void note_protection(Grade& grade) const {
@@ -366,6 +399,7 @@ class Batch {
     const fs::path draft = draft_of(work), made = made_of(work), place = place_of(work);
     std::optional<GradeRecord> record;
     if (status == 0) record = read_earlier_run(made, id_, key_.bytes).record;
+    if (!record) record = write_verdicts(work, status);
     if (!record) record = write_fault(work, status);
     const std::optional<GradeRecord>& earlier = work.earlier.record;
     const bool old_stands = earlier && earlier->grade.is_final() &&
@@ -385,7 +419,7 @@ class Batch {
       old.grade.change = "the grader failed on a new run; this is the result of the earlier one";
       settle_with(work, std::move(old));
     } else {
-      put_in_place(made, place, draft / "old");
+      put_in_place(made, place, draft / ".old");
       settle_with(work, std::move(*record));
     }
     std::error_code ignored;
@@ -432,7 +466,7 @@ class Batch {
     for (Work* work : held_) {
       const std::string change = work->record.grade.change;
       if (may) {
-        put_in_place(made_of(*work), place_of(*work), draft_of(*work) / "old");
+        put_in_place(made_of(*work), place_of(*work), draft_of(*work) / ".old");
         settle_with(
             *work,
             read_earlier_run(place_of(*work), id_, key_.bytes).record.value_or(work->record));
@@ -454,11 +488,11 @@ class Batch {
   void leave_blank(Work& work) {
     Grade& grade = work.record.grade;
     if (!fs::exists(fs::symlink_status(place_of(work)))) {
-      write_whole(draft_of(work) / "fault.txt",
+      write_whole(draft_of(work) / ".fault.txt",
                   "This result is missing, and a new one would be lower than the ledger's: "
                   "tumble regrade asks whether it may be.");
       write_fault(work, 0);
-      put_in_place(made_of(work), place_of(work), draft_of(work) / "old");
+      put_in_place(made_of(work), place_of(work), draft_of(work) / ".old");
     }
     grade.name = work.submission->name;
     grade.is_held = true;
@@ -467,23 +501,50 @@ class Batch {
     work.is_settled = true;
   }
 
+  std::string why_it_ended(const Work& work, int status) const {
+    const std::string why = text_of(draft_of(work) / ".fault.txt");
+    if (!why.empty()) return why;
+    return WIFSIGNALED(status)
+               ? fmt::format("the grading process ended with signal {}", WTERMSIG(status))
+               : "the grading process left no result";
+  }
+
+  // The grading process failed behind the verdicts: they and the points stand.
+  std::optional<GradeRecord> write_verdicts(const Work& work, int status) const {
+    std::optional<GradeRecord> record = read_earlier_run(verdicts_of(work), id_, key_.bytes).record;
+    if (!record) return std::nullopt;
+    note_failed_stage(record->grade, "pictures and pages", why_it_ended(work, status));
+    if (const auto earlier = earlier_record(work))
+      note_changes(*earlier, record->key, record->grade);
+    write_made(work, *record);
+    return record;
+  }
+
   // The grading process itself failed: writes a page that says so, without a score.
-  GradeRecord write_fault(const Work& work, int status) {
-    std::string why;
-    std::ifstream said(draft_of(work) / "fault.txt");
-    why.assign(std::istreambuf_iterator<char>(said), {});
-    if (why.empty())
-      why = WIFSIGNALED(status)
-                ? fmt::format("the grading process ended with signal {}", WTERMSIG(status))
-                : "the grading process left no result";
-    GradeRecord record = fault_record(work, id_, rubric_, why);
+  GradeRecord write_fault(const Work& work, int status) const {
+    GradeRecord record = fault_record(work, id_, rubric_, why_it_ended(work, status));
     note_protection(record.grade);
+    write_made(work, record);
+    return record;
+  }
+
+  // In place of what the grading process has left.
+  void write_made(const Work& work, GradeRecord& record) const {
     fs::remove_all(made_of(work));
     fs::create_directories(made_of(work));
     keep_media(work.earlier_place, made_of(work), earlier_record(work), record.grade, record.key);
     write_grade(kind_, record.grade, record.key, made_of(work), key_.bytes);
     record.files = digests_below(made_of(work));
-    return record;
+  }
+
+  // Pages of the class: no grade depends on them.
+  void make_page(const std::string& what, const std::function<void()>& make) const {
+    try {
+      make();
+    } catch (const std::exception& error) {
+      if (!options_.failed) throw;
+      options_.failed(what, error.what());
+    }
   }
 
   void report_progress(const std::string& finished) const {
@@ -521,12 +582,17 @@ class Batch {
                       "overview: grade all of them with tumble grade",
                       distrusted));
     const fs::path& out = output_->path();
-    write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
-    index_page(kind_, grades, static_cast<bool>(options_.overview)).write(out / "index.html");
-    write_handout(course_, id_, out / kHandoutPage);
+    // with a policy it is the overview's: without late days it must not even lie there meanwhile
+    if (options_.policy.empty())
+      write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
+    make_page("index.html", [&] {
+      index_page(kind_, grades, static_cast<bool>(options_.overview)).write(out / "index.html");
+    });
+    make_page(kHandoutPage, [&] { write_handout(course_, id_, out / kHandoutPage); });
     write_whole(out / "times.json",
                 times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
-    if (options_.overview) options_.overview(out, grades);
+    if (options_.overview)
+      make_page("the pages of the class", [&] { options_.overview(out, grades); });
     return grades;
   }
 
@@ -546,6 +612,7 @@ class Batch {
   const std::string compiler_ = compiler_in_words();
   MachineKey key_;
   std::optional<PageCode> page_code_;  // made where a submission is open
+  std::string page_code_fault_;        // why it could not be made
   MarksOfClass marks_;
   std::vector<Work> work_;
   std::vector<Work*> open_, held_;

@@ -280,6 +280,9 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   add_tiles(page, grade);
   for (const std::string& note : grade.notes)
     page.paragraph("Note: " + plain_text(note), Look::kWarning);
+  for (const std::string& fault : grade.faults)
+    page.paragraph("For the grader only: " + plain_text(fault) + ". The next run makes it again.",
+                   Look::kWarning);
   if (!grade.story.empty()) {
     page.heading(summary_of(grade));
     page.preformatted(plain_text(grade.story));
@@ -334,6 +337,7 @@ Grade for_student(Grade grade) {
       if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
   grade.remarks.clear();
   grade.own_tests.names.clear();
+  grade.faults.clear();
   return grade;
 }
 

@@ -17,6 +17,7 @@
 #include "framework/grading/grades/measure_cost.h"
 #include "framework/grading/grades/own_tests.h"
 #include "framework/grading/grades/scoring.h"
+#include "framework/grading/grades/stages.h"
 
 namespace tumble::grading {
 namespace {
@@ -66,10 +67,28 @@ void judge(const Course& course, const std::string& id, const Submission& submis
   }
 }
 
+void judge_own(const Course& course, const std::string& id, const fs::path& tests, Grade& grade) {
+  if (!wants_own_tests(course, id)) {
+    grade.notes.push_back("own tests earn no points here, and were not run");
+    return;
+  }
+  try {
+    grade.own_tests = judge_own_tests(course, id, tests);
+  } catch (const std::exception& error) {  // not the verdicts' fault, which are shown
+    grade.own_tests = {};
+    grade.own_tests.is_there = true;
+    grade.own_tests.is_final = false;
+    grade.own_tests.story =
+        "the grader could not run them; this costs no points, and is tried again";
+    grade.faults.push_back(std::string("own tests: ") + error.what());
+  }
+}
+
 }  // namespace
 
 Grade grade_submission(const Course& course, const std::string& id, const Submission& submission,
-                       const fs::path& folder, const GradeOptions& options) {
+                       const fs::path& folder, const GradeOptions& options,
+                       const std::function<void(const Grade&)>& judged) {
   const Rubric rubric = rubric_of(course, id);
   fs::create_directories(folder);
 
@@ -80,23 +99,26 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   grade.has_handout = has_handout(course, id);
   const ObjectFile object{folder / ("." + id + ".so")};
   judge(course, id, submission, rubric, object, options.budget_s, grade);
-  if (!submission.own_tests.empty()) {
-    if (wants_own_tests(course, id))
-      grade.own_tests = judge_own_tests(course, id, submission.own_tests);
-    else
-      grade.notes.push_back("own tests earn no points here, and were not run");
-  }
+  if (!submission.own_tests.empty()) judge_own(course, id, submission.own_tests, grade);
   add_up(grade);
-  if (grade.state == GradeState::kJudged)
+  if (judged) judged(grade);
+  if (grade.state != GradeState::kJudged) return grade;
+  run_stage(grade, "what to mend first", [&] {
     grade.causes = causes_of(grade.tests, audited_slips_of(course, id),
                              submission.source.filename().string(), text_of(submission.source));
-  if (options.draws(submission.name) && grade.state == GradeState::kJudged)
-    grade.media =
-        make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes,
-                   object.path, folder / "media", options.media_options);
-
-  if (options.cost && grade.state == GradeState::kJudged)
-    grade.cost = measure_cost(course, id, object.path);
+  });
+  if (options.draws(submission.name)) {
+    const fs::path media = folder / "media";
+    const bool is_drawn = run_stage(grade, "the pictures", [&] {
+      grade.media =
+          make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes,
+                     object.path, media, options.media_options);
+    });
+    if (!is_drawn) fs::remove_all(media);
+  }
+  if (options.cost)
+    run_stage(grade, "what accuracy costs",
+              [&] { grade.cost = measure_cost(course, id, object.path); });
   return grade;
 }
 

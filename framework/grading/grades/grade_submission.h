@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -11,10 +12,12 @@
 namespace tumble::grading {
 
 /// Grades one submission in this process; writes its pictures, and nothing else, into `folder`.
-/// @return never a partial grade: if judging fails, its state is kGraderFault
-/// @throws UserError when the pictures cannot be written
+/// @param judged  called once with the verdicts and points, before the stages behind them
+/// @return never a partial grade: if judging fails, its state is kGraderFault; what a stage behind
+///   the verdicts fails at is missing, and noted (stages.h)
 Grade grade_submission(const Course& course, const std::string& id, const Submission& submission,
-                       const std::filesystem::path& folder, const GradeOptions& options = {});
+                       const std::filesystem::path& folder, const GradeOptions& options = {},
+                       const std::function<void(const Grade&)>& judged = {});
 
 /// The points of an earlier run's verdicts under another rubric.
 /// @return empty if the rubric has a test without a verdict in the earlier run: then it must be run

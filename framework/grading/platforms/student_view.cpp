@@ -81,6 +81,8 @@ std::string instructors_story(const Grade& grade) {
                                  points_text(grade.possible), grade.sandbox);
   if (!grade.story.empty()) text += plain_text(grade.story) + "\n";
   for (const std::string& note : grade.notes) text += "note: " + plain_text(note) + "\n";
+  for (const std::string& fault : grade.faults)
+    text += "the grader failed, at " + plain_text(fault) + "\n";
   for (const ScoredTest& test : grade.tests) {
     if (test.result.verdict == Verdict::kRight) continue;
     text += fmt::format("\n{}{}: {}, {} of {} points\n{}\n", test.item.test,
