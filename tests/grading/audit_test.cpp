@@ -1,8 +1,13 @@
 // What an audit says of its tests.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
+#include "framework/core/digest.h"
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 #include "framework/grading/grades/audit.h"
+#include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/kept_file.h"
 
 namespace tumble::grading {
 namespace {
@@ -52,6 +57,34 @@ TEST(Audit, OnlyTheNamedAreJudgedAndAnUnknownNameIsAnsweredWithTheNearest) {
     EXPECT_NE(std::string(error.what()).find("Did you mean 'e_squared'?"), std::string::npos)
         << error.what();
   }
+}
+
+// A process that ended while it wrote, or an editor: the audit runs it again and does not end there.
+TEST(Audit, KeptResultsThatAreNotWholeAreNone) {
+  namespace fs = std::filesystem;
+  const fs::path root = test::source_dir();
+  if (!fs::exists(root / "solutions_private/a1_impulse/mutants")) GTEST_SKIP() << "no slips here";
+  modules::Registry registry;
+  register_assignments(registry);
+  const PrivateFolder build;
+  write_whole(build.path() / "bin/judge_a1", "of which only the digest counts");
+  const Course course{root, build.path(), &registry, ""};
+  const Candidate slip = find_candidates(course, "a1").front();
+  const std::string text = sources_of({slip}).front().text;
+  const fs::path kept =
+      build.path() / "audit/a1" /
+      (slip.file.stem().string() + "-" +
+       digest(judging_digest(course, "a1") + digest(text)).substr(0, 32) + ".results");
+  write_results((build.path() / "results.json").string(),
+                result(slip.name, false, {"Impulse.Any"}).caught_by);
+  keep_file(kept, text_of(build.path() / "results.json"));
+  ASSERT_EQ(kept_audit(course, "a1").size(), 1u);
+  EXPECT_EQ(kept_audit(course, "a1").front().caught_by.size(), 1u);
+  const std::string whole = text_of(kept);
+  write_whole(kept, whole.substr(0, whole.size() / 2));
+  EXPECT_TRUE(kept_audit(course, "a1").empty());
+  write_whole(kept, text_of(build.path() / "results.json"));
+  EXPECT_TRUE(kept_audit(course, "a1").empty()) << "without its digest";
 }
 
 }  // namespace

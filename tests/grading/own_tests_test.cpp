@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/grades/kept_module.h"
+#include "framework/grading/grades/kept_file.h"
 #include "framework/grading/grades/own_test_names.h"
 #include "framework/grading/grades/own_tests.h"
 
@@ -99,16 +99,16 @@ TEST(OwnTests, WithoutTestsThereAreNoPoints) {
   EXPECT_EQ(graded_own_tests(kFourSlips, {}, {slip(1, {}, {}), right({}, {})}).score, 0.0);
 }
 
-TEST(KeptModule, CountsOnlyWholeAndUnderItsOwnName) {
+TEST(KeptFile, CountsOnlyWholeAndUnderItsOwnName) {
   const PrivateFolder folder;
   const auto file = folder.path() / "one.module";
   const std::string bytes(
       "\x7f"
       "ELF\0\n slip",
       11);
-  EXPECT_FALSE(kept_module(file)) << "there is none";
-  keep_module(file, bytes);
-  ASSERT_EQ(kept_module(file), bytes);
+  EXPECT_FALSE(kept_file(file)) << "there is none";
+  keep_file(file, bytes);
+  ASSERT_EQ(kept_file(file), bytes);
   const std::string whole = text_of(file);
 
   std::string changed = whole;
@@ -116,13 +116,13 @@ TEST(KeptModule, CountsOnlyWholeAndUnderItsOwnName) {
   for (const std::string& text : {changed, whole + 'x', whole.substr(0, whole.size() - 1),
                                   whole.substr(0, 65), whole.substr(0, 20), std::string(), bytes}) {
     write_whole(file, text);
-    EXPECT_FALSE(kept_module(file)) << text.size();
+    EXPECT_FALSE(kept_file(file)) << text.size();
   }
   write_whole(folder.path() / "other.module", whole);
-  EXPECT_FALSE(kept_module(folder.path() / "other.module")) << "another module's bytes";
+  EXPECT_FALSE(kept_file(folder.path() / "other.module")) << "another module's bytes";
 
-  keep_module(file, bytes);
-  EXPECT_EQ(kept_module(file), bytes) << "it cannot be made again";
+  keep_file(file, bytes);
+  EXPECT_EQ(kept_file(file), bytes) << "it cannot be made again";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/kept_file.h"
 #include "framework/farm/processes.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/sandbox/sandbox_user.h"
@@ -84,7 +85,7 @@ Kept kept_for(const Course& course, const std::string& id, const std::string& gr
   const fs::path base = course.build / "audit" / id /
                         (candidate.file.stem().string() + "-" +
                          digest(grader + digest(source.text)).substr(0, kNameDigits));
-  return {base.string() + ".json", base.string() + ".refused.txt"};
+  return {base.string() + ".results", base.string() + ".refused.txt"};
 }
 
 // In a process of its own: leaves either the judge's results or why there are none.
@@ -110,17 +111,27 @@ void run_one(const Course& course, const std::string& id, const Candidate& candi
   // a fault of ours is not kept: the next audit tries again
   for (const TestResult& test : judgement.results)
     if (!is_final_verdict(test.verdict)) judgement.fault = test.test + ": " + test.story;
-  if (!judgement.fault.empty())
-    write_whole(kept.refused, judgement.fault);
-  else
-    make_whole(kept.results,
-               [&](const fs::path& draft) { write_results(draft.string(), judgement.results); });
+  if (!judgement.fault.empty()) return write_whole(kept.refused, judgement.fault);
+  const fs::path results = folder.path() / "results.json";
+  write_results(results.string(), judgement.results);
+  keep_file(kept.results, text_of(results));
+}
+
+// What an earlier run has kept, if it is whole.
+std::optional<std::vector<TestResult>> results_in(const Kept& kept) {
+  const std::optional<std::string> text = kept_file(kept.results);
+  if (!text) return std::nullopt;
+  const PrivateFolder folder;
+  const fs::path results = folder.path() / "results.json";
+  write_whole(results, *text);
+  return read_results(results.string());
 }
 
 AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const Kept& kept) {
   AuditResult result;
   result.candidate = candidate;
-  if (!fs::exists(kept.results)) {
+  const std::optional<std::vector<TestResult>> tests = results_in(kept);
+  if (!tests) {
     std::ifstream in(kept.refused);
     result.fault.assign(std::istreambuf_iterator<char>(in), {});
     if (result.fault.empty()) result.fault = "was not judged";
@@ -128,15 +139,14 @@ AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const 
     fs::remove(kept.refused, ignored);  // a failure is tried again
     return result;
   }
-  const auto tests = read_results(kept.results.string());
-  for (const ScoredTest& test : score_tests(rubric, {tests, ""})) {
+  for (const ScoredTest& test : score_tests(rubric, {*tests, ""})) {
     result.score += test.score;
     result.possible += test.item.points;
     if (!is_final_verdict(test.result.verdict))
       result.fault = test.item.test + ": " + test.result.story;
   }
   const std::string keyword = lowercase(candidate.keyword);
-  for (const TestResult& test : tests) {
+  for (const TestResult& test : *tests) {
     if (!is_caught(test)) continue;
     result.caught_by.push_back(test);
     const bool names = !keyword.empty() && lowercase(test.story).find(keyword) != std::string::npos;
@@ -228,7 +238,7 @@ std::vector<AuditResult> kept_audit(const Course& course, const std::string& id)
   for (const Candidate& candidate : find_candidates(course, id)) {
     if (candidate.is_right) continue;
     const Kept kept = kept_for(course, id, grader, candidate, sources_of({candidate}).front());
-    if (fs::exists(kept.results)) results.push_back(read_result(rubric, candidate, kept));
+    if (kept_file(kept.results)) results.push_back(read_result(rubric, candidate, kept));
   }
   return results;
 }
@@ -246,7 +256,7 @@ std::vector<AuditResult> audit(const Course& course, const std::string& id,
       write_whole(course.build / "audit" / id / "slips" / whole_name(candidates[i]),
                   sources[i].text);
     kept.push_back(kept_for(course, id, grader, candidates[i], sources[i]));
-    if (!fs::exists(kept[i].results)) open.push_back(i);
+    if (!kept_file(kept[i].results)) open.push_back(i);
   }
   std::size_t done = candidates.size() - open.size();
   if (told) told(done, candidates.size());

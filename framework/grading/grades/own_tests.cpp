@@ -15,7 +15,7 @@
 #include "framework/grading/course/build_submission.h"
 #include "framework/core/run_program.h"
 #include "framework/grading/grades/audit.h"
-#include "framework/grading/grades/kept_module.h"
+#include "framework/grading/grades/kept_file.h"
 #include "framework/grading/grades/own_test_names.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/sandbox/protection.h"
@@ -33,7 +33,7 @@ constexpr int kMostSlow = 4;        // runs that end out of time; then the rest 
 struct Module {
   Candidate candidate;
   std::string text;
-  fs::path kept;  // compiled (kept_module.h)
+  fs::path kept;  // compiled (kept_file.h)
 };
 
 std::string joined_names(const std::vector<std::string>& names) {
@@ -87,14 +87,14 @@ void build(const Course& course, const std::string& id, const Module& module) {
   const BuiltSubmission built = build_submission(course, id, file, object);
   if (built.outcome != BuiltSubmission::Outcome::kBuilt)
     throw UserError(module.candidate.file.string(), "does not compile: " + built.said);
-  keep_module(module.kept, text_of(object));
+  keep_file(module.kept, text_of(object));
 }
 
 // One run of all tests on one module. @return nothing where the grader failed
 std::optional<std::vector<TestResult>> run_once(const Course& course, const std::string& id,
                                                 const fs::path& program, const fs::path& kept) {
   // whole when the grading began: the next one makes it again
-  const std::optional<std::string> module = kept_module(kept);
+  const std::optional<std::string> module = kept_file(kept);
   if (!module) return std::nullopt;
   const PrivateFolder folder;
   // A name that is the same for every module.
@@ -126,7 +126,7 @@ void prepare_own_tests(const Course& course, const std::string& id) {
     if (!fs::exists(file))
       throw UserError(file.string(), "is not built", "Build it: ninja -C build own_tests_" + id);
   for (const Module& module : modules_of(course, id)) {
-    if (!kept_module(module.kept)) build(course, id, module);
+    if (!kept_file(module.kept)) build(course, id, module);
   }
 }
 

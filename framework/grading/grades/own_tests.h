@@ -37,7 +37,7 @@ namespace tumble::grading {
 bool wants_own_tests(const Course& course, const std::string& id);
 
 /// Compiles every slip and right solution of the rule, where BUILD/own_tests has it not yet, or not
-/// whole (kept_module.h).
+/// whole (kept_file.h).
 /// @throws UserError when one is missing, does not compile, or a program is not built
 void prepare_own_tests(const Course& course, const std::string& id);
 

@@ -1,4 +1,4 @@
-#include "framework/grading/grades/kept_module.h"
+#include "framework/grading/grades/kept_file.h"
 
 #include "framework/core/digest.h"
 #include "framework/core/files.h"
@@ -14,11 +14,11 @@ std::string first_line(const fs::path& file, const std::string& bytes) {
 
 }  // namespace
 
-void keep_module(const fs::path& file, const std::string& bytes) {
+void keep_file(const fs::path& file, const std::string& bytes) {
   write_whole(file, first_line(file, bytes) + bytes);
 }
 
-std::optional<std::string> kept_module(const fs::path& file) {
+std::optional<std::string> kept_file(const fs::path& file) {
   const std::string text = text_of(file);
   const std::size_t end = text.find('\n');
   if (end == std::string::npos) return std::nullopt;
