@@ -59,7 +59,7 @@ TEST(Audit, OnlyTheNamedAreJudgedAndAnUnknownNameIsAnsweredWithTheNearest) {
   }
 }
 
-// A process that ended while it wrote, or an editor: the audit runs it again and does not end there.
+// As a process leaves them that ended while it wrote: the audit runs it again.
 TEST(Audit, KeptResultsThatAreNotWholeAreNone) {
   namespace fs = std::filesystem;
   const fs::path root = test::source_dir();
