@@ -62,8 +62,8 @@ std::vector<Candidate> find_candidates(const Course& course, const std::string& 
 std::vector<JudgedSource> sources_of(const std::vector<Candidate>& candidates);
 
 /// Compiles and judges all, `jobs` at a time. What has not changed since an earlier audit is not
-/// run again (BUILD/audit, kept_file.h). The whole text of each slip is left in BUILD/audit/ID/slips/
-/// for people to read and to run.
+/// run again (BUILD/audit, kept_file.h). The whole text of each slip is left for people to read and
+/// to run, in BUILD/audit/ID/slips/.
 /// @param told  called as each is finished: how many of how many; may be empty
 /// @throws UserError as sources_of does, before anything is judged
 /// @pre  this process runs no thread
