@@ -153,8 +153,6 @@ class WorkMeter {
   virtual ~WorkMeter() = default;
   /// Since it was asked last. @param states  by body of the world that it was made for
   virtual Work since_last(double time, const std::vector<RigidBodyState>& states) = 0;
-  /// Whether any amount may come in, so that energy says nothing.
-  virtual bool is_unlimited() const { return false; }
 };
 
 /// Takes evenly from the velocities of a body: m v' = -linear v, I w' = -angular w.

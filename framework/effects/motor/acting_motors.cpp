@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,7 +31,24 @@ void refuse_lost(const std::string& hinge, const MotorSpec& law, const HingeMoti
                   hinge, motion.rate, turn, law.period_s));
 }
 
+// Of the work that passes through motors: as much is granted besides.
+constexpr double kGranted = 1e-2;
+
 }  // namespace
+
+void set_anew(const MotorSpec& law, double time, const HingeMotion& hinge, MotorHold& held) {
+  // The hinge knows its angle within a turn, the motor how far it has come: since the last look by
+  // less than half a turn (refuse_lost).
+  const double turns = held.next_look > 0.0 ? std::round((held.angle - hinge.angle) / kTurn) : 0.0;
+  held.angle = hinge.angle + kTurn * turns;
+  const double target =
+      law.offset_rad +
+      law.amplitude_rad * std::sin(kTurn * law.frequency_hz * time + law.phase_rad);
+  const double torque =
+      law.stiffness_n_m_rad * (target - held.angle) - law.damping_n_m_s_rad * hinge.rate;
+  held.torque = std::clamp(torque, -law.largest_torque_n_m, law.largest_torque_n_m);
+  held.next_look = law.period_s * (std::floor(time / law.period_s * (1 + 1e-12)) + 1);
+}
 
 MotorTerms::MotorTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
     : calls_(acting.calls), all_(acting.world.effects.of<Motor>()) {
@@ -44,8 +62,8 @@ MotorTerms::MotorTerms(const Acting& acting, const std::vector<int>& entries, Gr
 void MotorTerms::add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
   for (const Acts& motor : motors_) {
     const HingeMotion hinge = hinge_motion(of(motor).hinge, bodies[motor.a], bodies[motor.b]);
-    wrenches[motor.b].torque_world += motor.torque * hinge.axis_world;
-    wrenches[motor.a].torque_world -= motor.torque * hinge.axis_world;
+    wrenches[motor.b].torque_world += motor.held.torque * hinge.axis_world;
+    wrenches[motor.a].torque_world -= motor.held.torque * hinge.axis_world;
   }
 }
 
@@ -53,24 +71,13 @@ double MotorTerms::look(double time, const std::vector<Body>& bodies) {
   double next = std::numeric_limits<double>::infinity();
   for (Acts& motor : motors_) {
     const MotorSpec& law = of(motor).law;
-    if (time >= motor.next_look) {
+    if (time >= motor.held.next_look) {
       ++calls_;
       const HingeMotion hinge = hinge_motion(of(motor).hinge, bodies[motor.a], bodies[motor.b]);
       refuse_lost(of(motor).hinge.name, law, hinge);
-      // The hinge knows its angle within a turn, the motor how far it has come: since the last look
-      // by less than half a turn (refuse_lost).
-      const double turns =
-          motor.next_look > 0.0 ? std::round((motor.angle - hinge.angle) / kTurn) : 0.0;
-      motor.angle = hinge.angle + kTurn * turns;
-      const double target =
-          law.offset_rad +
-          law.amplitude_rad * std::sin(kTurn * law.frequency_hz * time + law.phase_rad);
-      const double torque =
-          law.stiffness_n_m_rad * (target - motor.angle) - law.damping_n_m_s_rad * hinge.rate;
-      motor.torque = std::clamp(torque, -law.largest_torque_n_m, law.largest_torque_n_m);
-      motor.next_look = law.period_s * (std::floor(time / law.period_s * (1 + 1e-12)) + 1);
+      set_anew(law, time, hinge, motor.held);
     }
-    next = std::min(next, motor.next_look);
+    next = std::min(next, motor.held.next_look);
   }
   return next;
 }
@@ -78,16 +85,16 @@ double MotorTerms::look(double time, const std::vector<Body>& bodies) {
 Memory MotorTerms::memory() const {
   Memory memory;
   for (const Acts& motor : motors_)
-    memory[motor.entry] = {motor.torque, motor.next_look, motor.angle};
+    memory[motor.entry] = {motor.held.torque, motor.held.next_look, motor.held.angle};
   return memory;
 }
 
 void MotorTerms::remember(const Memory& memory) {
   for (Acts& motor : motors_) {
     const auto held = memory.find(motor.entry);
-    motor.torque = held == memory.end() ? 0.0 : held->second[0];
-    motor.next_look = held == memory.end() ? 0.0 : held->second[1];
-    motor.angle = held == memory.end() ? 0.0 : held->second[2];
+    motor.held = held == memory.end()
+                     ? MotorHold{}
+                     : MotorHold{held->second[0], held->second[1], held->second[2]};
   }
 }
 
@@ -98,34 +105,44 @@ bool MotorTerms::differs_from(const Memory& before) const {
     const auto held = before.find(motor.entry);
     const double torque = held == before.end() ? 0.0 : held->second[0];
     largest = std::max(largest, std::abs(torque));
-    change = std::max(change, std::abs(motor.torque - torque));
+    change = std::max(change, std::abs(motor.held.torque - torque));
   }
   return change > kSameTorque * largest + kSameAngle * stiffest;
 }
 
 Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& states) {
   const std::vector<Motor>& motors = world_.effects.of<Motor>();
-  const auto omega = [&](int body) {
-    return body < 0 ? Vector3d(Vector3d::Zero())
-                    : omega_of(states[static_cast<std::size_t>(body)],
-                               world_.bodies[static_cast<std::size_t>(body)].inertia);
+  // What of a body its hinge's motion asks for: how it stands and turns.
+  const auto body = [&](int index) {
+    Body found{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(),
+               Vector3d::Zero()};
+    if (index < 0) return found;
+    const WorldBody& held = world_.bodies[static_cast<std::size_t>(index)];
+    const RigidBodyState& state = states[static_cast<std::size_t>(index)];
+    found.world_from_body = state.world_from_body;
+    if (!held.immovable()) found.omega_world = omega_of(state, held.inertia);
+    return found;
   };
   Work work;
+  motors_.resize(motors.size());  // entries may have been appended
+  const double passed = time - std::exchange(last_look_, time);
   for (std::size_t k = 0; k < motors.size(); ++k) {
-    const double now = (omega(motors[k].hinge.a.body) - omega(motors[k].hinge.b.body)).norm();
-    work.most +=
-        2.0 * motors[k].law.largest_torque_n_m * std::max(now, turning_[k]) * (time - last_look_);
-    turning_[k] = now;
+    Metered& motor = motors_[k];
+    const JointLink& link = motors[k].hinge;
+    const HingeMotion hinge = hinge_motion(link, body(link.a.body), body(link.b.body));
+    if (!std::isnan(motor.angle)) {
+      // whole turns by the mean rate
+      const double about = 0.5 * (motor.rate + hinge.rate) * passed;
+      const double turned = about + std::remainder(hinge.angle - motor.angle - about, kTurn);
+      work.done += motor.held.torque * turned;
+      work.most += kGranted * std::abs(motor.held.torque * turned);
+      if (std::abs(about) > 0.5 * kTurn) work.most += std::abs(motor.held.torque * about);
+    }
+    motor.angle = hinge.angle;
+    motor.rate = hinge.rate;
+    if (time >= motor.held.next_look) set_anew(motors[k].law, time, hinge, motor.held);
   }
-  last_look_ = time;
   return work;
-}
-
-bool MotorMeter::is_unlimited() const {
-  const std::vector<Motor>& motors = world_.effects.of<Motor>();
-  return std::any_of(motors.begin(), motors.end(), [](const Motor& motor) {
-    return !std::isfinite(motor.law.largest_torque_n_m);
-  });
 }
 
 }  // namespace tumble::effects

@@ -430,9 +430,6 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
                                          const std::vector<RigidBodyState>& states) {
   const auto driven = [](const WorldBody& b) { return b.immovable() && is_driven(b.motion); };
   if (!has_meters_) take_in(world);
-  if (std::any_of(meters_.begin(), meters_.end(),
-                  [](const auto& meter) { return meter->is_unlimited(); }))
-    return std::nullopt;
   if ((!sees_switches_ && !meters_.empty()) ||
       std::any_of(world.bodies.begin(), world.bodies.end(), driven))
     return std::nullopt;
@@ -460,6 +457,13 @@ bool brings_energy(const World& world) {
   return std::any_of(
       effects::all().begin(), effects::all().end(),
       [&](const effects::Effect* effect) { return effect->work_meter(world) != nullptr; });
+}
+
+bool has_control_laws(const World& world) {
+  return std::any_of(effects::all().begin(), effects::all().end(),
+                     [&](const effects::Effect* effect) {
+                       return effect->traits().looks && effect->count_in(world) > 0;
+                     });
 }
 
 }  // namespace
@@ -493,12 +497,16 @@ std::string runaway_message(double time, const World& world, const Runaway& runa
   return fmt::format(
       "at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} "
       "J{}. Most likely it comes from {}; a shorter step or another method "
-      "(here {}) is needed, or that is wrong",
+      "(here {}) is needed, or that is wrong{}",
       time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy,
       runaway.first_energy,
       !brings_energy(world) ? " and nothing brings energy in"
                             : ", without what forces and motors bring in",
-      effect, laws.integrator_source);
+      effect, laws.integrator_source,
+      !has_control_laws(world)
+          ? ""
+          : "; a motor that turns its hinge too far while it holds its torque needs a shorter "
+            "\"period_s\"");
 }
 
 }  // namespace tumble::engines

@@ -144,8 +144,8 @@ class EnergyWatch {
   /// @param restitution_threshold  of impacts that do not bounce [m/s]: the energy of so slow a
   /// motion is not asked for
   /// @param step  of the run [s]
-  /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else
-  /// worlds with effects that bring energy in go unwatched
+  /// @param sees_switches  whether it looks at each instant at which a force begins or ends, or a
+  /// control law looks: else worlds with effects that bring energy in go unwatched
   EnergyWatch(double restitution_threshold, double step, bool sees_switches)
       : restitution_threshold_(restitution_threshold), step_(step), sees_switches_(sees_switches) {}
 
@@ -158,8 +158,7 @@ class EnergyWatch {
             ? event.energy_change
             : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
-  /// @return nothing while all is well, and for worlds that moving walls, or effects that may bring
-  /// in any amount, drive
+  /// @return nothing while all is well, and for worlds that moving walls drive
   std::optional<Runaway> look(double time, const World& world,
                               const std::vector<RigidBodyState>& states);
   /// Entries have been appended to the world: what they bring in is measured, too.
