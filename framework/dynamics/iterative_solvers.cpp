@@ -88,7 +88,7 @@ void solve_links_by_gradients(double tolerance, Laws& laws) {
                                            const VectorXd& error) -> VectorXd {
     return motion_of(constraints, bodies, gradients(constraints, bodies, -error, tolerance));
   };
-  laws.constraint_source = "conjugate gradients";
+  laws.link_solver = "conjugate gradients";
 }
 
 void solve_contacts_by_sweeps(double tolerance, Laws& laws) {
@@ -114,7 +114,7 @@ void solve_contacts_by_sweeps(double tolerance, Laws& laws) {
     options.most_sweeps_alone = kMostSweepsWithFriction;
     return solve_contacts(problem, options);
   };
-  laws.constraint_source = "Gauss-Seidel sweeps";
+  laws.contact_solver = "Gauss-Seidel sweeps";
 }
 
 void solve_contacts_by_newton(double tolerance, Laws& laws) {

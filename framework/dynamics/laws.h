@@ -82,6 +82,18 @@ struct Laws {
   // which module provides springs, rods and contact forces
   std::string constraint_source = "none";
   std::string scheduling_source = "none";  // which module provides the scheduler
+  // what stands in the place of the module's own solvers of links and of contacts
+  // (iterative_solvers.h); empty: nothing, they are constraint_source's. Springs, and the rows of
+  // rods, are constraint_source's in any case.
+  std::string link_solver{}, contact_solver{};
+
+  /// Where multipliers and corrections of links, and where contact_forces, come from.
+  const std::string& source_of_links() const {
+    return link_solver.empty() ? constraint_source : link_solver;
+  }
+  const std::string& source_of_contacts() const {
+    return contact_solver.empty() ? constraint_source : contact_solver;
+  }
 };
 
 /// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing);

@@ -9,7 +9,11 @@ void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::strin
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;
-  if (alone.constraint_multipliers) laws.constraint_source = source;
+  if (alone.constraint_multipliers) {
+    laws.constraint_source = source;
+    laws.link_solver.clear();
+  }
+  if (alone.contact_forces) laws.contact_solver.clear();
   if (alone.scheduling) laws.scheduling_source = source;
 }
 

@@ -187,6 +187,19 @@ TEST(RootMethods, ReachTheirToleranceOnAFallingBody) {
     }
 }
 
+// The springs and rows that it leaves alone keep their author.
+TEST(IterativeSolvers, NameThemselvesBesideTheModuleWhoseSpringsStay) {
+  Laws laws;
+  laws.constraint_source = "a3 student";
+  solve_links_by_gradients(1e-6, laws);
+  EXPECT_EQ(laws.constraint_source, "a3 student");
+  EXPECT_EQ(laws.source_of_links(), "conjugate gradients");
+  EXPECT_EQ(laws.source_of_contacts(), "a3 student");
+  solve_contacts_by_sweeps(1e-6, laws);
+  EXPECT_EQ(laws.constraint_source, "a3 student");
+  EXPECT_EQ(laws.source_of_contacts(), "Gauss-Seidel sweeps");
+}
+
 TEST(RootMethods, SayWhereThereIsNoSignChange) {
   for (const RootMethod& method : root_methods())
     EXPECT_EQ(

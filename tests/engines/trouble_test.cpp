@@ -6,6 +6,8 @@
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
 #include "framework/core/version.h"
+#include "framework/dynamics/stopped_run.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/run.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
@@ -53,6 +55,35 @@ TEST(Records, ARunNamesItsVersionItsSceneItsSeedsAndTheSourceOfEachLaw) {
     EXPECT_EQ(info.constraint_source, "a3 student") << engine;
     EXPECT_EQ(info.integrator_source, laws.integrator_source) << engine;
   }
+}
+
+// A solver from elsewhere is named beside the module, whose springs and rows stay its own.
+TEST(Records, ASolverOfLinksStandsBesideTheModuleAndNotInItsPlace) {
+  Laws laws = test_laws();
+  laws.constraint_source = "a3 student";
+  laws.link_solver = "conjugate gradients";
+  TrajectoryRecorder recorder;
+  engines::run_scene(head_on(), laws, {}, recorder);
+  EXPECT_EQ(recorder.trajectory().info.constraint_source,
+            "a3 student, links by conjugate gradients");
+  laws.spring_force = [](const Spring&, const AnchorState&, const AnchorState&) -> Vector3d {
+    return {kNaN, 0, 0};
+  };
+  laws.constraint_correction = [](const auto&, const auto&, const VectorXd&) -> VectorXd {
+    return VectorXd::Constant(6, kNaN);
+  };
+  const Laws safe = engines::guarded(laws);
+  const auto said = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const StoppedRun& stop) {
+      return stop.what();
+    }
+    return "";
+  };
+  EXPECT_NE(said([&] { safe.spring_force({}, {}, {}); }).find("a3 student"), std::string::npos);
+  EXPECT_NE(said([&] { safe.constraint_correction({}, {}, VectorXd::Zero(1)); }).find("gradients"),
+            std::string::npos);
 }
 
 // The balls meet at 0.9 s: 54 frames before it.

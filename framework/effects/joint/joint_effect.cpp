@@ -265,7 +265,7 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
       pulls.push_back(
           {joint.a.body, joint.b.body, std::abs(measured[k]),
            fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})",
-                       joint.name, laws.constraint_source)});
+                       joint.name, laws.source_of_links())});
     }
   }
   std::vector<scene::LinkCheck> link_checks() const override {

@@ -158,8 +158,9 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
       const RodLink& rod = held(world)[k];
       pulls.push_back(
           {rod.a.body, rod.b.body, std::abs(measured[k]),
-           fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})",
-                       rod.name, laws.constraint_source)});
+           fmt::format("rod '{}' (rod_row{}, constraint_multipliers, constraint_correction of {})",
+                       rod.name, laws.link_solver.empty() ? "" : " of " + laws.constraint_source,
+                       laws.source_of_links())});
     }
   }
   std::vector<scene::LinkCheck> link_checks() const override { return {{"rod_length", "m"}}; }

@@ -162,18 +162,22 @@ void guard_constraints(const Laws& laws, Laws& safe) {
       return acceleration;
     };
   }
-  const auto vector_law = [&](auto& law, const char* effect, const char* name) {
+  const auto vector_law = [&](auto& law, const char* effect, const char* name,
+                              const std::string& its_source) {
     if (!law) return;
-    const Guard guard{effect, name, source};
+    const Guard guard{effect, name, its_source};
     law = [guard, inner = law](const auto&... arguments) {
       const VectorXd answer = guard([&] { return inner(arguments...); });
       guard.need(answer.allFinite(), kNotANumber);
       return answer;
     };
   };
-  vector_law(safe.constraint_multipliers, "rods and joints", "constraint_multipliers");
-  vector_law(safe.constraint_correction, "rods and joints", "constraint_correction");
-  vector_law(safe.contact_forces, "persistent contact", "contact_forces");
+  vector_law(safe.constraint_multipliers, "rods and joints", "constraint_multipliers",
+             laws.source_of_links());
+  vector_law(safe.constraint_correction, "rods and joints", "constraint_correction",
+             laws.source_of_links());
+  vector_law(safe.contact_forces, "persistent contact", "contact_forces",
+             laws.source_of_contacts());
 }
 
 }  // namespace

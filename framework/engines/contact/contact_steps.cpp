@@ -178,7 +178,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
       "body '" + moving_.world().bodies[island.bodies.front()].name + "' and what it touches",
       [&] { return laws_.contact_forces(J * MJ, b); });
   if (f.size() != m)
-    throw StoppedRun("persistent contact (contact_forces of " + laws_.constraint_source +
+    throw StoppedRun("persistent contact (contact_forces of " + laws_.source_of_contacts() +
                      ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) +
                      " points");
   const VectorXd change = MJ * (h * f);

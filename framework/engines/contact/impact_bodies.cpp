@@ -222,7 +222,7 @@ ImpactBodies::Answer ImpactBodies::answer(const TouchedPoint& touched, bool with
         "N s changes the normal velocity by {:.6g} m/s, on the free bodies by {:.6g}; "
         "links can only take from it, so what the correction changes is not the smallest change "
         "that leaves every row's rate as it is",
-        laws_.constraint_source, answer.held_normal(), free));
+        laws_.source_of_links(), answer.held_normal(), free));
   return answer;
 }
 

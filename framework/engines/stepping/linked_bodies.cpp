@@ -266,7 +266,7 @@ VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies,
   ++counters_.constraint_solves;
   const VectorXd multipliers = laws_.constraint_multipliers(all, constrained, wanted);
   if (multipliers.size() != wanted.size())
-    throw StoppedRun("rods and joints (constraint_multipliers of " + laws_.constraint_source +
+    throw StoppedRun("rods and joints (constraint_multipliers of " + laws_.source_of_links() +
                      ") returned " + std::to_string(multipliers.size()) + " multipliers for " +
                      std::to_string(wanted.size()) + " constraints");
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -357,7 +357,7 @@ VectorXd LinkedBodies::correction(const std::vector<Constraint>& rows,
   ++counters_.constraint_corrections;
   VectorXd change = laws_.constraint_correction(rows, bodies, error);
   if (change.size() != 6 * static_cast<Eigen::Index>(bodies.size()))
-    throw StoppedRun("rods and joints (constraint_correction of " + laws_.constraint_source +
+    throw StoppedRun("rods and joints (constraint_correction of " + laws_.source_of_links() +
                      ") returned " + std::to_string(change.size()) +
                      " numbers instead of 6 a body");
   return change;
