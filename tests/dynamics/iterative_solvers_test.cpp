@@ -209,6 +209,15 @@ TEST(RootMethods, SayWhereThereIsNoSignChange) {
   EXPECT_THROW(root_method_named("newtn"), UserError);
 }
 
+// 200 halvings of [0, 1] leave 2^-200 = 6e-61 around a root at 1e-200: far from the tolerance.
+TEST(RootMethods, SayWhereTheirIterationsRunOut) {
+  const ScalarFunction gap = [](double t) { return 1e-200 - t; },
+                       rate = [](double) { return -1.0; };
+  const RootMethod& bisection = root_method_named("bisection");
+  EXPECT_EQ(bisection.find(gap, rate, 0.0, 1.0, 1e-220).status, RootStatus::kNotConverged);
+  EXPECT_EQ(bisection.find(gap, rate, 0.0, 1.0, 1e-50).status, RootStatus::kConverged);
+}
+
 TEST(RootMethods, NewtonLooksAtFewerGapsThanBisection) {
   const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; },
                        rate = [](double t) { return -1.0 - 9.81 * t; };

@@ -494,6 +494,36 @@ TEST(InStep, BoxesThatTouchByLotGainNothing) {
   }
 }
 
+// A lid that comes down on a ball on the floor farther than the ball is high: no place is left for
+// it.
+TEST(RunWatch, ABodyThatIsLeftInAnotherIsNeverKeptSilent) {
+  for (const double restitution : {0.0, 0.5}) {
+    scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ()),
+                                   plane("lid", {0, 0, 0.25}, -Vector3d::UnitZ()),
+                                   ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero())},
+                                  1.0, kGravity);
+    for (scene::BodySpec& body : scene.bodies) body.restitution = restitution;
+    scene.bodies[1].motion.emplace();
+    scene.bodies[1].motion->velocity_m_s = {0, 0, -0.1};
+    scene.contact.emplace();
+    const Trajectory run = run_by("rd", scene);
+    double deepest = 0.0;
+    for (const Frame& frame : run.frames) deepest = std::min(deepest, frame.smallest_gap);
+    EXPECT_TRUE(deepest > -1e-3 * 0.1 || !run.stopped_by.empty() || !run.counters.faults.empty())
+        << restitution << ": " << deepest << " m";
+  }
+}
+
+TEST(RunWatch, AnOverlapThatIsLeftIsNamedWithoutAStep) {
+  RunWatch watch;  // no step would part them
+  watch.note(RunWatch::Kind::kOverlapLeft, "'lid' and 'ball'", {0.5, engines::kApart, 0.1, 0.0});
+  const auto faults = watch.faults();
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].kind, "overlap_left");
+  EXPECT_EQ(faults[0].remedy.find("step_s"), std::string::npos) << faults[0].remedy;
+  EXPECT_NE(faults[0].remedy.find("room"), std::string::npos) << faults[0].remedy;
+}
+
 // ---- What is shown does not overlap ------------------------------------------------------------
 
 /// Two small boxes that fall on a plate and on each other, turned by lot.

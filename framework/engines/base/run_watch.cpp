@@ -36,6 +36,10 @@ const Words& words_of(RunWatch::Kind kind) {
        "beyond half a turn a step cannot be told from a turn the other way round: orientations, "
        "and what hangs on them, are not to be trusted",
        "a slower body, or --propagator auto where nothing but gravity acts on it"},
+      {"overlap_left",
+       "bodies stay apart: here the corrections of their places have ended with an overlap of this "
+       "part of the smaller one's radius",
+       "more room between what drives or presses them together, or masses that differ less"},
   };
   return kWords[static_cast<std::size_t>(kind)];
 }

@@ -1,5 +1,6 @@
 /// What a run must not keep to itself: links that come apart, projections and contact problems that
-/// end unsolved, energy that nothing brings in, bodies that turn farther in a step than it can see.
+/// end unsolved, energy that nothing brings in, bodies that turn farther in a step than it can see,
+/// bodies that are left in one another.
 ///
 /// Every stage of every engine notes here what it could not do (the watch is part of RunCounters,
 /// which each stage has and which threads and processes add up); at the end the run's faults are
@@ -38,6 +39,10 @@ inline constexpr double kEnergyRises = 1e-2;
 /// a turn the other way round.
 inline constexpr double kTurnResolved = std::numbers::pi;
 
+/// Two bodies count as apart up to an overlap of this part of the smaller one's radius: a picture
+/// shows it. Position correction leaves none.
+inline constexpr double kApart = 1e-3;
+
 class RunWatch {
  public:
   enum class Kind : std::uint8_t {
@@ -45,7 +50,8 @@ class RunWatch {
     kProjectionOpen,
     kContactUnsolved,
     kEnergyRises,
-    kTurnUnresolved
+    kTurnUnresolved,
+    kOverlapLeft
   };
   struct Size {
     double found, allowed;  // relative, [rad] of an angle

@@ -226,6 +226,20 @@ void ImpactDetection::separate(const std::vector<Pair>& pairs) {
     }
     if (clean) return;
   }
+  note_overlaps(pairs);
+}
+
+// Rounds have run out: bodies that others press together from all sides have nowhere to go.
+void ImpactDetection::note_overlaps(const std::vector<Pair>& pairs) {
+  for (const Pair& pair : pairs) {
+    const double size = std::min(moving_.shape(pair.first).bounding_radius(),
+                                 moving_.shape(pair.second).bounding_radius());
+    const double overlap = -gap(pair).distance;
+    if (!(size > 0) || !(overlap > kApart * size)) continue;
+    counters_.watch.note(RunWatch::Kind::kOverlapLeft,
+                         names_of(moving_.world(), {pair.first, pair.second}),
+                         {overlap / size, kApart, moving_.time(), 0.0});
+  }
 }
 
 }  // namespace tumble::engines

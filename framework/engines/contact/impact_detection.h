@@ -54,10 +54,11 @@ class ImpactDetection {
   /// The middle of where the two touch, then the corners of that region if it is more than a point.
   /// World frame. [m]
   std::vector<Vector3d> touching_points(Pair pair, const collision::Gap& gap) const;
-  /// Takes back what rounding left of overlaps.
+  /// Takes back what rounding left of overlaps. Notes what it cannot take back (kOverlapLeft).
   void separate(const std::vector<Pair>& pairs);
 
  private:
+  void note_overlaps(const std::vector<Pair>& pairs);
   std::vector<Pair> pairs_of_boxes();
   bool ask_for_ends(const std::vector<Pair>& pairs);
   bool may_meet(int a, int b);

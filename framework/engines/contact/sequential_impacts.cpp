@@ -11,6 +11,7 @@
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
+#include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/impact_law.h"
 
 namespace tumble::engines {
@@ -210,6 +211,18 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
   return whole;
 }
 
+// The same as of a step's contacts (PersistentContacts::note_unsolved). No shorter step helps: an
+// impact takes none.
+void SequentialImpacts::note_unsolved(const MovingWorld& moving, const std::vector<int>& bodies,
+                                      const ContactSolution& solution) {
+  const double allowed = solution.impulses_world.size() > kContact.many_contacts
+                             ? kContact.unsolved_in_large_island
+                             : kContactSolved;
+  if (solution.converged || solution.residual <= allowed) return;
+  counters_.watch.note(RunWatch::Kind::kContactUnsolved, names_of(moving.world(), bodies),
+                       {solution.residual, allowed, moving.time(), 0.0});
+}
+
 // Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0
 // elsewhere, with friction, and with the rows of what is linked to them.
 void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs,
@@ -277,6 +290,7 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
   const ContactSolution solution = solve_without_gain(problem);
   std::vector<int> all;
   for (const auto& [index, at] : places) all.push_back(index);
+  note_unsolved(moving, all, solution);
   const Vector3d driven = work.bodies.driven_velocity(all).value_or(Vector3d::Constant(kUnset));
   EnergyOfImpact energy;
   for (const auto& [index, at] : places) {

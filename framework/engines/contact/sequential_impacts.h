@@ -95,6 +95,8 @@ class SequentialImpacts {
   bool collide(Work& work, const TouchingPair& pair, double threshold);
   double friction_at_impact(const World& world, const TouchingPair& pair) const;
   ContactSolution solve_without_gain(const ContactProblem& problem);
+  void note_unsolved(const MovingWorld& moving, const std::vector<int>& bodies,
+                     const ContactSolution& solution);
   void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold,
                         bool rebounds);
 
