@@ -9,6 +9,7 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/core/random.h"
+#include "framework/dynamics/solve_contacts.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/rod/rod.h"
@@ -534,6 +535,49 @@ TEST(ImpactsOnLinks, WhereRodsHoldBothBodiesNoImpulseSeparatesThemAndTheRunRepor
       const Trajectory run = run_by(engine, asked, {}, 60.0, laws());
       EXPECT_NE(run.stopped_by.find("hold both completely"), std::string::npos)
           << engine << ", " << law << ": " << run.stopped_by;
+    }
+  }
+}
+
+// Two points on a rod that drifts apart at 0.3 m/s, of which one comes down on a slope: what contact
+// and rod do is all the change of energy there is, and the rod's part is its impulse times its
+// drift. Without drift it would be none.
+TEST(ImpactEnergy, OfALinkThatDriftsIsToldFromThatOfTheContact) {
+  for (const double drift : {0.3, 0.0}) {
+    ContactProblem problem;
+    const double masses[] = {1.0, 2.0};
+    for (int k = 0; k < 2; ++k)
+      problem.bodies.push_back({1.0 / masses[k], Matrix3d::Identity(), Vector3d(k, 0, 0),
+                                Vector3d(k == 0 ? drift : 0.0, 0, -1), Vector3d::Zero()});
+    problem.bodies.push_back(
+        {0.0, Matrix3d::Zero(), Vector3d(0, 0, -1), Vector3d::Zero(), Vector3d::Zero()});
+    PushingContact contact;
+    contact.body_a = 0;
+    contact.body_b = 2;
+    contact.point_world = Vector3d::Zero();
+    contact.normal_b_to_a_world = Vector3d(1, 0, 1).normalized();
+    problem.contacts.push_back(contact);
+    ConstraintRow row;
+    row.jacobian_a << 1, 0, 0, 0, 0, 0;
+    row.jacobian_b << -1, 0, 0, 0, 0, 0;
+    problem.rows.push_back({0, 1, row});
+    problem.row_targets = VectorXd::Constant(1, drift);
+    const std::vector<Velocity> before = engines::velocities_of(problem);
+    const ContactSolution solution = solve_contacts(problem);
+    ASSERT_TRUE(solution.converged);
+    double change = 0.0;
+    for (std::size_t k = 0; k < 2; ++k)
+      change += 0.5 * masses[k] *
+                (solution.velocities[k].linear_world.squaredNorm() -
+                 before[k].linear_world.squaredNorm());
+    const double by_contact = engines::work_of(problem, solution.impulses_world, before,
+                                               solution.velocities),
+                 by_rod = engines::work_of_rows(problem, solution.row_impulses, before,
+                                                solution.velocities, Vector3d::Zero());
+    EXPECT_NEAR(change, by_contact + by_rod, 1e-11) << drift;  // J, of about one
+    EXPECT_NEAR(by_rod, solution.row_impulses[0] * drift, 1e-11) << drift;
+    if (drift > 0) {
+      EXPECT_GT(std::abs(by_rod), 1e-3) << "a rod that pushes does work with its drift";
     }
   }
 }

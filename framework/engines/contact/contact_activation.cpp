@@ -250,10 +250,14 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
     energy.add(body.inertia, moving_.state(island.bodies[k]).world_from_body, before[k],
                solution.velocities[k], driven);
   }
+  // The law speaks of contacts: what links do that drift is not theirs.
+  EnergyOfImpact by_contacts = energy;
+  by_contacts.change -=
+      work_of_rows(problem, solution.row_impulses, before, solution.velocities, driven);
   // unsolved: never more is all that can be asked
-  double excess = energy.excess(
+  double excess = by_contacts.excess(
       solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities)
-                         : energy.change);
+                         : by_contacts.change);
   // the largest impulse of a pair stands for it
   for (std::size_t from = 0, to = 0; from < down.size(); from = to) {
     std::size_t largest = from;

@@ -96,6 +96,26 @@ double work_of(const ContactProblem& problem, const std::vector<Vector3d>& impul
   return sum;
 }
 
+double work_of_rows(const ContactProblem& problem, const VectorXd& row_impulses,
+                    const std::vector<Velocity>& from, const std::vector<Velocity>& to,
+                    const Vector3d& seen_from) {
+  if (row_impulses.size() != static_cast<Eigen::Index>(problem.rows.size())) return 0.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+    const auto& [a, b, row] = problem.rows[i];
+    const auto rate = [&](int body, const Vector6d& jacobian) {
+      const auto k = static_cast<std::size_t>(body);
+      if (problem.bodies[k].inverse_mass == 0.0) return 0.0;  // its energy is not counted
+      const Vector3d linear = 0.5 * (from[k].linear_world + to[k].linear_world) - seen_from;
+      const Vector3d angular = 0.5 * (from[k].angular_world + to[k].angular_world);
+      return jacobian.head<3>().dot(linear) + jacobian.tail<3>().dot(angular);
+    };
+    sum += row_impulses[static_cast<Eigen::Index>(i)] *
+           (rate(a, row.jacobian_a) + rate(b, row.jacobian_b));
+  }
+  return sum;
+}
+
 // ---- Bodies -------------------------------------------------------------------------------------
 
 Body& ImpactBodies::body(int index) {

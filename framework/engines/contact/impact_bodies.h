@@ -50,6 +50,13 @@ std::vector<Velocity> velocities_of(const ContactProblem& problem);
 double work_of(const ContactProblem& problem, const std::vector<Vector3d>& impulses_world,
                const std::vector<Velocity>& from, const std::vector<Velocity>& to);
 
+/// What the impulses of rows do to it, seen like EnergyOfImpact: sum of lambda J . (u + u') / 2. It
+/// is 0 where links are at rest in themselves (J u = 0); where they drift, the impulses that keep
+/// their rates as they are do work with them, which is neither restitution's nor friction's. [J]
+double work_of_rows(const ContactProblem& problem, const VectorXd& row_impulses,
+                    const std::vector<Velocity>& from, const std::vector<Velocity>& to,
+                    const Vector3d& seen_from_world);
+
 /// Two bodies that touch at a point, as impulses there find them.
 struct TouchedPoint {
   int a, b;  // bodies
