@@ -113,6 +113,22 @@ TEST(RunWatch, KeepsTheFirstTheWorstAndTheirNumber) {
   EXPECT_NE(faults[0].remedy.find("0.005 s"), std::string::npos) << faults[0].remedy;
 }
 
+// 16 times what is allowed: half of the step by the fourth root, a sixteenth where contacts make it
+// go with the step itself; four fifths of that to be safe.
+TEST(RunWatch, TheStepThatItNamesGoesByTheOrderOfTheError) {
+  const auto remedy = [](double order) {
+    RunWatch watch;
+    watch.note(RunWatch::Kind::kEnergyRises, "'a'", {0.16, 0.01, 0.1, 0.01, order});
+    return watch.faults().at(0).remedy;
+  };
+  const std::string in_flight = remedy(engines::kOrderOfMethods),
+                    at_contacts = remedy(engines::kOrderAtContacts);
+  EXPECT_NE(in_flight.find("0.004 s"), std::string::npos) << in_flight;
+  EXPECT_EQ(in_flight.find("contacts"), std::string::npos) << in_flight;
+  EXPECT_NE(at_contacts.find("0.0005 s"), std::string::npos) << at_contacts;
+  EXPECT_NE(at_contacts.find("whatever the method"), std::string::npos) << at_contacts;
+}
+
 TEST(RunWatch, WhatIsNoNumberIsWorst) {
   RunWatch watch;
   watch.note(RunWatch::Kind::kContactUnsolved, "'a'", {1.0, 1e-3, 0.1, 0.01});

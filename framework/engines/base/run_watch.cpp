@@ -44,15 +44,14 @@ const Words& words_of(RunWatch::Kind kind) {
   return kWords[static_cast<std::size_t>(kind)];
 }
 
-// Of the step that went wrong, what the size of the error asks for: energy of a method of order 4
-// is off by the fourth power of the step, of other errors half a step is the first to try.
-double likely_part(RunWatch::Kind kind, double times_what_is_allowed) {
-  constexpr double kOrder = 4.0, kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
+// Of the step that went wrong, what the size of the error asks for: energy is off by a power of the
+// step (Size::order), of other errors half a step is the first to try.
+double likely_part(RunWatch::Kind kind, double times_what_is_allowed, double order) {
+  constexpr double kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
   // a radian a step
   if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);
   if (kind != RunWatch::Kind::kEnergyRises) return kMost;
-  return std::min(kMost,
-                  std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / kOrder)));
+  return std::min(kMost, std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / order)));
 }
 
 bool is_worse(double candidate, double known) {
@@ -97,7 +96,8 @@ std::vector<RunFault> RunWatch::faults() const {
   double step = std::numeric_limits<double>::infinity();
   for (const auto& [kind, incident] : incidents_)
     if (incident.worst.step > 0)
-      step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed) *
+      step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed,
+                                        incident.worst.order) *
                                 incident.worst.step);
   // A criterion of stability that the step breaks explains all that follows, and its step is
   // computed, not a guess from a size.
@@ -120,6 +120,11 @@ std::vector<RunFault> RunWatch::faults() const {
     fault.remedy = std::isfinite(step) ? fmt::format("a step of at most {} s (\"step_s\"), or {}",
                                                      said, words.remedy)
                                        : words.remedy;
+    // there no method is of a higher order than the impulses of a step
+    if (kind == Kind::kEnergyRises && incident.worst.order < kOrderOfMethods)
+      fault.remedy +=
+          ", which helps away from contacts only: at contacts the error goes with the "
+          "step itself, whatever the method";
     faults.push_back(std::move(fault));
   }
   return faults;

@@ -35,6 +35,9 @@ inline constexpr double kContactSolved = 1e-3;
 /// Energy may rise above the least it has been by this part of what the scene has to give
 /// (EnergyWatch): methods of order 4 whose step is within reach of the motion lose a thousandth.
 inline constexpr double kEnergyRises = 1e-2;
+/// Of the energy's error: by the methods that scenes are run with, and where contacts act, which a
+/// step meets by impulses, whatever the method.
+inline constexpr double kOrderOfMethods = 4.0, kOrderAtContacts = 1.0;
 /// A step may turn a body by half a turn [rad]: farther, what a method samples cannot be told from
 /// a turn the other way round.
 inline constexpr double kTurnResolved = std::numbers::pi;
@@ -56,6 +59,8 @@ class RunWatch {
   struct Size {
     double found, allowed;  // relative, [rad] of an angle
     double time, step;      // [s]
+    // with which power of the step the energy that it makes goes
+    double order = kOrderOfMethods;
   };
 
   /// Keeps what is above what is allowed, or is not a number.

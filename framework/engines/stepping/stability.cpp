@@ -397,10 +397,11 @@ void EnergyWatch::tell(const World& world, RunCounters& counters) const {
       available() +
       (unseen(counters.large_island_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) /
           kEnergyRises;
+  const double order = counters.contact_solves > 0 ? kOrderAtContacts : kOrderOfMethods;
   for (const Rise& rise : rises_)
     counters.watch.note(RunWatch::Kind::kEnergyRises,
                         fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name),
-                        {rise.size / whole, kEnergyRises, rise.time, step_});
+                        {rise.size / whole, kEnergyRises, rise.time, step_, order});
 }
 
 // What effects have brought in since the last look, at most.
