@@ -1,7 +1,9 @@
 // tumble explain SCENE: the effects of a scene, the entries that call for each, the stages of a
 // run, and their cost.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include "framework/engines/stepping/linked_bodies.h"
 #include "framework/scene/effects.h"
 #include "framework/core/version.h"
+#include "framework/trajectory/fault_words.h"
 
 namespace tumble::cli {
 namespace {
@@ -142,6 +145,53 @@ std::vector<AskerLine> lines_of(const EffectUse& effect, const scene::Scene& sce
   return lines;
 }
 
+/// Bodies that bounce off another lower each time: of a pair the smaller restitution counts, and
+/// with 0 nothing bounces, with 1 nothing is lost.
+std::vector<const WorldBody*> lossy_bouncers(const World& world) {
+  const auto count = [&](double below) {
+    return std::count_if(world.bodies.begin(), world.bodies.end(), [&](const WorldBody& body) {
+      return body.collides && body.restitution > 0.0 && body.restitution < below;
+    });
+  };
+  const auto bouncing = count(std::numeric_limits<double>::infinity()), lossy = count(1.0);
+  std::vector<const WorldBody*> bodies;
+  for (const WorldBody& body : world.bodies)
+    if (!body.immovable() && body.collides && body.restitution > 0.0 && bouncing > 1 && lossy > 0)
+      bodies.push_back(&body);
+  return bodies;
+}
+
+/// Bounces that separate more slowly than the rest speed end in rest: a fixed speed, which for a
+/// small or a slow body is much. Says so where bounces end that reach a part of the body's size, or
+/// in free space of its speed, that could be seen.
+std::string note_of_rest_speed(const scene::Scene& scene) {
+  // The height of the last bounce over the body's radius; those of bodies of a metre are 5e-8.
+  constexpr double kPartOfSize = 1e-5;
+  constexpr double kPartOfSpeed = 0.1;
+  // of sqrt(g r): that of a model that is dropped (scene/model_scene.cpp)
+  constexpr double kRestSpeed = 5e-4;
+  const double rest = scene.rest_speed_m_s;
+  const World world = build_world(scene);
+  const double g = world.gravity_world ? world.gravity_world->norm() : 0.0;
+  for (const WorldBody* bouncer : lossy_bouncers(world)) {
+    const WorldBody& body = *bouncer;
+    const double radius = bounding_radius(body.shape), height = rest * rest / (2.0 * g),
+                 speed = body.inertia.inverse_mass * body.state.momentum_world.norm();
+    if (g > 0.0 && radius > 0.0 && height > kPartOfSize * radius)
+      return fmt::format(
+          "bounces that separate by less than rest_speed_m_s = {:g} m/s end in rest: lower than "
+          "{:.2g} m, which is {:.2g} of the radius about '{}'. Of its size: \"rest_speed_m_s\": "
+          "{:.1g}",
+          rest, height, height / radius, body.name, kRestSpeed * std::sqrt(g * radius));
+    if (g == 0.0 && speed > 0.0 && rest > kPartOfSpeed * speed)
+      return fmt::format(
+          "bounces that separate by less than rest_speed_m_s = {:g} m/s end in rest, and '{}' "
+          "begins with {:.2g} m/s. Of its speed: \"rest_speed_m_s\": {:.1g}",
+          rest, body.name, speed, kRestSpeed * speed);
+  }
+  return "";
+}
+
 constexpr std::size_t kMostLines = 6;  // of one effect
 
 /// Width of the column with the positions of entries.
@@ -266,6 +316,9 @@ void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects
     fmt::print("\n  --run runs it and adds what each costs.\n");
   else if (!run->stopped_by.empty())
     fmt::print("\n  STOPPED: {}\n", run->stopped_by);
+  if (run != nullptr)
+    for (const RunFault& fault : run->counters.faults)
+      fmt::print("\n  NOT TO BE TRUSTED: {}. Likely remedy: {}\n", in_words(fault), fault.remedy);
 }
 
 void print_json(const Context& context, const scene::Scene& scene,
@@ -301,13 +354,18 @@ void print_json(const Context& context, const scene::Scene& scene,
     }
     page["stages"].push_back(entry);
   }
-  if (run != nullptr) page["stopped_by"] = run->stopped_by;
+  if (run != nullptr) {
+    page["stopped_by"] = run->stopped_by;
+    page["faults"] = in_words(run->counters.faults);
+  }
   fmt::print("{}\n", json_text(page, 2));
 }
 
 void explain(Context& context, const ExplainWords& words) {
   const scene::Scene scene = find_scene(context, words.scene);
-  const auto effects = scene::effects_of(scene);
+  auto effects = scene::effects_of(scene);
+  for (EffectUse& effect : effects)
+    if (effect.name == "collision" && effect.is_on()) effect.note = note_of_rest_speed(scene);
   const auto stages = stages_of(effects);
   TrajectoryRecorder recorder;
   if (words.run) {
@@ -318,7 +376,8 @@ void explain(Context& context, const ExplainWords& words) {
     options.duration_s = words.duration_s;
     options.command = context.command_line;
     engines::run_scene(scene, chosen.laws, options, recorder);
-    if (!recorder.trajectory().stopped_by.empty()) context.exit = ExitCode::kCheckFailed;
+    if (!recorder.trajectory().stopped_by.empty() || !recorder.trajectory().counters.faults.empty())
+      context.exit = ExitCode::kCheckFailed;
   }
   const Trajectory* run = words.run ? &recorder.trajectory() : nullptr;
   if (words.json)
@@ -346,8 +405,8 @@ void add_explain(CLI::App& app, Context& context) {
       .needs(run);
   verb.flag("--json", words->json, "For machines");
   verb.footer(
-      "Example: tumble explain bouncing_ball --run\nExit: 0 fine, 1 the run was stopped, 2 "
-      "something to repair, 4 not attempted.");
+      "Example: tumble explain bouncing_ball --run\nExit: 0 fine, 1 the run was stopped or "
+      "cannot be trusted, 2 something to repair, 4 not attempted.");
   verb.runs([&context, words] { explain(context, *words); });
 }
 

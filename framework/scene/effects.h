@@ -15,7 +15,8 @@ struct EffectUse {
   std::string stage;          // the part of a run with its code: "integration", "constraints", ...
   std::string counter;        // the counter of its calls in a run
   std::vector<Asker> askers;  // in the file's order; empty: the effect is off
-  std::string note;           // why it is off although an entry seems to call for it, or ""
+  std::string
+      note;  // why it is off although an entry seems to call for it, what to know of it, or ""
 
   bool is_on() const { return !askers.empty(); }
 };

@@ -252,6 +252,26 @@ TEST_F(CommandLine, ARecordingThatCannotBeTrustedIsShownWithAWarning) {
   EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "energy_rises of 'b'"));
 }
 
+// The rest speed is a fixed one: for a ball of 1 mm it ends bounces of 5e-5 of its radius, for one
+// of 1 m of 5e-8.
+TEST_F(CommandLine, ExplainSaysWhereTheRestSpeedIsMuchForASmallBody) {
+  const auto scene_of_radius = [](const char* radius) {
+    return fmt::format(
+        R"({{"title": "t", "duration_s": 1, "gravity_m_s2": [0, 0, -9.81], "bodies": [
+      {{"name": "bead", "shape": {{"sphere": {{"radius_m": {0}}}}}, "mass_kg": 0.001,
+        "restitution": 0.5, "position_m": [0, 0, 3]}},
+      {{"name": "floor", "shape": {{"plane": {{}}}}, "immovable": true}}]}})",
+        radius);
+  };
+  write_whole(folder_ / "small.json", scene_of_radius("0.001"));
+  write_whole(folder_ / "large.json", scene_of_radius("1"));
+  const Said small = type("explain small.json"), large = type("explain large.json");
+  EXPECT_EQ(small.code, 0) << small.err;
+  EXPECT_TRUE(holds(small.out, "rest_speed_m_s") && holds(small.out, "'bead'")) << small.out;
+  EXPECT_EQ(large.code, 0) << large.err;
+  EXPECT_FALSE(holds(large.out, "rest_speed_m_s")) << large.out;
+}
+
 TEST_F(CommandLine, APathThatIsNoPlainFileSaysSo) {
   fs::create_directory(folder_ / "f.json");
   for (const char* words : {"run f.json", "run ./f.json", "explain f.json"}) {
