@@ -78,8 +78,9 @@ void run_engines(Context& context, const EnginesWords& words) {
                          {"sizes", std::move(sizes)},
                          {"page", page.string()}});
   } else {
-    fmt::print("{}\n  impulses by {} · motion by {}\n", scene.title, chosen.laws.impulse_source,
-               chosen.laws.integrator_source);
+    const std::string constraints = constraints_line(scene, chosen.laws);
+    fmt::print("{}\n  impulses by {} · motion by {}{}{}\n", scene.title, chosen.laws.impulse_source,
+               chosen.laws.integrator_source, constraints.empty() ? "" : " · ", constraints);
     print_rows(rows);
     fmt::print("{}\n", page.string());
   }

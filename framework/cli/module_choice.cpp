@@ -13,6 +13,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
 #include "framework/core/files.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
@@ -405,6 +406,15 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
           (has_home && !is_own(scene, *kind) && !words.contains(kind->id) && !words.contains(""));
   }
   return result;
+}
+
+std::string constraints_line(const scene::Scene& scene, const Laws& laws) {
+  if (!scene.contact && !effects::asks_laws_of("a3", scene)) return "";
+  const auto rubs = [](const scene::BodySpec& body) { return body.friction > 0.0; };
+  return fmt::format("springs, rods and contact by {}{}", laws.constraint_source,
+                     scene.contact && std::any_of(scene.bodies.begin(), scene.bodies.end(), rubs)
+                         ? ", where it rubs by the framework"
+                         : "");
 }
 
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads) {

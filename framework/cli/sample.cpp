@@ -177,9 +177,10 @@ void sample(const Context& context, const SampleWords& words, const fs::path& fo
 
 void print(const Sampled& sampled) {
   const Answers& answers = sampled.growing.back();
-  fmt::print("{}\n  chains by {} · impulses by {} · motion by {}\n", sampled.worlds.scene.title,
+  const std::string constraints = constraints_line(sampled.worlds.scene, sampled.chosen.laws);
+  fmt::print("{}\n  chains by {} · impulses by {} · motion by {}{}{}\n", sampled.worlds.scene.title,
              sampled.source, sampled.chosen.laws.impulse_source,
-             sampled.chosen.laws.integrator_source);
+             sampled.chosen.laws.integrator_source, constraints.empty() ? "" : " · ", constraints);
   fmt::print(
       "  {} of {} samples do what is asked; {:.0f} % of proposals accepted; largest R-hat {:.3f}\n",
       answers.done, answers.samples, 100 * answers.acceptance, answers.worst_r_hat);

@@ -38,13 +38,10 @@ namespace fs = std::filesystem;
 using engines::CheckResult;
 
 std::string modules_line(const scene::Scene& scene, const Laws& laws) {
-  std::string line =
-      fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
-  if (scene.contact || effects::asks_laws_of("a3", scene))
-    line += " · springs, rods and contact by " + laws.constraint_source;
-  const auto rubs = [](const scene::BodySpec& body) { return body.friction > 0.0; };
-  if (scene.contact && std::any_of(scene.bodies.begin(), scene.bodies.end(), rubs))
-    line += ", where it rubs by the framework";
+  const std::string constraints = constraints_line(scene, laws),
+                    line = fmt::format("impulses by {} · motion by {}{}{}", laws.impulse_source,
+                                       laws.integrator_source, constraints.empty() ? "" : " · ",
+                                       constraints);
   return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
 }
 

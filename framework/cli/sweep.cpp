@@ -143,8 +143,10 @@ void run_sweep(Context& context, const SweepWords& words) {
   const std::string engines = engines_of(words, swept.varied);
   const ChosenLaws chosen = choose_laws(context, swept.scene, module_words, engines);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
-  swept.laws = fmt::format("Impulses by {}, motion by {}", chosen.laws.impulse_source,
-                           chosen.laws.integrator_source);
+  const std::string constraints = constraints_line(swept.scene, chosen.laws);
+  swept.laws =
+      fmt::format("Impulses by {}, motion by {}{}{}", chosen.laws.impulse_source,
+                  chosen.laws.integrator_source, constraints.empty() ? "" : ", ", constraints);
   // Words that contradict each other are refused before the first run, by a plan of each.
   std::set<std::pair<std::string, bool>> planned;
   for (const GridPoint& point : swept.points) {

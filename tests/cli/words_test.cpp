@@ -504,6 +504,16 @@ TEST_F(CommandLine, EnginesAreComparedInATableAndOnAPage) {
     EXPECT_TRUE(holds(page, words)) << words;
 }
 
+// Who computes springs, rods and contact stands beside who computes the rest, on every path; what
+// rubs is solved by the framework.
+TEST_F(CommandLine, WhoComputesRodsAndContactIsSaidWhereverLawsAre) {
+  const std::string by = "springs, rods and contact by a3 reference";
+  const Said engines = type("engines four_bar --engines rd --duration-s 0.05 --modules reference");
+  EXPECT_TRUE(holds(engines.out, by)) << engines.out << engines.err;
+  const Said run = type("run blocks_on_an_incline --duration-s 0.05 --modules reference");
+  EXPECT_TRUE(holds(run.out, by + ", where it rubs by the framework")) << run.out << run.err;
+}
+
 TEST_F(CommandLine, ThePageOfAllEnginesRefusesWhatBelongsToOneSceneAndTheOtherWayRound) {
   const Said size = type("engines --n 5");
   EXPECT_EQ(size.code, 2);
