@@ -539,9 +539,9 @@ TEST(ImpactsOnLinks, WhereRodsHoldBothBodiesNoImpulseSeparatesThemAndTheRunRepor
   }
 }
 
-// Two points on a rod that drifts apart at 0.3 m/s, of which one comes down on a slope: what contact
-// and rod do is all the change of energy there is, and the rod's part is its impulse times its
-// drift. Without drift it would be none.
+// Two points on a rod that drifts apart at 0.3 m/s, of which one comes down on a slope: what
+// contact and rod do is all the change of energy there is, and the rod's part is its impulse times
+// its drift. Without drift it would be none.
 TEST(ImpactEnergy, OfALinkThatDriftsIsToldFromThatOfTheContact) {
   for (const double drift : {0.3, 0.0}) {
     ContactProblem problem;
