@@ -6,6 +6,7 @@
 #include "framework/engines/run.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_process_scenes.h"
+#include "tests/engines/failing_steps.h"
 #include "tests/engines/taught_laws.h"
 
 namespace tumble::testing {
@@ -50,6 +51,18 @@ void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least
 TEST(TaughtTimewarp, CommitsTheReferencesTraceOfLinkedBodies) {
   expect_the_references_trace_of(pendula_and_balls(5, 0.9), 10);
   expect_the_references_trace_of(sized("cars", 4, 0.3), 0);
+}
+
+// The step of an island that fails is computed ahead; an impact before it makes it never count.
+TEST(TaughtTimewarp, GoesOnWhereAnImpactPreventsAFailingStep) {
+  for (const double met_at : {0.45, 0.485, 0.495}) {
+    const scene::Scene scene = pushed_carts(1, met_at, 0.8);
+    const Laws laws = with_failing_steps(taught_laws());
+    const Trajectory reference = run_taught(scene, laws, {}, "ordered"),
+                     run = run_taught(scene, laws);
+    ASSERT_EQ(reference.stopped_by, "") << met_at;
+    EXPECT_EQ(difference(reference, run), "") << met_at;
+  }
 }
 
 // Towers fuse, are hit and come apart; dominoes fall; an arm throws its block; rocks roll.

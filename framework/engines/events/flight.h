@@ -21,6 +21,10 @@ enum class StampKind : std::uint8_t {
   // internal event of a process: an impact within it, a contact that begins or opens; body_a is its
   // first body, body_b -1
   kProcess = 3,
+  // the step of a process that begins now cannot be taken; body_a is its first body, body_b -1, the
+  // microstep the last of the instant. Never committed: where it is the next event of all, the run
+  // stops for it
+  kFault = 4,
   kAdvance = 255  // forward execution of a process; never committed
 };
 

@@ -1,6 +1,7 @@
 #include "framework/engines/events/flight_run.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -123,9 +124,13 @@ Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Fli
 }
 
 std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, double to) const {
-  if (flight.segment < 0 || !world_.processes()->holds_contacts() ||
-      world_.first_member(body, flight) != body)
-    return std::nullopt;
+  if (flight.segment < 0 || world_.first_member(body, flight) != body) return std::nullopt;
+  if (const auto failed =
+          world_.processes()->segments().failed_by(flight.segment, std::min(to, duration_));
+      failed && *failed < duration_)
+    return EventStamp{*failed, std::numeric_limits<std::uint32_t>::max(), StampKind::kFault, body,
+                      -1};
+  if (!world_.processes()->holds_contacts()) return std::nullopt;
   const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, to);
   if (!end) return std::nullopt;
   return EventStamp{end->time, end->time == flight.begin ? flight.microstep + 1 : 0,
@@ -133,6 +138,7 @@ std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, dou
 }
 
 Discontinuity FlightRun::end_of_segment(const EventStamp& key, const Flight& flight) const {
+  if (key.kind == StampKind::kFault) world_.processes()->segments().raise(flight.segment);
   if (key.microstep > most_microsteps(world_.size()))
     throw StoppedRun(
         fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it",

@@ -40,10 +40,13 @@ class FlightRun {
   Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) {
     return resolve_impact(key, f, g, counters);
   }
-  /// The time at which a body's flight ends by itself, if that is at `to` or before; nothing
-  /// otherwise, and nothing for members of a process other than the first.
+  /// The time at which a body's flight ends by itself or cannot go on (kFault), if that is at `to`
+  /// or before; nothing otherwise, and nothing for members of a process other than the first. A
+  /// step beyond the end of the run is no part of it: its failure does not count.
   std::optional<EventStamp> own_end(int body, const Flight& flight, double to) const;
-  /// The discontinuity at that time.
+  /// The discontinuity at that time. The failure of a step is raised here: a caller executes kFault
+  /// only where nothing before it is left to do, since any of that may end the flight.
+  /// @throws what the step threw, of a kFault
   Discontinuity end_of_segment(const EventStamp& key, const Flight& flight) const;
 
   /// Callbacks of the run by their stamps, in order.

@@ -85,7 +85,7 @@ class FlightWorld {
     if (flight.segment >= 0) processes_->segments().release(flight.segment);
   }
   /// The time from `low` up to which the flight's motion is smooth, at most `high`; `low` itself
-  /// where the flight has ended by then. [s]
+  /// where the flight has ended by then, or cannot go on. [s]
   double smooth_until(const Flight& flight, double low, double high) const {
     return flight.segment < 0
                ? high

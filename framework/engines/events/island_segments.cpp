@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/error.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
 #include "framework/engines/base/tolerances.h"
@@ -98,7 +99,7 @@ std::string IslandSegments::names(const std::vector<int>& members) const {
                      members.size() > 1 ? " and its island" : "");
 }
 
-void IslandSegments::take_step(Segment& segment) {
+ProcessWorld::Outcome IslandSegments::outcome_of_step(Segment& segment) const {
   // Steps end on a grid that all processes share, as frames do: bodies in contact match each
   // other's surfaces at the ends of steps.
   const double now = segment.front->time,
@@ -112,13 +113,30 @@ void IslandSegments::take_step(Segment& segment) {
     throw StoppedRun(
         fmt::format("at t = {:.6f} s, {}: time stands still, its bodies collide again and again",
                     now, names(segment.start->members)));
+  return outcome;
+}
+
+void IslandSegments::take_step(Segment& segment) {
+  std::optional<ProcessWorld::Outcome> taken;
+  try {
+    taken.emplace(outcome_of_step(segment));
+  } catch (const std::exception& error) {
+    if (dynamic_cast<const Final*>(&error)) throw;  // whatever happens before it
+    segment.failure = std::current_exception();
+    // In place of the step one without length, which gives the state at its start.
+    const double now = segment.front->time;
+    taken.emplace(ProcessWorld::Outcome{
+        {segment.front->without_memory(), now, {}, {}}, std::move(*segment.front), {}});
+  }
+  ProcessWorld::Outcome& outcome = *taken;
   while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
     segment.steps.pop_front();
     --kept_;
   }
   segment.steps.push_back(std::move(outcome.step));
   ++kept_;
-  const bool is_one = segment.start->near.empty() || !falls_apart_(outcome.after);
+  const bool is_one =
+      segment.failure || segment.start->near.empty() || !falls_apart_(outcome.after);
   if (outcome.events.empty() && is_one)
     segment.front.emplace(std::move(outcome.after));
   else
@@ -129,7 +147,7 @@ void IslandSegments::take_step(Segment& segment) {
 // Computes steps until one ends after t: the state at the end of a step is the start of the next.
 void IslandSegments::reach(int number, double t) {
   Segment& segment = at(number);
-  while (!segment.end && !(segment.front->time > t)) take_step(segment);
+  while (!segment.end && !segment.failure && !(segment.front->time > t)) take_step(segment);
 }
 
 const SegmentEnd* IslandSegments::end_by(int number, double to) {
@@ -138,8 +156,21 @@ const SegmentEnd* IslandSegments::end_by(int number, double to) {
   return segment.end && segment.end->time <= to ? &*segment.end : nullptr;
 }
 
+std::optional<double> IslandSegments::failed_by(int number, double to) {
+  reach(number, to);
+  const Segment& segment = at(number);
+  if (!segment.failure || segment.front->time > to) return std::nullopt;
+  return segment.front->time;
+}
+
+void IslandSegments::raise(int segment) const {
+  require(at(segment).failure != nullptr, "a segment without failure has none to raise");
+  std::rethrow_exception(at(segment).failure);
+}
+
 const ProcessStep& IslandSegments::step_at(int number, double t) {
   reach(number, t);
+  if (at(number).failure && t > at(number).front->time) raise(number);
   const std::deque<ProcessStep>& steps = at(number).steps;
   std::size_t k = steps.size() - 1;
   while (k > 0 && steps[k].from.time > t) --k;
@@ -147,7 +178,7 @@ const ProcessStep& IslandSegments::step_at(int number, double t) {
 }
 
 double IslandSegments::step_end(int number, double t) {
-  return std::max(t, step_at(number, t).end);
+  return failed_by(number, t) ? t : std::max(t, step_at(number, t).end);
 }
 
 RigidBodyState IslandSegments::body_state(int segment, int body, double t) {

@@ -7,16 +7,23 @@
 /// where a contact begins or opens. The members of a segment never change: a body that joins or
 /// leaves begins new segments.
 ///
+/// A step that cannot be taken (a law fails, a state is not a number) is kept, and stops nothing:
+/// it was computed ahead of what other processes do, and an impact with one of them may end the
+/// segment before it. The segment is known up to that step's start, where it stands; an engine
+/// raises the failure where it is the next event of all.
+///
 /// Threads may share them if one thread at a time uses each segment and each set of members; data
 /// that segments share is locked.
 #pragma once
 
 #include <atomic>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "framework/core/stable_table.h"
@@ -58,9 +65,15 @@ class IslandSegments {
 
   /// The segment's end, if it ends by itself at `to` or before; else null.
   const SegmentEnd* end_by(int segment, double to);
-  /// The end of the step that contains t; t itself where the segment has ended there. [s]
+  /// The start of the step that could not be taken, if that is `to` or before. [s]
+  std::optional<double> failed_by(int segment, double to);
+  /// Throws what that step threw. @pre failed_by answered
+  [[noreturn]] void raise(int segment) const;
+  /// The end of the step that contains t; t itself where the segment has ended or failed by then.
+  /// [s]
   double step_end(int segment, double t);
   /// The process state at an instant. @pre the segment has not ended before it
+  /// @throws what the failed step threw, for instants after its start; so do all that follow
   ProcessState state_at(int segment, double t);
   RigidBodyState body_state(int segment, int body, double t);
   /// The states of all members for a picture, in their order: bodies in contact do not overlap
@@ -72,7 +85,7 @@ class IslandSegments {
 
   /// The start state.
   const ProcessState& start(int segment) const { return *at(segment).start; }
-  /// Calls work(step) for the steps that intersect [from, to].
+  /// Calls work(step) for the steps that intersect [from, to], as far as they could be taken.
   template <class Work>
   void for_each_step(int segment, double from, double to, const Work& work) {
     reach(segment, to);
@@ -83,7 +96,7 @@ class IslandSegments {
   /// step
   collision::Motion motion_in_step(int segment, int body, double low);
   /// Calls work(step, index of the body among the members, from, to) for the steps that cover
-  /// [from, to]; times after the segment's end are left out.
+  /// [from, to]; times after the segment's end or failure are left out.
   template <class Work>
   void for_each_step(int segment, int body, double from, double to, const Work& work) {
     reach(segment, to);
@@ -118,6 +131,7 @@ class IslandSegments {
     std::deque<ProcessStep> steps;
     std::optional<ProcessState> front;  // the state after the last step
     std::optional<SegmentEnd> end;
+    std::exception_ptr failure;  // of the step from `front`; null: none has failed
     CachedWorld* cached_world = nullptr;
     int holders = 0, idle = 0;
   };
@@ -127,6 +141,7 @@ class IslandSegments {
   CachedWorld& cached_world(const std::vector<int>& members, int still);
   void reach(int segment, double t);
   void take_step(Segment& segment);
+  ProcessWorld::Outcome outcome_of_step(Segment& segment) const;
   std::string names(const std::vector<int>& members) const;
 
   // process worlds that are cached for later use

@@ -79,7 +79,8 @@ class OrderedRun {
   }
 
   Discontinuity outcome_of(const EventStamp& key) {
-    if (key.kind == StampKind::kProcess) return run_.end_of_segment(key, flights_[key.body_a]);
+    if (key.kind == StampKind::kProcess || key.kind == StampKind::kFault)
+      return run_.end_of_segment(key, flights_[key.body_a]);
     if (key.kind == StampKind::kCollision)
       return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
     ++called_;

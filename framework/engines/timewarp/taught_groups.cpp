@@ -17,6 +17,8 @@ GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight,
   GroupFinding finding;
   const std::vector<BodyPair> ties = processes.ties_of(processes.segments().start(flight.segment));
   finding.end = run.own_end(body, flight, to);
+  // no change of the group: it may never come to it, and else the frame after it stops the run
+  if (finding.end && finding.end->kind == StampKind::kFault) finding.end.reset();
   // the scheduler skipped this interval
   if (finding.end && finding.end->time < safe_time) finding.end.reset();
   if (!finding.end) {

@@ -12,7 +12,9 @@ constexpr std::size_t kMostKept = 2, kFewKept = 16;
 
 double until_end(const FlightWorld& world, const Flight& flight, double t) {
   if (flight.segment < 0) return t;
-  const SegmentEnd* end = world.processes()->segments().end_by(flight.segment, t);
+  IslandSegments& segments = world.processes()->segments();
+  if (const auto failed = segments.failed_by(flight.segment, t)) return *failed;
+  const SegmentEnd* end = segments.end_by(flight.segment, t);
   return end ? std::min(t, end->time) : t;
 }
 

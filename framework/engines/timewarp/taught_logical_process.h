@@ -53,7 +53,8 @@ struct KeptState {
 };
 
 /// The time up to which a flight's motion is known, at most t. A segment of an island ends where a
-/// contact opens; a process that advanced past that time stays there until the next check. [s]
+/// contact opens, and stands where its next step fails; a process that advanced past that time
+/// stays there until the next check. [s]
 double until_end(const FlightWorld& world, const Flight& flight, double t);
 
 class TaughtLogicalProcess {

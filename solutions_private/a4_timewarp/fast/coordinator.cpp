@@ -313,16 +313,23 @@ void Coordinator::work_alone_before(double end) {
     work_alone_at(next->queue.pop());
 }
 
+// The first event of all: this one, or the queues' first, in whose place it is put back.
+Due Coordinator::first_before(const Due& due) {
+  Domain* next = next_domain();
+  if (!next || !(next->queue.front().key < due.key)) return due;
+  const Due first = next->queue.pop();
+  all_.domains[all_.regions > 1 ? all_.owner_of(due.key) : kBoundary].queue.push(due);
+  return first;
+}
+
 // A body at its limit of states waits until global virtual time has passed some of them. The first
 // event of all need not wait.
 void Coordinator::work_alone_at(Due due) {
+  // A step that failed was computed ahead: it counts where nothing before it is left to do.
+  if (due.key.kind == StampKind::kFault) due = first_before(due);
   if (all_.most_states > 0 && !alone().has_room(due)) {
     ++alone().counters.held_back;
-    if (Domain* next = next_domain(); next && next->queue.front().key < due.key) {
-      const Due first = next->queue.pop();
-      all_.domains[all_.regions > 1 ? all_.owner_of(due.key) : kBoundary].queue.push(due);
-      due = first;
-    }
+    due = first_before(due);
     commit_before(due.key);
     alone().purge(due);
   }

@@ -41,6 +41,7 @@ class Coordinator {
   void run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact);
   void work_alone_before(double end);
   void work_alone_at(Due due);
+  Due first_before(const Due& due);
   void collect_deferred();
   void collect_moves(Worker& worker);
   Domain* next_domain();

@@ -60,6 +60,8 @@ void Worker::collide(const Due& due) {
   std::size_t places[] = {0, 0};
   for (int side = 0; side < 2; ++side)
     if (!look_up(due, side, places[side])) return;
+  if (due.key.kind == StampKind::kFault)
+    all_.run.end_of_segment(due.key, history(bodies[0])[places[0]]);
   // Later flights of both bodies are rolled back.
   for (int side = 0; side < 2; ++side) {
     const int body = bodies[side];
@@ -290,6 +292,8 @@ double Worker::work_before(double end) {
     } else if (all_.most_states > 0 && !has_room(due)) {
       ++counters.held_back;
       defer(due);
+    } else if (due.key.kind == StampKind::kFault) {
+      defer(due);  // what other workers do may prevent it
     } else {
       ++worked_at;
       try {

@@ -1,0 +1,47 @@
+/// A process whose step fails from some time on, unless a ball has turned it back before.
+#pragma once
+
+#include <stdexcept>
+
+#include "framework/effects/point_force/point_force.h"
+#include "tests/engines/scenes.h"
+
+namespace tumble::testing {
+
+constexpr double kFailingStep = 1.0 / 64.0;  // s: steps begin at exact multiples of it
+constexpr double kCartFails = 0.5;  // s: for a cart at y = 0, while it goes on to the right
+
+/// `laws`, where no step of a body that goes to the right begins at kCartFails or later; for each
+/// metre of y an eighth of a second later.
+inline Laws with_failing_steps(Laws laws) {
+  laws.integrate_step = [step = laws.integrate_step](const OdeFunction& f, double t,
+                                                     const VectorXd& y, double h) {
+    constexpr int kMomentumX = 7;
+    if (y.size() == kStateSize && y[kMomentumX] > 0.0 &&
+        t > kCartFails + 0.125 * y[1] - 0.25 * kFailingStep)
+      throw std::runtime_error("no way through");
+    return step(f, t, y, h);
+  };
+  return laws;
+}
+
+/// Carts at y = 0, 2, ..., each a process since a force pushes it: x = t + t^2 / 20 [m, s]. A ball
+/// that flies freely meets the first of them at `met_at` and turns it back for the rest of the run;
+/// it goes on to the left itself.
+inline scene::Scene pushed_carts(int carts, double met_at, double duration) {
+  scene::Scene scene;
+  for (int i = 0; i < carts; ++i) {
+    const std::string name = "cart" + std::to_string(i);
+    scene.bodies.push_back(ball(name, 0.1, 1.0, {0.0, 2.0 * i, 0.0}, {1.0, 0.0, 0.0}));
+    scene.effects.of<effects::PointForceSpec>().push_back(
+        {name, {0.1, 0.0, 0.0}, {0.0, 2.0 * i, 0.0}, 0.0, 10.0});
+  }
+  const double x = met_at + met_at * met_at / 20.0 + 0.2 + met_at;
+  scene.bodies.push_back(ball("comer", 0.1, 5.0, {x, 0.0, 0.0}, {-1.0, 0.0, 0.0}));
+  scene.name = "pushed carts";
+  scene.step_s = kFailingStep;
+  scene.duration_s = duration;
+  return scene;
+}
+
+}  // namespace tumble::testing

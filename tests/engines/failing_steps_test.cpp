@@ -1,0 +1,126 @@
+// A step that fails ahead of global virtual time stops nothing, unless it is reached: then every
+// engine stops there, with the same words.
+#include <gtest/gtest.h>
+
+#include "tests/engines/event_scenes.h"
+#include "tests/engines/failing_steps.h"
+
+namespace tumble::testing::failing_steps_test {
+namespace {
+
+struct Told {
+  std::string engine = "tw";
+  int threads = 1;
+  engines::FaultInjection faults{};
+};
+
+Trajectory run_told(const Told& told, const scene::Scene& scene) {
+  engines::RunOptions options;
+  options.engine = told.engine;
+  options.threads = told.threads;
+  options.faults = told.faults;
+  return run_as_told(std::move(options), scene, with_failing_steps(test_laws()));
+}
+
+engines::FaultInjection by_lot(std::uint64_t seed) {
+  engines::FaultInjection faults;
+  faults.seed = seed;
+  faults.shuffle = true;
+  faults.disorder_s = 0.05;
+  faults.rollback_every = 7;
+  faults.rollback_s = 0.02;
+  return faults;
+}
+
+// What `ordered` does, in any order of execution.
+void expect_the_reference_everywhere(const scene::Scene& scene, const Trajectory& reference) {
+  EXPECT_EQ(difference(reference, run_told({"ca"}, scene)), "");
+  for (const int threads : {1, 2, 3})
+    EXPECT_EQ(difference(reference, run_told({"tw", threads}, scene)), "") << threads << " threads";
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    EXPECT_EQ(difference(reference, run_told({"tw", 1, by_lot(seed)}, scene)), "")
+        << "seed " << seed;
+  engines::FaultInjection cut;
+  cut.regions = 3;
+  EXPECT_EQ(difference(reference, run_told({"tw", 1, cut}, scene)), "") << "three regions";
+}
+
+// Timewarp takes up to eight steps of an island at once, and every engine one step beyond where it
+// looks, so that these impacts are found after the step at 0.5 s has failed.
+TEST(FailingStep, ThatAnImpactPreventsStopsNothing) {
+  for (const double met_at : {0.39, 0.41, 0.43, 0.45, 0.47, 0.49}) {
+    SCOPED_TRACE(met_at);
+    const scene::Scene scene = pushed_carts(1, met_at, 1.0);
+    const Trajectory reference = run_told({"ordered"}, scene);
+    ASSERT_EQ(reference.stopped_by, "");
+    ASSERT_EQ(collision_times(reference).size(), 1U);
+    EXPECT_NEAR(collision_times(reference).front(), met_at, 1e-9);
+    expect_the_reference_everywhere(scene, reference);
+    // All bodies step together there: the same run but for roundings and the root's bracket, which
+    // are below 1e-9 m. A cart that was not turned back would be 1 m away.
+    const Trajectory together = run_told({"rd"}, scene);
+    ASSERT_EQ(together.stopped_by, "");
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+      EXPECT_LT(
+          (together.frames.back().poses[i].com_world - reference.frames.back().poses[i].com_world)
+              .norm(),
+          1e-6)
+          << scene.bodies[i].name;
+  }
+}
+
+// With 60 frames a second, 30 of them lie before 0.5 s.
+TEST(FailingStep, ThatIsReachedStopsEveryEngineAtItsStart) {
+  const scene::Scene scene = pushed_carts(1, 0.7, 1.0);
+  const Trajectory reference = run_told({"ordered"}, scene);
+  for (const char* word : {"at t = 0.500000 s", "cart0", "no way through"})
+    EXPECT_NE(reference.stopped_by.find(word), std::string::npos) << reference.stopped_by;
+  EXPECT_EQ(reference.frames.size(), 30U);
+  EXPECT_EQ(collision_times(reference).size(), 0U);
+  expect_the_reference_everywhere(scene, reference);
+}
+
+// The first cart would fail at 0.5 s, the second at 0.75 s, the third at 1 s.
+TEST(FailingStep, OfSeveralTheFirstThatNothingPreventsCounts) {
+  for (const auto& [met_at, fault] : {std::pair{0.46, "at t = 0.750000 s, body 'cart1'"},
+                                      std::pair{0.6, "at t = 0.500000 s, body 'cart0'"}}) {
+    SCOPED_TRACE(met_at);
+    const scene::Scene scene = pushed_carts(3, met_at, 1.5);
+    const Trajectory reference = run_told({"ordered"}, scene);
+    EXPECT_EQ(reference.stopped_by.find(fault), 0U) << reference.stopped_by;
+    expect_the_reference_everywhere(scene, reference);
+  }
+}
+
+// A program that acts at the very instant turns the cart back before its step begins.
+TEST(FailingStep, ThatACallbackOfItsInstantPreventsStopsNothing) {
+  const scene::Scene scene = pushed_carts(1, 5.0, 1.0);
+  const auto run_with_callback = [&](const Told& told) {
+    engines::RunOptions options;
+    options.engine = told.engine;
+    options.threads = told.threads;
+    options.faults = told.faults;
+    options.callbacks = {
+        {kCartFails, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
+    return run_as_told(std::move(options), scene, with_failing_steps(test_laws()));
+  };
+  const Trajectory reference = run_with_callback({"ordered"});
+  ASSERT_EQ(reference.stopped_by, "");
+  engines::FaultInjection late;
+  late.late_callbacks = true;
+  for (const Told& told : {Told{"ca"}, Told{"tw", 1}, Told{"tw", 2}, Told{"tw", 1, late}})
+    EXPECT_EQ(difference(reference, run_with_callback(told)), "")
+        << told.engine << ", " << told.threads << " threads";
+}
+
+TEST(FailingStep, BeyondTheEndOfTheRunStopsNothing) {
+  const scene::Scene scene = pushed_carts(1, 5.0, kCartFails);
+  for (const Told& told : {Told{"rd"}, Told{"ordered"}, Told{"ca"}, Told{"tw", 1}, Told{"tw", 2}}) {
+    const Trajectory run = run_told(told, scene);
+    EXPECT_EQ(run.stopped_by, "") << told.engine << ", " << told.threads << " threads";
+    EXPECT_EQ(run.frames.back().time, kCartFails) << told.engine;
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing::failing_steps_test
