@@ -30,6 +30,7 @@ CostMethod method_by_integrator(const Method& integrator, const Laws& laws) {
   method.name = integrator.name;
   method.word = integrator.word;
   method.step_function = [integrator](double tolerance) { return step_of(integrator, tolerance); };
+  method.steps_in_units = needs_units(integrator);
   method.order = integrator.order;
   method.controlled = integrator.controlled;
   method.laws = laws;
@@ -128,10 +129,12 @@ CostMethod by_impacts(const std::string& word, const scene::Scene& scene, const 
   method.controlled = true;
   method.laws = laws;
   method.counted = "gap_evaluations";
-  if (engines::goes_in_closed_form(scene))
+  if (engines::goes_in_closed_form(scene)) {
     method.propagator = "auto";
-  else
+  } else {
     method.step_function = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+    method.steps_in_units = true;
+  }
   method.tuned = [find = root.find](double tolerance, Laws& tuned) {
     tuned.find_impact_time =
         [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low,

@@ -253,6 +253,7 @@ PlannedRun plan_run(const Context& context, const scene::Scene& scene, const Cho
     const CostMethod method = method_by_integrator(method_named(words.method), chosen.laws);
     plan.laws = method.laws;
     plan.laws.integrate_step = method.step_function(words.tolerance.value_or(kUnset));
+    plan.laws.steps_in_units = method.steps_in_units;
   }
   plan.options.engine = words.engine;
   plan.options.propagator = words.propagator;

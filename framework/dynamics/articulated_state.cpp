@@ -112,6 +112,15 @@ void ArticulatedTree::settle_arms(const Node& node, Motion& motion) const {
   motion.centripetal_own = motion.w.cross(turning);
 }
 
+VectorXd ArticulatedTree::units(double length) const {
+  VectorXd units = VectorXd::Ones(2 * half_);
+  for (const Node& node : nodes_)
+    if (node.kind == TreeJoint::kFree)
+      for (const Index at : {Index{node.at}, Index{half_ + node.at}})
+        units.segment<3>(at).setConstant(length);
+  return units;
+}
+
 VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
                                 const std::vector<FixedEnd>& fixed, bool turns_freely) {
   for (Node& node : nodes_) node.turns_evenly = turns_freely && node.may_turn_evenly;

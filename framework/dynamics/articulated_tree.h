@@ -54,6 +54,9 @@ class ArticulatedTree {
   ///   turn evenly, and y leaves their turning out
   VectorXd begin(const std::vector<RigidBodyState>& states, const std::vector<FixedEnd>& fixed,
                  bool turns_freely);
+  /// The units of y where a length is worth `length`: of places and velocities of free bodies; all
+  /// else are angles, directions, and these a second. [m]
+  VectorXd units(double length) const;
   /// How far the states that begin() took are from what it made of them: of places in parts of the
   /// largest arm, of turnings [rad], of velocities in parts of the fastest.
   double misfit() const { return misfit_; }

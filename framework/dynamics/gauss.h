@@ -15,7 +15,9 @@ namespace tumble {
 /// friction and strong dampers use Rosenbrock's method.
 ///
 /// (G.1) is solved by Newton's method with df/dy at y, by differences. Where that does not end, the
-/// two halves of h are taken one after the other, and so on.
+/// two halves of h are taken one after the other, and so on. Numbers of y below 1 count as 1, in
+/// the step of a difference and at the iteration's end: y is to come in units of its bodies
+/// (state_units.h).
 /// @return (n), as y
 /// @throws std::runtime_error where no part of h down to a thousandth will do; whatever f throws
 /// Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.5 and IV.8; E. Hairer, C. Lubich, G. Wanner,

@@ -34,6 +34,9 @@ struct Laws {
   /// One step of the method: y(t) to y(t + h).
   std::function<VectorXd(const OdeFunction& f, double t, const VectorXd& y, double h)>
       integrate_step;
+  /// Whether it compares numbers of y with one size (a tolerance, the step of a difference):
+  /// engines then give it y, and slopes, in units of the bodies (dynamics/state_units.h).
+  bool steps_in_units = false;
   /// d/dt of a rigid body's packed state (13) under a wrench.
   std::function<VectorXd(const RigidBodyState&, const Inertia&, const Wrench&)> state_derivative;
   /// Brings the quaternion back to unit length after a step.

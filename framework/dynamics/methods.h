@@ -34,12 +34,19 @@ const std::vector<Method>& methods();
 /// @throws UserError naming the known words
 const Method& method_named(const std::string& word);
 
+/// Whether it compares numbers of y with one size, 1 or a tolerance: laws with such a method say so
+/// (Laws::steps_in_units), and get states in units of the bodies.
+inline bool needs_units(const Method& method) { return method.controlled || method.implicit; }
+
 /// The method as a step.
 /// @param tolerance  of a controlled method: error a step it allows itself, absolute and relative,
-/// > 0; not looked at by others A controlled method takes back a trial in which f throws (but
-/// UserError and NotImplemented), or which ends in a value that is not a number, and tries a
-/// quarter of it. It throws std::runtime_error where no step will do (none of 1e-12 of h), or it
-/// would need more than 1e6 steps inside one.
+/// > 0, the same for all numbers of y as they come; not looked at by others. In a run the absolute
+/// one is in units of the bodies (dynamics/state_units.h): 1e-6 is a millionth of a body's size, of
+/// that size a second, of a radian, of a radian a second.
+/// A controlled method takes back a trial in which f throws (but UserError and NotImplemented), or
+/// which ends in a value that is not a number, and tries a quarter of it. It throws
+/// std::runtime_error where no step will do (none of 1e-12 of h), or it would need more than 1e6
+/// steps inside one.
 /// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4-II.9; "II", IV.7;
 /// implementations: Boost.Odeint.
 StepFunction step_of(const Method& method, double tolerance);

@@ -24,6 +24,7 @@ inline engines::CostMethod method_of(const std::string& word) {
   engines::CostMethod method;
   method.name = integrator.name;
   method.step_function = [integrator](double tolerance) { return step_of(integrator, tolerance); };
+  method.steps_in_units = needs_units(integrator);
   method.order = integrator.order;
   method.controlled = integrator.controlled;
   method.laws = library_laws();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/dynamics/methods.h"
+#include "framework/effects/drag/drag.h"
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/point_force/point_force.h"
 #include "tests/engines/scenes.h"
@@ -96,6 +98,54 @@ TEST(Invariance, LengthsOfMicrometresAndMegametresMoveAlike) {
   const Trajectory expected = run(meeting());
   for (const double length : {1e-6, 1e6})
     EXPECT_LT(farthest(run(meeting(length)), expected, length), 1e-10) << "scale " << length;
+}
+
+/// A box that tumbles and falls in a medium, and one that a force pushes beside its centre: the
+/// first is integrated with its island, the second alone. Lengths in 2^exponent m, masses in kg
+/// times the cube of that.
+scene::Scene slowed_and_pushed(int exponent) {
+  const double length = std::ldexp(1.0, exponent), mass = std::ldexp(1.0, 3 * exponent);
+  std::vector<scene::BodySpec> bodies;
+  for (const char* name : {"slowed", "pushed"}) {
+    bodies.push_back(box(name, length * Vector3d(0.5, 0.3, 0.2), mass,
+                         length * Vector3d(5.0 * static_cast<double>(bodies.size()), 0, 2),
+                         length * Vector3d(3, 0, 1)));
+    bodies.back().omega_world_rad_s = {3, 2, 5};
+    bodies.back().collides = false;
+  }
+  scene::Scene scene = scene_of(std::move(bodies), 2.0, length * Vector3d(0, 0, -9.81));
+  scene.step_s = 0.25;
+  scene.rest_speed_m_s = 1e-3 * length;
+  scene.effects.of<effects::DragSpec>().push_back(
+      {"slowed", 0.5 * mass, 0.1 * mass * length * length});
+  scene.effects.of<effects::PointForceSpec>().push_back(
+      {"pushed", mass * length * Vector3d(2, 1, 0), length * Vector3d(5.4, 0.2, 2), 0.0, 2.0});
+  return scene;
+}
+
+// A method that compares numbers with a tolerance, or with 1, is given them in units of the bodies.
+// In SI units momenta of 1e-12 kg m/s would be below any tolerance, and the count of evaluations
+// would be another.
+TEST(Invariance, AToleranceAsksForAsManyStepsInUnitsOfAnySize) {
+  for (const char* word : {"dopri5", "fehlberg78", "gauss6"}) {
+    Laws laws = test_laws();
+    laws.integrate_step = step_of(method_named(word), 1e-7);
+    laws.steps_in_units = needs_units(method_named(word));
+    const Trajectory expected = run(slowed_and_pushed(0), laws);
+    ASSERT_EQ(expected.stopped_by, "") << word;
+    const auto evaluations = [](const Trajectory& run) {
+      return static_cast<double>(run.counters.counts.at("derivative_evaluations"));
+    };
+    for (const int exponent : {-10, 10}) {
+      const Trajectory found = run(slowed_and_pushed(exponent), laws);
+      ASSERT_EQ(found.stopped_by, "") << word << ", 2^" << exponent << " m";
+      EXPECT_NEAR(evaluations(found) / evaluations(expected), 1.0, 0.02)
+          << word << ", 2^" << exponent << " m";
+      // units are powers of two: but for roundings of what is around the steps, the same numbers
+      EXPECT_LT(farthest(found, expected, std::ldexp(1.0, exponent)), 1e-9)
+          << word << ", 2^" << exponent << " m";
+    }
+  }
 }
 
 // Places that both scenes can hold, or they would differ from the start: a rounding of one

@@ -198,7 +198,10 @@ CostRun run_of(const scene::Scene& scene, const CostMethod& method, const CostRe
               options_of(method, options, stepped.frame_rate_hz)};
   if (method.stabilisation) run.scene.stabilisation = method.stabilisation;
   if (method.coordinates) run.scene.coordinates = *method.coordinates;
-  if (method.step_function) run.laws.integrate_step = method.step_function(tolerance);
+  if (method.step_function) {
+    run.laws.integrate_step = method.step_function(tolerance);
+    run.laws.steps_in_units = method.steps_in_units;
+  }
   if (method.tuned) method.tuned(tolerance, run.laws);
   if (std::isfinite(options.most_of_run_s))
     run.laws.integrate_step =

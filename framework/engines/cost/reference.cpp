@@ -151,7 +151,9 @@ double farthest(const std::vector<Frame>& found, const std::vector<Frame>& expec
 }
 
 Laws with_method(Laws laws, const std::string& word) {
-  laws.integrate_step = step_of(method_named(word), kSolverRounding);  // below, no method improves
+  const Method& method = method_named(word);
+  laws.integrate_step = step_of(method, kSolverRounding);  // below, no method improves
+  laws.steps_in_units = needs_units(method);
   return laws;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/disjoint_sets.h"
+#include "framework/dynamics/state_units.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
@@ -93,6 +94,13 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     if (acting->control() != nullptr) controls_.push_back(terms_.size());
     terms_.push_back({k, std::move(acting)});
   }
+  for (const Terms& terms : terms_) length_ = std::max(length_, terms.acting->size());
+  for (const int body : bodies_)
+    length_ = std::max(length_, radius_of_gyration(world_.bodies[body].inertia));
+  units_.resize(static_cast<Eigen::Index>(bodies_.size()) * kStateSize);
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    units_.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) =
+        units_of_state(world_.bodies[bodies_[i]].inertia, length_);
   if (world_.coordinates == scene::Coordinates::kReduced) plant_tree();
 }
 
@@ -315,7 +323,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
     return derivative(time, state);
   };
   ++counters_.integrations;
-  const VectorXd end = naming(subject(), [&] { return laws_.integrate_step(f, t, y, h); });
+  const VectorXd end = naming(subject(), [&] { return integrate_by(laws_, f, t, y, h, units_); });
   for (std::size_t i = 0; i < local.size(); ++i) {
     local[i] = unpack(end.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize));
     local[i].world_from_body = laws_.renormalize(local[i].world_from_body);

@@ -178,6 +178,8 @@ class LinkedBodies final : effects::GroupPlaces {
   std::vector<std::size_t> controls_;  // those of terms_ that look
   double time_of_stage_ = 0.0;
   double step_ = kUnset;  // the last that advance() took [s]
+  double length_ = 0.0;   // its longest rod, or its largest radius of gyration [m]
+  VectorXd units_;        // of the packed states of its bodies, by length_
 
   std::optional<ArticulatedTree>
       tree_;  // absent: the group is integrated in six coordinates a body

@@ -10,6 +10,7 @@
 
 #include "framework/core/error.h"
 #include "framework/dynamics/rotation_bounds.h"
+#include "framework/dynamics/state_units.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
 
@@ -305,6 +306,14 @@ RigidBodyState MovingWorld::fly(int body, double duration, const VectorXd& start
   return state;
 }
 
+const VectorXd& MovingWorld::units_of(int body) {
+  if (units_.size() < world_.bodies.size()) units_.resize(world_.bodies.size());
+  VectorXd& units = units_[static_cast<std::size_t>(body)];
+  const Inertia& inertia = world_.bodies[static_cast<std::size_t>(body)].inertia;
+  if (units.size() == 0) units = units_of_state(inertia, radius_of_gyration(inertia));
+  return units;
+}
+
 RigidBodyState MovingWorld::integrate(int body, double duration, double start_time,
                                       const VectorXd& start) {
   if (flies_freely(body)) return fly(body, duration, start);
@@ -326,7 +335,8 @@ RigidBodyState MovingWorld::integrate(int body, double duration, double start_ti
   ++counters_.integrations;
   ++integrations_in_step_;
   return naming("body '" + world_.bodies[body].name + "'", [&] {
-    RigidBodyState state = unpack(laws_.integrate_step(derivative, start_time, start, duration));
+    RigidBodyState state =
+        unpack(integrate_by(laws_, derivative, start_time, start, duration, units_of(body)));
     state.world_from_body = laws_.renormalize(state.world_from_body);
     return state;
   });

@@ -214,6 +214,7 @@ class MovingWorld {
   bool flies_freely(int body) const { return !rotations_.empty() && is_left_alone(body); }
   RigidBodyState fly(int body, double duration, const VectorXd& start);
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
+  const VectorXd& units_of(int body);
   Wrench wrench_on(int body, const RigidBodyState& state);
   double torque_bound(int body) const;
   const PrincipalMoments& principal_of(int body);
@@ -247,6 +248,8 @@ class MovingWorld {
   std::uint64_t integrations_in_step_ = 0;
   std::vector<std::optional<PrincipalMoments>> principal_;  // by body, once asked for
   std::vector<FreeRotation> rotations_;                     // by body; empty: the laws integrate
+  // by body: units of its state, once its integration has asked for them
+  std::vector<VectorXd> units_;
 };
 
 }  // namespace tumble::engines

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/decompositions.h"
+#include "framework/dynamics/state_units.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/linked_bodies.h"
@@ -308,7 +309,8 @@ std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyS
     return reduced_rate(time, state);
   };
   ++counters_.integrations;
-  const VectorXd end = naming(subject(), [&] { return laws_.integrate_step(f, t, y, h); });
+  const VectorXd units = tree_->units(nearest_power_of_two(length_ > 0.0 ? length_ : 1.0));
+  const VectorXd end = naming(subject(), [&] { return integrate_by(laws_, f, t, y, h, units); });
   stand_fixed_ends_at(t + h);
   tree_->stand_at(end, ends_);
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = tree_->state(static_cast<int>(i), h);

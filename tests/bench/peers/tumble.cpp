@@ -79,6 +79,8 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
     laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
   if (setting.method == kGaussInJoints)
     laws.integrate_step = step_of(method_named("gauss6"), kUnset);
+  laws.steps_in_units = setting.method == kDormandPrince || setting.method == kFehlberg ||
+                        setting.method == kFehlbergInJoints || setting.method == kGaussInJoints;
   scene::Scene scene = bench.scene;
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
   if (setting.method == kRungeKuttaInJoints || setting.method == kFehlbergInJoints ||
