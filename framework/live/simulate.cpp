@@ -133,6 +133,7 @@ class LiveRun final : public TrajectorySink {
   TrajectoryInfo info_;
   bool has_head_ = false;
   std::size_t moves_sent_ = 0;
+  bool is_cut_sent_ = false;
   Frame last_;  // that has come
   // The pace: at base_wall_ the run was at base_s_.
   Clock::time_point base_wall_;
@@ -196,15 +197,17 @@ void LiveRun::send_head(const Frame& first) {
 }
 
 void LiveRun::send_times(const VirtualTimes& times, std::size_t from) {
-  if (times.moves.size() <= from) return;
+  const bool tells_cut = times.is_cut && !is_cut_sent_;
+  if (times.moves.size() <= from && !tells_cut) return;
   Json moves = Json::array();
   for (std::size_t k = from; k < times.moves.size(); ++k) {
     const VirtualTimes::Move& move = times.moves[k];
     moves.push_back({move.process, move.from_s, move.to_s, move.global_virtual_time_s});
   }
   moves_sent_ = times.moves.size();
-  send(RecordKind::kTimes,
-       line_of({{"processes", times.processes}, {"from", from}, {"moves", std::move(moves)}}));
+  Json record{{"processes", times.processes}, {"from", from}, {"moves", std::move(moves)}};
+  if (times.is_cut) is_cut_sent_ = record["is_cut"] = true;
+  send(RecordKind::kTimes, line_of(record));
 }
 
 void LiveRun::end(const Counters& counters, const std::string& stopped_by) {

@@ -68,7 +68,9 @@ struct Pipe {
 /// A simulation in a thread of its own, with its pipes.
 class Running {
  public:
-  explicit Running(const live::Recipe& recipe, double speed = 1e30, bool paused = false) {
+  explicit Running(const live::Recipe& recipe, double speed = 1e30, bool paused = false,
+                   std::shared_ptr<const VirtualTimes> times = nullptr) {
+    simulation_.times = std::move(times);
     simulation_.scene = scene::parse_scene(live::document_of(recipe), "two_boxes.json");
     simulation_.laws = laws_for_hands();
     simulation_.options.engine = "rd";
@@ -200,6 +202,19 @@ TEST(LiveHand, WhatWasDoneByHandRunsAgainByteForByte) {
   Running again(recipe_with(handled.pushes));
   for (std::size_t k = 0; k < handled.frames.size(); ++k)
     ASSERT_EQ(again.until(RecordKind::kFrame), handled.frames[k]) << "frame " << k;
+}
+
+// More moves than are kept: told once, with the moves or behind them.
+TEST(LiveTimes, ThatAreCutSaySo) {
+  const auto times = std::make_shared<VirtualTimes>();
+  times->processes = {"box", "top"};
+  times->moves = {{0, 0.0, 0.5, 0.0}, {1, 0.0, 0.25, 0.25}};
+  times->is_cut = true;
+  Running run(recipe_with({}), 1e30, false, times);
+  const Json told = Json::parse(run.until(RecordKind::kTimes));
+  EXPECT_EQ(told.at("moves").size(), 2u);
+  EXPECT_TRUE(told.value("is_cut", false)) << told;
+  EXPECT_EQ(run.until(RecordKind::kTimes), "");  // nothing new until the end of the run
 }
 
 TEST(LiveHand, FarFromTheOriginPushesAreRecordedInTheWorld) {

@@ -113,11 +113,12 @@ class TimesChart {
     this.clear();
   }
 
-  clear() { this.names = []; this.times = []; this.undone = []; this.moves = 0; this.rollbacks = 0; this.gvt = 0; this.history = []; }
+  clear() { this.names = []; this.times = []; this.undone = []; this.moves = 0; this.rollbacks = 0; this.gvt = 0; this.history = []; this.isCut = false; }
 
   add(message) {
     if (message.from < this.moves) this.clear();
     this.names = message.processes;
+    this.isCut = this.isCut || Boolean(message.is_cut);
     while (this.times.length < this.names.length) this.times.push(0);
     for (const [process, from, to, gvt] of message.moves) {
       this.times[process] = to;
@@ -125,6 +126,12 @@ class TimesChart {
       ++this.moves;
       if (to <= from) { ++this.rollbacks; this.undone.push({ process, from, to, move: this.moves }); if (this.undone.length > 40) this.undone.shift(); }
     }
+  }
+
+  told() {
+    const rollbacks = `${this.rollbacks} rollback${this.rollbacks === 1 ? '' : 's'}`, until = `global virtual time ${short(this.gvt)} s`;
+    if (!this.isCut) return `${this.moves} moves of the scheduler, ${rollbacks}; ${until}`;
+    return `The first ${this.moves} moves of the scheduler, ${rollbacks}; ${until}. Later moves are not recorded, because there are more than are kept: the run goes on, and the bars stay.`;
   }
 
   draw(end) {
@@ -166,6 +173,6 @@ class TimesChart {
     g.fillRect(x(this.gvt) - 1, top - 4, 2, bottom - top + 4);
     g.textAlign = 'left';
     g.fillText('GVT', Math.min(x(this.gvt) + 4, width - 30), top - 6);
-    this.words.textContent = `${this.moves} moves of the scheduler, ${this.rollbacks} rollback${this.rollbacks === 1 ? '' : 's'}; global virtual time ${short(this.gvt)} s`;
+    this.words.textContent = this.told();
   }
 }
