@@ -16,6 +16,7 @@
 #include "framework/cli/cost_sampling.h"
 #include "framework/cli/cost_scheduler.h"
 #include "framework/cli/json_output.h"
+#include "framework/core/files.h"
 #include "framework/report/tables_json.h"
 #include "framework/sampling/sampler.h"
 
@@ -73,6 +74,8 @@ void tell_impacts(const Context& context, const CostWords& words) {
 }
 
 void run_cost(Context& context, const CostWords& words) {
+  const std::filesystem::path out = words.out;
+  expect_writable((words.scene == kAllWord ? out : out / words.name()) / "index.html");
   if (words.scene == kImpactWord) return tell_impacts(context, words);
   if (words.scene == kAllWord) return cost_of_all(context, words);
   for (const modules::ModuleKind* kind : context.registry.all()) {

@@ -204,6 +204,10 @@ void cost_of_all(Context& context, const CostWords& words) {
   if (words.n || words.duration_s || !words.on.empty())
     throw UserError("tumble cost all", "sizes, durations and --on belong to one scene",
                     "Leave --n, --duration-s and --on out, or name a scene.");
+  // What each scene would fail for is refused before the first.
+  words.steps_s();
+  check_known(words);
+  expect_module_files(context, parse_module_words(words.modules, context.registry));
   const std::vector<std::string> scenes = scene_names(context);
   const auto begun = std::chrono::steady_clock::now();
   std::vector<SceneLine> lines;

@@ -134,6 +134,14 @@ std::vector<double> tolerances_of(const CostWords& words) {
 }  // namespace
 
 report::CostPage cost_of_impacts(const Context& context, const CostWords& words) {
+  // Words that name nothing are refused before the first search.
+  for (const std::string& word : words.impacts) root_method_named(word);
+  ChosenLaws chosen;
+  if (!words.modules.empty()) {
+    scene::Scene nothing = truths::empty_scene("times of impact", 1.0, 1e-3);
+    nothing.file = context.root / "models" / "none";
+    chosen = choose_laws(context, nothing, parse_module_words(words.modules, context.registry));
+  }
   const Problems problems = problems_of(context);
   const std::vector<double> tolerances = tolerances_of(words);
   report::CostPage page;
@@ -164,14 +172,9 @@ report::CostPage cost_of_impacts(const Context& context, const CostWords& words)
   for (const std::string& word : names)
     page.curves.push_back(
         curve_of(problems, root_method_named(word).name, root_method_named(word).find, tolerances));
-  if (!words.modules.empty()) {
-    scene::Scene nothing = truths::empty_scene("times of impact", 1.0, 1e-3);
-    nothing.file = context.root / "models" / "none";
-    const ChosenLaws chosen =
-        choose_laws(context, nothing, parse_module_words(words.modules, context.registry));
+  if (!words.modules.empty())
     page.curves.push_back(curve_of(problems, "find_impact_time of " + words.modules,
                                    chosen.laws.find_impact_time, tolerances));
-  }
   page.curves.push_back(curve_of_closed_forms(problems));
   if (page.curves.back().points.front().error > kRoundings * problems.floor)
     page.readings.push_back(

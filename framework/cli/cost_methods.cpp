@@ -66,6 +66,18 @@ bool is_none(const std::vector<std::string>& words) {
   return words.size() == 1 && words.front() == "none";
 }
 
+[[noreturn]] void refuse_stabilisation(const std::string& word) {
+  throw UserError("--stabilisations " + word, "expected none, baumgarte or projection",
+                  "For example --stabilisations baumgarte,projection.");
+}
+
+[[noreturn]] void refuse_solver(const std::string& word) {
+  throw UserError(
+      "--solvers " + word,
+      "expected gradients (of rods and joints), sweeps or newton (of persistent contacts)",
+      "For example --solvers sweeps,newton.");
+}
+
 CostMethod by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
   if (!scene.stabilisation)
     throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints",
@@ -79,8 +91,7 @@ CostMethod by_stabilisation(const std::string& word, const scene::Scene& scene, 
   else if (word == "projection")
     method.stabilisation->kind = scene::StabilisationKind::kProjection;
   else
-    throw UserError("--stabilisations " + word, "expected none, baumgarte or projection",
-                    "For example --stabilisations baumgarte,projection.");
+    refuse_stabilisation(word);
   method.name = word == "none" ? "RK4, no stabilisation"
                 : word == "baumgarte"
                     ? fmt::format("RK4, Baumgarte {:g} s", method.stabilisation->time_constant_s)
@@ -167,10 +178,7 @@ CostMethod by_solver(const std::string& word, const scene::Scene& scene, const L
     throw UserError("--solvers " + word, scene.name + " has no persistent contacts",
                     "Take a scene such as stack_of_10.");
   } else {
-    throw UserError(
-        "--solvers " + word,
-        "expected gradients (of rods and joints), sweeps or newton (of persistent contacts)",
-        "For example --solvers sweeps,newton.");
+    refuse_solver(word);
   }
   return method;
 }
@@ -383,6 +391,19 @@ std::vector<double> CostWords::steps_s() const {
 }
 
 std::string CostWords::name() const { return std::filesystem::path(scene).stem().string(); }
+
+void check_known(const CostWords& words) {
+  if (!is_none(words.methods))
+    for (const std::string& word : words.methods) method_named(word);
+  if (!is_none(words.engines))
+    for (const std::string& word : words.engines) method_by_engine(word, Laws(), true);
+  for (const std::string& word : words.stabilisations)
+    if (word != "none" && word != "baumgarte" && word != "projection") refuse_stabilisation(word);
+  for (const std::string& word : words.impacts) root_method_named(word);
+  for (const std::string& word : words.solvers)
+    if (word != "gradients" && word != "sweeps" && word != "newton") refuse_solver(word);
+  for (const std::string& word : words.coordinates) scene::coordinates_named(word, "--coordinates");
+}
 
 CostSubject find_subject(const Context& context, const CostWords& words) {
   for (const modules::ModuleKind* kind : context.registry.all())

@@ -56,6 +56,10 @@ engines::CostMethod method_by_integrator(const Method& integrator, const Laws& l
 engines::CostMethod method_by_engine(const std::string& word, const Laws& laws,
                                      bool in_closed_form);
 
+/// Checks the words that name something in every scene.
+/// @throws UserError with the word that is unknown
+void check_known(const CostWords& words);
+
 /// @throws UserError with the word that is unknown or does not suit the scene
 CostSubject find_subject(const Context& context, const CostWords& words);
 

@@ -14,6 +14,7 @@
 #include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 #include "framework/report/tables_json.h"
 #include "framework/scene/sized_scenes.h"
 
@@ -57,6 +58,9 @@ void run_engines(Context& context, const EnginesWords& words) {
   if (!words.sizes.empty() && scene::sized_scene_named(words.scene) == nullptr)
     throw UserError("--sizes", fmt::format("'{}' has one size", words.scene),
                     "Give a scene whose size is a parameter, such as atoms, or leave --sizes out.");
+  const std::filesystem::path page = std::filesystem::path(words.out) / scene.name / "index.html";
+  expect_writable(page);
+  for (const int n : words.sizes) find_scene(context, words.scene, n);  // refused before any run
   for (const int n : words.sizes) {
     ladder.push_back(run_all(context, find_scene(context, words.scene, n), chosen, words));
     if (words.json) continue;
@@ -65,7 +69,6 @@ void run_engines(Context& context, const EnginesWords& words) {
   }
   const std::vector<EngineRow> rows =
       ladder.empty() || words.n ? run_all(context, scene, chosen, words) : ladder.back();
-  const std::filesystem::path page = std::filesystem::path(words.out) / scene.name / "index.html";
   report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene),
                              page);
   if (words.json) {

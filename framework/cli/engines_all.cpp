@@ -13,6 +13,7 @@
 #include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/render/picture.h"
 #include "framework/report/engines_index.h"
@@ -266,6 +267,17 @@ void engines_of_all(Context& context, const EnginesWords& words) {
     throw UserError("tumble engines", "sizes, durations and steps belong to one scene",
                     "Name a scene, or leave --n, --sizes, --duration-s and --step-s out.");
   engines_named(words.engines);
+  // What each scene would fail for is refused before the first.
+  expect_module_files(context, parse_module_words(modules_of(context, words), context.registry));
+  const fs::path out = words.out;
+  expect_writable(out / "index.html");
+  if (!words.quiet) {  // a larger report shows what cannot be drawn in its place
+    if (words.no_videos)
+      render::expect_pictures();
+    else
+      render::expect_video(out);
+    report::expect_player();
+  }
   // The scenes of the page, and their shares of the time.
   std::vector<Shown> all;
   for (const Shown& shown : kShown)

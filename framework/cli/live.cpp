@@ -127,6 +127,11 @@ void live_verb(Context& context, LiveWords& words) {
   const std::string id = scene_of_assignment(context, words.scene);
   const scene::Scene scene = scene_of_words(context, words, true);
   const ModuleWords modules = parse_module_words(words.modules, context.registry);
+  // Refused here, and not in the page.
+  expect_module_files(context, modules);
+  expect_engine("--engine ", words.engine);
+  check_plan_words(words);
+  expect_writable(fs::path(words.saves) / "scene.json");
 
   live::Sitting sitting;
   sitting.name = scene.name;

@@ -346,6 +346,14 @@ void bind_spare(const Context& context, const ModuleKind& kind, ChosenLaws& resu
 
 }  // namespace
 
+void expect_module_files(const Context& context, const ModuleWords& words) {
+  for (const ModuleKind* kind : context.registry.all()) {
+    const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
+    if (told != words.end() && is_path(told->second))
+      file_for(context, *kind, told->second, told->first.empty());
+  }
+}
+
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
                        const std::string& engine) {
   const auto kinds = context.registry.all();

@@ -43,6 +43,10 @@ struct ChosenLaws {
   std::vector<std::shared_ptr<void>> connections;
 };
 
+/// Refuses what is known without loading: a word that is no module's, a file that is not there.
+/// @throws UserError
+void expect_module_files(const Context& context, const ModuleWords& words);
+
 /// @param engine  of the run; empty: the scene's own. In a tree without a fast scheduler, timewarp
 ///   (or a list of engines with "tw") needs a scheduler's module, as a scene about it does.
 /// @throws UserError for a word that names nothing that can be loaded, with a remedy

@@ -10,8 +10,10 @@
 #include "framework/cli/cost_measure.h"
 #include "framework/cli/cost_methods.h"
 #include "framework/core/cpu_time.h"
+#include "framework/core/nearest_word.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/judging/judge.h"
+#include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/report/cost_page.h"
 #include "framework/scene/words.h"
@@ -31,31 +33,6 @@ constexpr double kFrameRate = 60.0;          // Hz: as RunOptions records
 std::string asked_of(const RunWords& words) {
   return words.accuracy_m ? fmt::format("--accuracy {:g}", *words.accuracy_m)
                           : fmt::format("--budget-s {:g}", *words.budget_s);
-}
-
-void check_words(const RunWords& words) {
-  const std::string asked = words.accuracy_m || words.budget_s ? asked_of(words) : "";
-  if (words.accuracy_m && words.budget_s)
-    throw UserError(asked + " --budget-s", "an error and a time are both asked for",
-                    "Give one: the other follows from it.");
-  const bool chosen = words.step_s || !words.engine.empty() || !words.propagator.empty() ||
-                      !words.method.empty() || words.tolerance;
-  if (!asked.empty() && chosen)
-    throw UserError(asked, "it chooses engine, method and step, and one of these is given too",
-                    "Leave out --engine, --propagator, --method, --tolerance and --step-s.");
-  if (words.method.empty() && words.tolerance)
-    throw UserError(fmt::format("--tolerance {:g}", *words.tolerance),
-                    "no method is named that has one",
-                    "For example --method dopri5 --tolerance 1e-8.");
-  if (words.method.empty()) return;
-  const Method& method = method_named(words.method);
-  if (method.controlled && !words.tolerance)
-    throw UserError("--method " + words.method,
-                    "it chooses its steps by a tolerance, and none is given",
-                    "For example --tolerance 1e-8.");
-  if (!method.controlled && words.tolerance)
-    throw UserError("--method " + words.method, "it takes the scene's step, and no tolerance",
-                    "Leave --tolerance out, or take dopri5.");
 }
 
 /// Whether the motion's module was chosen by name: then the run uses it.
@@ -230,9 +207,43 @@ void add_plan_words(Verb& verb, RunWords& words) {
       .positive();
 }
 
+void expect_engine(const std::string& flag, const std::string& word) {
+  if (word.empty()) return;
+  std::vector<std::string> known;
+  for (const auto& [one, meaning] : engines::engine_words()) known.push_back(one);
+  if (std::find(known.begin(), known.end(), word) == known.end())
+    throw UserError(flag + word, "there is no engine of that name." + did_you_mean(word, known),
+                    "Known: " + fmt::format("{}", fmt::join(known, ", ")) + ".");
+}
+
+void check_plan_words(const RunWords& words) {
+  const std::string asked = words.accuracy_m || words.budget_s ? asked_of(words) : "";
+  if (words.accuracy_m && words.budget_s)
+    throw UserError(asked + " --budget-s", "an error and a time are both asked for",
+                    "Give one: the other follows from it.");
+  const bool chosen = words.step_s || !words.engine.empty() || !words.propagator.empty() ||
+                      !words.method.empty() || words.tolerance;
+  if (!asked.empty() && chosen)
+    throw UserError(asked, "it chooses engine, method and step, and one of these is given too",
+                    "Leave out --engine, --propagator, --method, --tolerance and --step-s.");
+  if (words.method.empty() && words.tolerance)
+    throw UserError(fmt::format("--tolerance {:g}", *words.tolerance),
+                    "no method is named that has one",
+                    "For example --method dopri5 --tolerance 1e-8.");
+  if (words.method.empty()) return;
+  const Method& method = method_named(words.method);
+  if (method.controlled && !words.tolerance)
+    throw UserError("--method " + words.method,
+                    "it chooses its steps by a tolerance, and none is given",
+                    "For example --tolerance 1e-8.");
+  if (!method.controlled && words.tolerance)
+    throw UserError("--method " + words.method, "it takes the scene's step, and no tolerance",
+                    "Leave --tolerance out, or take dopri5.");
+}
+
 PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
                     const RunWords& words) {
-  check_words(words);
+  check_plan_words(words);
   PlannedRun plan{scene, chosen.laws, {}, std::nullopt};
   // A requested error or time: method and step come from a search.
   if (words.accuracy_m || words.budget_s) {

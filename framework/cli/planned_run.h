@@ -34,6 +34,13 @@ struct PlannedRun {
 /// Declares --accuracy, --budget-s, --method and --tolerance.
 void add_plan_words(Verb& verb, RunWords& words);
 
+/// @throws UserError where an engine's word is unknown, with the nearest. Empty: none is named
+/// @param flag  to stand before it in the message: "--engine "
+void expect_engine(const std::string& flag, const std::string& word);
+
+/// @throws UserError where the words of add_plan_words, engine and step contradict each other
+void check_plan_words(const RunWords& words);
+
 /// @throws UserError where words contradict each other, where the scene has no reference solution,
 ///   or where no method fulfils the request
 PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,

@@ -8,7 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/nearest_word.h"
+#include "framework/cli/planned_run.h"
+#include "framework/cli/stop_by_hand.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker/worker_connection.h"
@@ -58,8 +59,8 @@ ModuleWords with_changes(ModuleWords words, const ModuleWords& changes) {
   return words;
 }
 
-Second recorded(const std::string& file, const scene::Scene& scene) {
-  Second second{read_trajectory(file), fs::path(file).stem().string(), "this run"};
+Second recorded(const std::string& file, const Trajectory& recording, const scene::Scene& scene) {
+  Second second{recording, fs::path(file).stem().string(), "this run"};
   if (const std::string faults = in_words(second.run.counters.faults); !faults.empty())
     fmt::print(stderr, "{}: cannot be trusted: {}\n", file, faults);
   const TrajectoryInfo& info = second.run.info;
@@ -74,21 +75,67 @@ Second recorded(const std::string& file, const scene::Scene& scene) {
   return second;
 }
 
-Second second_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
-                  const Trajectory& first, const RunWords& words) {
-  const BesideWords beside = parse_beside(words.beside);
-  if (!beside.recording.empty()) return recorded(beside.recording, scene);
+ChosenLaws laws_of_second(const Context& context, const scene::Scene& scene,
+                          const BesideWords& beside, const RunWords& words) {
   const ModuleWords mine = parse_module_words(words.modules, context.registry);
-  const ChosenLaws other = choose_laws(
-      context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)),
-      beside.engine.empty() ? words.engine : beside.engine);
+  return choose_laws(context, scene,
+                     with_changes(mine, parse_module_words(beside.modules, context.registry)),
+                     beside.engine.empty() ? words.engine : beside.engine);
+}
+
+engines::RunOptions options_of_second(const Context& context, const BesideWords& beside,
+                                      const RunWords& words) {
   engines::RunOptions options;
   options.engine = beside.engine.empty() ? words.engine : beside.engine;
-  VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
-  options.timewarp = engines::fast_timewarp(&times);
+  options.timewarp = engines::fast_timewarp();
   options.step_s = beside.step_s ? beside.step_s : words.step_s;
   options.duration_s = words.duration_s;
   options.command = context.command_line;
+  return options;
+}
+
+/// Ends a run at its first frame: until then an engine refuses what it cannot do.
+class OnlyTheStart final : public TrajectorySink {
+ public:
+  struct Reached {};
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame&) override { throw Reached{}; }
+  void event(const Event&) override { throw Reached{}; }
+  void beat(double) override { throw Reached{}; }
+  void end(const Counters&, const std::string& stopped_by) override { stopped_by_ = stopped_by; }
+  const std::string& stopped_by() const { return stopped_by_; }
+
+ private:
+  std::string stopped_by_;
+};
+
+/// @throws UserError where the second run would not come to its first frame
+void expect_start(const Context& context, const scene::Scene& scene, const Laws& laws,
+                  const BesideWords& beside, const RunWords& words) {
+  OnlyTheStart start;
+  std::string why;
+  try {
+    engines::run_scene(scene, laws, options_of_second(context, beside, words), start);
+    why = start.stopped_by();
+  } catch (const OnlyTheStart::Reached&) {
+    return;
+  } catch (const grading::CallEnded& error) {
+    why = error.what();
+  }
+  throw UserError("--beside " + words.beside, "this run has no first frame: " + why,
+                  "Mend what it says, or leave --beside out.");
+}
+
+Second second_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
+                  const PreparedPage& prepared, const Trajectory& first, const RunWords& words) {
+  const BesideWords beside = parse_beside(words.beside);
+  if (prepared.recording) return recorded(beside.recording, *prepared.recording, scene);
+  // Ctrl-C, which has ended the first run, has reached the submissions' processes, too.
+  const ChosenLaws other =
+      StopByHand::is_asked() ? laws_of_second(context, scene, beside, words) : *prepared.laws;
+  engines::RunOptions options = options_of_second(context, beside, words);
+  VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
+  options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
   std::string ended;
   try {
@@ -154,24 +201,24 @@ BesideWords parse_beside(const std::string& text) {
   return beside;
 }
 
-void check_page_words(const Context& context, const scene::Scene& scene, const RunWords& words) {
-  if (words.beside.empty()) return;
+PreparedPage prepare_page(const Context& context, const scene::Scene& scene,
+                          const RunWords& words) {
+  PreparedPage prepared;
+  if (words.beside.empty()) return prepared;
   if (words.html.empty())
     throw UserError("--beside " + words.beside,
                     "shows a second run in a page, and no page was asked for", "Add --html FILE.");
   const BesideWords beside = parse_beside(words.beside);
-  parse_module_words(beside.modules, context.registry);
-  std::vector<std::string> known;
-  for (const auto& [word, meaning] : engines::engine_words()) known.push_back(word);
-  if (!beside.engine.empty() && std::find(known.begin(), known.end(), beside.engine) == known.end())
-    throw UserError("--beside engine=" + beside.engine,
-                    "there is no engine of that name." + did_you_mean(beside.engine, known),
-                    "Known: " + fmt::format("{}", fmt::join(known, ", ")) + ".");
-  if (beside.recording.empty()) return;
+  expect_engine("--beside engine=", beside.engine);
+  if (beside.recording.empty()) {
+    prepared.laws = laws_of_second(context, scene, beside, words);
+    expect_start(context, scene, prepared.laws->laws, beside, words);
+    return prepared;
+  }
   if (!fs::exists(beside.recording))
     throw UserError(beside.recording, "there is no such recording",
                     "Make one with --trajectory FILE.");
-  const Trajectory recording = read_trajectory(beside.recording);
+  Trajectory recording = read_trajectory(beside.recording);
   if (recording.frames.empty())
     throw UserError(beside.recording,
                     "has no frame" + (recording.stopped_by.empty()
@@ -183,16 +230,18 @@ void check_page_words(const Context& context, const scene::Scene& scene, const R
     throw UserError(beside.recording,
                     fmt::format("has {} bodies, and the scene has {}", bodies, scene.bodies.size()),
                     "Record a run of this scene with --trajectory FILE.");
+  prepared.recording = std::move(recording);
+  return prepared;
 }
 
 void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
-                const Trajectory& run, const RunWords& words) {
+                const PreparedPage& prepared, const Trajectory& run, const RunWords& words) {
   if (words.html.empty()) return;
   report::PlayerOptions options;
   options.root = context.root;
   std::vector<report::PlayedRun> runs;
   Second second;
-  if (!words.beside.empty()) second = second_run(context, scene, chosen, run, words);
+  if (!words.beside.empty()) second = second_run(context, scene, chosen, prepared, run, words);
   runs.push_back({run, second.label_of_first});
   if (!words.beside.empty()) runs.push_back({second.run, second.label});
   for (const report::PlayedRun& played : runs) add_panel(played, options);

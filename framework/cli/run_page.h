@@ -2,6 +2,7 @@
 /// (`--beside`).
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "framework/cli/module_choice.h"
@@ -30,15 +31,20 @@ struct BesideWords {
 ///   cannot change it
 BesideWords parse_beside(const std::string& text);
 
-/// Checks before the run that --html and --beside can be done.
-/// @throws UserError
-void check_page_words(const Context& context, const scene::Scene& scene, const RunWords& words);
+/// What --beside names, loaded before the first run: neither, without that word.
+struct PreparedPage {
+  std::optional<ChosenLaws> laws;       // of the second run
+  std::optional<Trajectory> recording;  // in its place
+};
+
+/// Does before the first run what can be refused of --html and --beside: loads the modules of the
+/// second run, which is begun and ended at its first frame, or reads the recording.
+/// @throws UserError with the word that does not fit
+PreparedPage prepare_page(const Context& context, const scene::Scene& scene, const RunWords& words);
 
 /// Makes the second run where --beside asks for one, writes words.html, and reports it on stderr.
 /// Does nothing where words.html is empty.
-/// @param times  changes of timewarp's local virtual times; empty: not shown
-/// @throws UserError with the word that does not fit
 void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen,
-                const Trajectory& run, const RunWords& words);
+                const PreparedPage& prepared, const Trajectory& run, const RunWords& words);
 
 }  // namespace tumble::cli

@@ -42,8 +42,9 @@ struct PictureSize {
 PictureSize parse_size(const std::string& text);
 
 /// The words with output files behind the links that were named, so that links stay. Refuses before
-/// the run what would be refused after it: output files that cannot be written, two with one name,
-/// a picture of an instant that the run does not reach.
+/// the run what would be refused after it: output files that cannot be written or end as other
+/// files do, two with one name, pictures, videos and pages that this machine cannot make, a picture
+/// of an instant that the run does not reach.
 /// @throws UserError
 RunWords with_outputs(RunWords words, double duration_s);
 

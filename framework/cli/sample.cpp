@@ -10,10 +10,12 @@
 #include "framework/cli/find_scene.h"
 #include "framework/cli/json_output.h"
 #include "framework/cli/module_choice.h"
+#include "framework/cli/planned_run.h"
 #include "framework/cli/sample_files.h"
 #include "framework/cli/sample_page.h"
 #include "framework/cli/sandboxed_module.h"
 #include "framework/cli/spread_words.h"
+#include "framework/core/files.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/sampling/kept_chain.h"
 #include "framework/sampling/sampler.h"
@@ -79,6 +81,7 @@ Sampled prepared(const Context& context, const SampleWords& words) {
   if (!spec)
     throw UserError(words.scene, "this scene does not say in what its worlds differ",
                     "Add \"sampling\" to it, or take a scene that has it, such as ball_into_bin.");
+  expect_engine("--engine ", words.engine);  // each world would be refused, as if it were broken
   const ModuleWords module_words = parse_module_words(words.modules, context.registry);
   sampled.chosen = choose_laws(context, scene, module_words, words.engine);
   sampled.worlds = {std::move(scene), *spec};
@@ -215,6 +218,8 @@ void run_sample(Context& context, const SampleWords& words) {
   Sampled sampled = prepared(context, words);
   for (const auto& notice : sampled.chosen.notices) fmt::print(stderr, "{}\n", notice);
   const fs::path folder = fs::path(words.out) / sampled.worlds.scene.name;
+  for (const char* file : {"index.html", "answers.json", "times.json", "chains.csv"})
+    expect_writable(folder / file);
   sample(context, words, folder, sampled);
   if (!words.spread.shard.empty()) return end_shard(context, words.spread, sampled.outcome, kUnit);
   const std::string lost = lost_in_words(sampled.outcome, kUnit);

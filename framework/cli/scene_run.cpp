@@ -209,15 +209,23 @@ std::string simulate(const PlannedRun& plan, double duration_s, TrajectoryRecord
   return ended;
 }
 
+[[noreturn]] void refuse_virtual_times(const RunWords& words) {
+  throw UserError("--virtual-times " + words.virtual_times,
+                  "there is no move of a scheduler to draw",
+                  "Run with --engine tw and a scheduler module: --modules a4=student.");
+}
+
 /// A chart of virtual times shows the moves of a scheduler that a module decides, or, with a page,
 /// of the fast one.
+void refuse_without_scheduler(const ChosenLaws& chosen, const RunWords& words) {
+  if (!words.virtual_times.empty() && !chosen.laws.scheduling && words.html.empty())
+    refuse_virtual_times(words);
+}
+
+/// The engine, which a search may have chosen, has such moves.
 void check_virtual_times(const PlannedRun& plan, const RunWords& words) {
-  if (words.virtual_times.empty()) return;
   const std::string& engine = plan.options.engine.empty() ? plan.scene.engine : plan.options.engine;
-  if (engine != "tw" || (!plan.laws.scheduling && words.html.empty()))
-    throw UserError("--virtual-times " + words.virtual_times,
-                    "there is no move of a scheduler to draw",
-                    "Run with --engine tw and a scheduler module: --modules a4=student.");
+  if (!words.virtual_times.empty() && engine != "tw") refuse_virtual_times(words);
 }
 
 }  // namespace
@@ -303,7 +311,8 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const RunWords words = with_outputs(said, said.duration_s.value_or(scene.duration_s));
   const PictureSize size = parse_size(words.size);  // refused before the run, not after it
   engines::refuse_other_units(scene);
-  check_page_words(context, scene, words);
+  refuse_without_scheduler(chosen, words);
+  const PreparedPage page = prepare_page(context, scene, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);
@@ -342,7 +351,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
     fmt::print(stderr, "wrote {}\n", words.trajectory);
   }
   if (!run.frames.empty()) write_pictures(context, scene, run, words, size);
-  if (!run.frames.empty()) write_page(context, scene, chosen, run, words);
+  if (!run.frames.empty()) write_page(context, scene, chosen, page, run, words);
 
   bool passed = run.stopped_by.empty();
   for (const auto& check : checks) passed = passed && check.passed;

@@ -14,6 +14,7 @@
 #include "framework/cli/spread_words.h"
 #include "framework/cli/sweep_page.h"
 #include "framework/core/digest.h"
+#include "framework/core/files.h"
 
 namespace tumble::cli {
 namespace {
@@ -137,6 +138,7 @@ void run_sweep(Context& context, const SweepWords& words) {
   swept.scene = find_scene(context, words.run.scene, words.run.n);
   swept.varied = parse_over(words.over, swept.scene);
   refuse_doubles(words, swept.varied);
+  expect_engine("--engine ", words.run.engine);
   swept.measures = measures_of(words.measures, swept.scene);
   swept.points = grid_of(swept.varied);
   const ModuleWords module_words = parse_module_words(words.run.modules, context.registry);
@@ -162,6 +164,8 @@ void run_sweep(Context& context, const SweepWords& words) {
       words.run.duration_s.value_or(0.0), engines.find("tw") != std::string::npos);
   for (const Measure& measure : swept.measures) options += ' ' + measure.word;
   const fs::path folder = fs::path(words.out) / swept.scene.name;
+  for (const char* file : {"index.html", "table.csv", "table.json", "times.json"})
+    expect_writable(folder / file);
   farm::KeptParts parts(folder / "points", key_of(context, swept.scene, module_words, options));
   hold(words.spread, parts);
   farm::SplitWork work;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "framework/core/error.h"
 
@@ -34,7 +35,9 @@ std::unique_ptr<GlContext> make_gl_context(const std::string& choice) {
   } catch (const UserError& no_osmesa) {
     try {
       auto context = make_egl_context();
-      std::fprintf(stderr, "tumble: drawing with EGL, because %s\n", no_osmesa.what());
+      static bool is_told = false;
+      if (!std::exchange(is_told, true))
+        std::fprintf(stderr, "tumble: drawing with EGL, because %s\n", no_osmesa.what());
       return context;
     } catch (const UserError& no_egl) {
       throw UserError("pictures",

@@ -7,6 +7,8 @@
 
 #include "framework/core/error.h"
 #include "framework/render/frame_painter.h"
+#include "framework/render/gl_context.h"
+#include "framework/render/text.h"
 #include "framework/trajectory/record.h"
 
 namespace tumble::render {
@@ -27,6 +29,11 @@ const PictureOptions& checked(const PictureOptions& options) {
 constexpr int kSeam = 2;
 
 }  // namespace
+
+void expect_pictures() {
+  make_gl_context();
+  const TextWriter fonts;
+}
 
 FramePainter::FramePainter(const scene::Scene& scene, const Trajectory& run,
                            const PictureOptions& options, std::string label, Words words)

@@ -20,6 +20,13 @@ struct LabelledRun {
   std::string label;  // e.g. "submission", "reference"
 };
 
+/// Refuses before a run what pictures of it would be refused for after it. Draws nothing.
+/// @throws UserError when neither OSMesa nor EGL works here, or a font is missing
+void expect_pictures();
+/// The same for a video.
+/// @throws UserError also when ffmpeg is not installed
+void expect_video(const std::filesystem::path& mp4);
+
 /// The run at one instant: the last recorded frame that is not later.
 /// @throws UserError when the run has no frame, belongs to another scene, or pictures do not work
 ///         here

@@ -36,6 +36,11 @@ std::vector<double> instants(double end_s, const PictureOptions& options) {
 
 }  // namespace
 
+void expect_video(const std::filesystem::path& mp4) {
+  expect_pictures();
+  expect_ffmpeg(mp4);
+}
+
 void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene,
                               const std::vector<LabelledRun>& runs, const PictureOptions& options) {
   if (runs.empty()) throw UserError(mp4.string(), "there is no run to draw", "Give at least one.");

@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -45,7 +47,25 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int widt
           "file:" + mp4.string()};
 }
 
+UserError no_ffmpeg(const std::filesystem::path& mp4) {
+  return {mp4.string(), "ffmpeg is not installed",
+          "Install it (apt-get install ffmpeg), or choose pictures instead of a video."};
+}
+
 }  // namespace
+
+// As execvp searches.
+void expect_ffmpeg(const std::filesystem::path& mp4) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/bin:/usr/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path file =
+        std::filesystem::path(folder.empty() ? "." : folder) / "ffmpeg";
+    std::error_code failed;
+    if (std::filesystem::is_regular_file(file, failed) && ::access(file.c_str(), X_OK) == 0) return;
+  }
+  throw no_ffmpeg(mp4);
+}
 
 VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz,
                          int crf, const std::string& record)
@@ -98,9 +118,7 @@ void VideoWriter::finish() {
   }
   ffmpeg_ = -1;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    throw UserError(mp4_.string(), "ffmpeg is not installed",
-                    "Install it (apt-get install ffmpeg), or choose pictures instead of a video.");
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw no_ffmpeg(mp4_);
   const std::string words = complaints();
   throw UserError(mp4_.string(), "ffmpeg failed" + (words.empty() ? std::string() : ": " + words),
                   "Check the disk's free space and ffmpeg's message.");

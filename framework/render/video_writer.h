@@ -10,6 +10,9 @@
 
 namespace tumble::render {
 
+/// @throws UserError when ffmpeg is not on PATH
+void expect_ffmpeg(const std::filesystem::path& mp4);
+
 class VideoWriter {
  public:
   /// @param mp4  written as pictures arrive: give a draft's name (core/files.h)

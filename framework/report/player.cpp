@@ -140,6 +140,8 @@ bool is_same_motion(const scene::Scene& scene, const std::vector<PlayedRun>& run
 
 }  // namespace
 
+void expect_player(const PlayerOptions& options) { three_js(options.three); }
+
 std::string three_js(const fs::path& folder) {
   return library(folder, "three.min.js") + "\n" +
          library(folder, "examples/js/controls/OrbitControls.js") + "\n" +

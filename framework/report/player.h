@@ -18,6 +18,10 @@
 
 namespace tumble::report {
 
+/// Refuses before a run what its page would be refused for after it.
+/// @throws UserError when three.js is missing
+void expect_player(const PlayerOptions& options = {});
+
 /// The page.
 /// @param runs  one or two, each of the scene and with at least one frame
 /// @throws UserError when three.js is missing, or a run has no frame

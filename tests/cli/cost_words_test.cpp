@@ -213,5 +213,24 @@ TEST_F(CommandLine, CostRefusesAMethodThatThereIsNot) {
   EXPECT_TRUE(left_nothing());
 }
 
+TEST_F(CommandLine, CostRefusesBeforeItMeasures) {
+  for (const auto& [words, part] :
+       {std::pair{"t_handle --out /dev/null/x", "cannot be written"},
+        {"all --out /dev/null/x", "cannot be written"},
+        {"all --methods rk4,rk5", "no method of integration of that name"},
+        {"all --engines sw", "--engines sw"},
+        {"all --solvers jacobi", "--solvers jacobi"},
+        {"all --steps 1/0", "--steps 1/0"},
+        {"all --modules a1=nowhere.cpp", "there is no such file"},
+        {"toi --impacts bisection,nowton", "nowton"},
+        {"toi --modules a2=nowhere.cpp", "there is no such file"}}) {
+    const Said said = type(std::string("cost ") + words);
+    EXPECT_EQ(said.code, 2) << words;
+    EXPECT_EQ(said.out, "") << words;
+    EXPECT_TRUE(holds(said.err, part)) << words << ": " << said.err;
+  }
+  EXPECT_TRUE(left_nothing());
+}
+
 }  // namespace
 }  // namespace tumble::testing

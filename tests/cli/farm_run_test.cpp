@@ -154,6 +154,7 @@ TEST_F(Farm, WordsOfASweepThatMeanNothingAreRefused) {
       {"--over T_handl.velocity_x_m_s=1", "the scene has no body 'T_handl'"},
       {"--over method=rk5", "rk5"},
       {"--over engine=rd,sw", "there is no engine 'sw'"},
+      {"--over step_s=0.1 --engine sw", "there is no engine of that name"},
       {"--over method=dopri5", "tolerance"},
       {"--over tolerance=1e-6,1e-8", "no method is named"},
       {"--over step_s=0.1 --step-s 0.1", "given for all runs too"},

@@ -86,5 +86,17 @@ TEST_F(CommandLine, CtrlCEndsTheLivePageAndItSaysWhatIsLeft) {
   EXPECT_EQ(processes_about(folder_), 0);
 }
 
+TEST_F(CommandLine, LiveRefusesInTheTerminalWhatItsPageCouldNotDo) {
+  for (const auto& [words, part] : {std::pair{"--modules a1=nowhere.cpp", "no such file"},
+                                    {"--engine warp", "no engine of that name"},
+                                    {"--tolerance 1e-8", "no method is named"},
+                                    {"--saves /dev/null/x", "cannot be written"}}) {
+    Terminal terminal(folder_, std::string("live t_handle ") + words);
+    ASSERT_TRUE(terminal.shows(part)) << words << ": " << terminal.said;
+    EXPECT_EQ(terminal.exit_code(), 2) << words;
+  }
+  EXPECT_TRUE(left_nothing());
+}
+
 }  // namespace
 }  // namespace tumble::testing

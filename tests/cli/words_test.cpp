@@ -193,6 +193,11 @@ TEST_F(CommandLine, WordsThatWouldDoNothingAreRefusedBeforeTheRun) {
                                     {"--chart-until-s 1", "--virtual-times"},
                                     {"--virtual-times v.png", "no move of a scheduler"},
                                     {"--png ''", "the name of the file is empty"},
+                                    {"--png p.jpg", "does not end with .png"},
+                                    {"--sheet s.pdf", "does not end with .png"},
+                                    {"--virtual-times v.svg", "does not end with .png"},
+                                    {"--video v.avi", "does not end with .mp4"},
+                                    {"--html page", "does not end with .html"},
                                     {"--png p.png --at-s 1e6", "the run ends at"},
                                     {"--png p.png --sheet ./p.png", "is the file of --png, too"},
                                     {"--trajectory taken", "it is a folder"},
@@ -202,6 +207,20 @@ TEST_F(CommandLine, WordsThatWouldDoNothingAreRefusedBeforeTheRun) {
     EXPECT_EQ(said.out, "") << words;
     EXPECT_TRUE(holds(said.err, part)) << words << ": " << said.err;
   }
+}
+
+TEST_F(CommandLine, AVideoWithoutFfmpegIsRefusedBeforeTheRun) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "/nowhere", 1);
+  const Said run = type("run t_handle --modules library --video v.mp4"),
+             engines = type("engines --small");
+  ::setenv("PATH", path.c_str(), 1);
+  for (const Said& said : {run, engines}) {
+    EXPECT_EQ(said.code, 2);
+    EXPECT_EQ(said.out, "");
+    EXPECT_TRUE(holds(said.err, "ffmpeg is not installed")) << said.err;
+  }
+  EXPECT_TRUE(left_nothing());
 }
 
 TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
@@ -288,6 +307,9 @@ TEST_F(CommandLine, BesideThatCannotBeIsRefusedBeforeAnythingRuns) {
         {"--html f.html --beside recording=nowhere.run", "nowhere.run"},
         {"--html f.html --beside recording=a.run,engine=rd", "as it was made"},
         {"--html f.html --beside engine=warp", "no engine of that name"},
+        {"--html f.html --beside a1=nowhere.cpp", "there is no such file"},
+        {"--html f.html --beside a1=notes.txt", "this is none of student"},
+        {"--html f.html --beside a1=.", "this folder holds no a1_impulse.cpp"},
         {"--html f.html --beside a9=reference", "a9"}}) {
     const Said said = type(std::string("run t_handle --modules library ") + words);
     EXPECT_EQ(said.code, 2) << words;
@@ -539,9 +561,15 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
   const Said size = type("run bouncing_ball --n 5");
   EXPECT_EQ(size.code, 2);
   EXPECT_TRUE(holds(size.err, "has one size") && holds(size.err, "atoms")) << size.err;
-  const Said scene = type("run bowl --engine tw --modules reference");
-  EXPECT_EQ(scene.code, 2);
-  EXPECT_TRUE(holds(scene.err, "sleep") && holds(scene.err, "use --engine rd")) << scene.err;
+  for (const char* words : {"--engine tw", "--html f.html --beside engine=tw"}) {
+    const Said scene = type(std::string("run bowl --modules reference ") + words);
+    EXPECT_EQ(scene.code, 2);
+    EXPECT_EQ(scene.out, "");
+    EXPECT_TRUE(holds(scene.err, "sleep") && holds(scene.err, "use --engine rd")) << scene.err;
+  }
+  const Said sizes = type("engines atoms --sizes 5,0 --modules a1=reference");
+  EXPECT_EQ(sizes.code, 2);
+  EXPECT_EQ(sizes.out, "");  // not even of the size that there is
 }
 
 // A student whose a2 and a3 are unfinished still runs a scheduler on scenes that need them: right

@@ -148,14 +148,19 @@ TEST_F(Pictures, VideoMayHaveAColonInItsName) {
 TEST_F(Pictures, WithoutFfmpegTheErrorNamesIt) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", "/nowhere", 1);
-  try {
-    write_video(folder_ / "v.mp4", falling_ball(), ball_at(2.0), small());
-    ADD_FAILURE() << "was accepted";
-  } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("ffmpeg is not installed"), std::string::npos)
-        << error.what();
-  }
+  const auto refused = [](const auto& call) {
+    try {
+      call();
+      ADD_FAILURE() << "was accepted";
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("ffmpeg is not installed"), std::string::npos)
+          << error.what();
+    }
+  };
+  refused([&] { write_video(folder_ / "v.mp4", falling_ball(), ball_at(2.0), small()); });
+  refused([&] { expect_video(folder_ / "v.mp4"); });  // before anything is drawn
   setenv("PATH", path.c_str(), 1);
+  EXPECT_NO_THROW(expect_video(folder_ / "v.mp4"));
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 

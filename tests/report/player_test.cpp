@@ -221,6 +221,8 @@ TEST(PlayerPage, WithoutThreeJsIsRefused) {
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("libjs-three"), std::string::npos);
   }
+  EXPECT_THROW(expect_player(elsewhere), UserError);  // told before a run
+  EXPECT_NO_THROW(expect_player());
   Trajectory empty = run;
   empty.frames.clear();
   EXPECT_THROW(player_page(thrown_ball(), {{empty, ""}}), UserError);
