@@ -20,10 +20,17 @@ Vector3d vector_from(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
+std::vector<double> numbers_of(const std::string& packed) {
+  std::vector<double> numbers(packed.size() / sizeof(double));
+  std::memcpy(numbers.data(), packed.data(), numbers.size() * sizeof(double));
+  return numbers;
+}
+
 }  // namespace
 
 History::History(std::string head) : head_(std::move(head)) {
   const Json json = Json::parse(head_), &scene = json.at("scene");
+  if (scene.contains("origin")) origin_world_ = vector_from(scene.at("origin"));
   outline_.camera.eye_m = vector_from(scene.at("camera").at("eye"));
   outline_.camera.target_m = vector_from(scene.at("camera").at("target"));
   for (const Json& body : scene.at("bodies")) {
@@ -86,19 +93,33 @@ Trajectory History::part(double from_s, double until_s) const {
   return run;
 }
 
-std::string numbers_for_page(const std::string& packed, const std::string& first) {
-  const auto number = [](const std::string& bytes, std::size_t i) {
-    double x = 0.0;
-    std::memcpy(&x, bytes.data() + i * sizeof x, sizeof x);
-    return x;
-  };
-  const std::size_t count = packed.size() / sizeof(double);
-  std::vector<float> numbers;
-  for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<float>(number(packed, i)));
-  const auto energy = [&](const std::string& frame) { return number(frame, 1) + number(frame, 2); };
-  if (!first.empty()) numbers.push_back(static_cast<float>(energy(packed) - energy(first)));
+namespace {
+
+std::string as_floats(const std::vector<double>& numbers) {
+  std::vector<float> floats;
+  for (const double x : numbers) floats.push_back(static_cast<float>(x));
   return report::base64(
-      {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)});
+      {reinterpret_cast<const char*>(floats.data()), floats.size() * sizeof(float)});
+}
+
+}  // namespace
+
+std::string frame_for_page(const std::string& packed, const std::string& first,
+                           const Vector3d& origin_world) {
+  Frame frame = unpack_frame(packed);
+  for (BodyPose& pose : frame.poses) pose.com_world -= origin_world;
+  for (ContactPoint& contact : frame.contacts) contact.point_world -= origin_world;
+  std::vector<double> numbers = numbers_of(pack(frame));
+  const Frame start = unpack_frame(first);
+  numbers.push_back(frame.kinetic_energy + frame.potential_energy -
+                    (start.kinetic_energy + start.potential_energy));
+  return as_floats(numbers);
+}
+
+std::string event_for_page(const std::string& packed, const Vector3d& origin_world) {
+  Event event = unpack_event(packed);
+  event.point_world -= origin_world;
+  return as_floats(numbers_of(pack(event)));
 }
 
 }  // namespace tumble::live

@@ -17,6 +17,8 @@ class History {
   explicit History(std::string head);
 
   const std::string& head() const { return head_; }
+  /// Where the page measures places from, in the world. [m]
+  const Vector3d& origin_world() const { return origin_world_; }
   const std::vector<std::string>& frames() const { return frames_; }
   const std::vector<std::string>& events() const { return events_; }
   bool is_full() const { return is_full_; }
@@ -38,6 +40,7 @@ class History {
   bool has_room_for(const std::string& bytes);
 
   std::string head_;
+  Vector3d origin_world_ = Vector3d::Zero();
   scene::Scene outline_;
   std::vector<double> radii_;
   std::vector<std::string> frames_, events_;
@@ -45,11 +48,13 @@ class History {
   bool is_full_ = false;
 };
 
-/// Numbers of a record as the page gets them: float32, little-endian, in base64. Of a frame: time,
-/// kinetic and potential energy, momentum (3), angular momentum (3), smallest gap, numbers of
+/// Numbers of a record as the page gets them: float32, little-endian, in base64, with places from
+/// the page's origin. Of a frame: time, kinetic and potential energy, momentum (3), angular momentum (3), smallest gap, numbers of
 /// bodies, springs, rods, joints and contacts, and so on as in records.cpp; last, what the total
 /// energy has changed by since the first frame, which float32 would not show.
-/// @param first  the run's first frame, packed; empty for an event
-std::string numbers_for_page(const std::string& packed, const std::string& first);
+/// @param first  the run's first frame, packed
+std::string frame_for_page(const std::string& packed, const std::string& first,
+                           const Vector3d& origin_world);
+std::string event_for_page(const std::string& packed, const Vector3d& origin_world);
 
 }  // namespace tumble::live

@@ -139,14 +139,14 @@ void Session::greet(Mailbox& page) {
     const std::size_t stride = 1 + bytes_of(frames) / kMostOfFrames;
     for (std::size_t k = 0; k < frames.size(); ++k)
       if (k % stride == 0 || k + 1 == frames.size())
-        put(event_of("f", numbers_for_page(frames[k], frames.front())));
+        put(event_of("f", frame_for_page(frames[k], frames.front(), current_.origin_world())));
     std::size_t first = events.size();
     for (std::size_t bytes = 0; first > 0; --first) {
       bytes += events[first - 1].size();
       if (bytes > kMostOfEvents) break;
     }
     for (std::size_t k = first; k < events.size(); ++k)
-      put(event_of("e", numbers_for_page(events[k], "")));
+      put(event_of("e", event_for_page(events[k], current_.origin_world())));
   }
   for (const std::string& text : times_) put(event_of("say", text));
   for (const std::string* text : {&trouble_, &verdicts_, &difference_, &end_, &saved_})

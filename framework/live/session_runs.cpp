@@ -129,13 +129,14 @@ void Session::hear(Simulator& from, Record record) {
   switch (record.kind) {
     case RecordKind::kHead: break;
     case RecordKind::kFrame:
-      send(event_of("f", numbers_for_page(record.bytes, current_.frames().empty()
-                                                            ? record.bytes
-                                                            : current_.frames().front())));
+      send(event_of(
+          "f", frame_for_page(record.bytes,
+                              current_.frames().empty() ? record.bytes : current_.frames().front(),
+                              current_.origin_world())));
       current_.add_frame(std::move(record.bytes));
       break;
     case RecordKind::kEvent:
-      send(event_of("e", numbers_for_page(record.bytes, "")));
+      send(event_of("e", event_for_page(record.bytes, current_.origin_world())));
       current_.add_event(std::move(record.bytes));
       break;
     case RecordKind::kAimed: {

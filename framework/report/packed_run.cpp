@@ -3,7 +3,7 @@
 //   (3), F each; series, F each;
 //   number of contacts per frame (C); of all contacts in order: body_a, body_b, point (3), force
 //   (3); of events: time, kind, body_a, body_b, point (3), normal (3), impulse, normal velocity
-//   before and after.
+//   before and after. Positions and points are given from the page's origin (player_scene.h).
 #include "framework/report/packed_run.h"
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "framework/effects/registry.h"
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"
+#include "framework/report/player_scene.h"
 #include "framework/trajectory/fault_words.h"
 
 namespace tumble::report {
@@ -46,8 +47,9 @@ double largest_of(const std::vector<double>& values) {
 
 class RunPacker {
  public:
-  RunPacker(const PlayedRun& played, double sight_m, const PlayerOptions& options)
-      : run_(played.run), sight_m_(sight_m), options_(options) {
+  RunPacker(const scene::Scene& scene, const PlayedRun& played, double sight_m,
+            const PlayerOptions& options)
+      : run_(played.run), origin_world_(page_origin(scene)), sight_m_(sight_m), options_(options) {
     find_moving();
     choose_frames();
   }
@@ -106,7 +108,7 @@ class RunPacker {
         moving_.push_back(i);
         continue;
       }
-      const Vector3d& p = first.poses[i].com_world;
+      const Vector3d p = first.poses[i].com_world - origin_world_;
       const auto& q = first.poses[i].world_from_body.coeffs();
       resting_.push_back(
           {{"body", i}, {"pose", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}}});
@@ -142,7 +144,8 @@ class RunPacker {
         return frame(k).poses[body];
       };
       const std::vector<double> signs = steady_signs(body);
-      for (int i = 0; i < 3; ++i) add(place, [&](std::size_t k) { return pose(k).com_world[i]; });
+      for (int i = 0; i < 3; ++i)
+        add(place, [&](std::size_t k) { return pose(k).com_world[i] - origin_world_[i]; });
       for (int i = 0; i < 4; ++i)
         add(kTurn, [&](std::size_t k) { return signs[k] * pose(k).world_from_body.coeffs()[i]; });
       for (int i = 0; i < 3; ++i)
@@ -228,7 +231,7 @@ class RunPacker {
     add(1.0, [](const ContactPoint& c) { return c.body_b; });
     for (int i = 0; i < 3; ++i)
       add(quantum_of(10 * kPlace * sight_m_),
-          [i](const ContactPoint& c) { return c.point_world[i]; });
+          [&, i](const ContactPoint& c) { return c.point_world[i] - origin_world_[i]; });
     for (int i = 0; i < 3; ++i)
       add(quantum_of(kArrow * strongest),
           [i](const ContactPoint& c) { return c.force_on_a_world[i]; });
@@ -247,7 +250,8 @@ class RunPacker {
     add(1.0, 0, [](const Event& e) { return e.body_a; });
     add(1.0, 0, [](const Event& e) { return e.body_b; });
     for (int i = 0; i < 3; ++i)
-      add(quantum_of(10 * kPlace * sight_m_), 0, [i](const Event& e) { return e.point_world[i]; });
+      add(quantum_of(10 * kPlace * sight_m_), 0,
+          [&, i](const Event& e) { return e.point_world[i] - origin_world_[i]; });
     for (int i = 0; i < 3; ++i)
       add(kTurn, 0, [i](const Event& e) { return e.normal_b_to_a_world[i]; });
     add(0, 0, [](const Event& e) { return e.impulse; });
@@ -256,6 +260,7 @@ class RunPacker {
   }
 
   const Trajectory& run_;
+  Vector3d origin_world_;  // of the page [m]
   double sight_m_;
   const PlayerOptions& options_;
   std::vector<std::size_t> moving_, frames_;
@@ -269,7 +274,7 @@ class RunPacker {
 PackedRun pack_run(const scene::Scene& scene, const PlayedRun& played,
                    const std::vector<double>& apart_m, double sight_m,
                    const PlayerOptions& options) {
-  return RunPacker(played, sight_m, options).pack(scene, played.label, apart_m);
+  return RunPacker(scene, played, sight_m, options).pack(scene, played.label, apart_m);
 }
 
 }  // namespace tumble::report

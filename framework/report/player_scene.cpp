@@ -73,25 +73,30 @@ Json shape_json(const Shape& shape, const scene::BodySpec& spec, Meshes& meshes)
 /// Anchors by body index, -1 for the world.
 class Anchors {
  public:
-  Anchors(const scene::Scene& scene, const Frame& first) : first_(first) {
+  Anchors(const scene::Scene& scene, const Frame& first)
+      : first_(first), origin_world_(page_origin(scene)) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i)
       index_[scene.bodies[i].name] = static_cast<int>(i);
   }
   int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
   Json of(const effects::DrawnPoint& point) const {
-    return {{"body", body(point.body)}, {"point", triple(point.point)}};
+    const int index = body(point.body);
+    return {{"body", index}, {"point", triple(index < 0 ? seen(point.point) : point.point)}};
   }
   /// A point in world coordinates at the start.
   Json fixed(const std::string& name, const Vector3d& point_world) const {
     const int index = body(name);
-    if (index < 0) return {{"body", -1}, {"point", triple(point_world)}};
+    if (index < 0) return {{"body", -1}, {"point", triple(seen(point_world))}};
     const BodyPose& pose = first_.poses[static_cast<std::size_t>(index)];
     return {{"body", index},
             {"point", triple(pose.world_from_body.conjugate() * (point_world - pose.com_world))}};
   }
+  /// A point of the world, from the page's origin.
+  Vector3d seen(const Vector3d& point_world) const { return point_world - origin_world_; }
 
  private:
   const Frame& first_;
+  Vector3d origin_world_;
   std::map<std::string, int> index_;
 };
 
@@ -122,14 +127,25 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
   for (const effects::DrawnArrow& force : drawn.arrows)
     page["forces"].push_back({{"body", anchors.body(force.body)},
                               {"force", triple(force.force_world)},
-                              {"point", triple(force.point_world)},
+                              {"point", triple(anchors.seen(force.point_world))},
                               {"start", force.start_s},
                               {"duration", force.duration_s}});
   for (const effects::DrawnSheet& sheet : drawn.sheets)
-    page["sheets"].push_back({{"height", sheet.height_m}, {"color", triple(sheet.color)}});
+    page["sheets"].push_back(
+        {{"height", anchors.seen({0, 0, sheet.height_m}).z()}, {"color", triple(sheet.color)}});
 }
 
 }  // namespace
+
+Vector3d page_origin(const scene::Scene& scene) {
+  // Of the sight: this far away single precision is 6e-5 of the sight, a twentieth of a pixel.
+  constexpr double kUsualReach = 1e3;
+  const Vector3d& seen = scene.camera.target_m;
+  const double sight_m = (scene.camera.eye_m - seen).norm();
+  if (!seen.allFinite() || seen.norm() <= kUsualReach * sight_m) return Vector3d::Zero();
+  const double step = scene.grid_spacing_m.value_or(sight_m);
+  return step * (seen / step).array().round().matrix();
+}
 
 std::vector<double> radii_of(const std::vector<Shape>& shapes) {
   std::vector<double> radii;
@@ -143,12 +159,13 @@ Json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes, c
   page["scene"] = scene.name;
   page["title"] = scene.title.empty() ? scene.name : scene.title;
   page["about"] = scene.about;
-  page["camera"] = {{"eye", triple(scene.camera.eye_m)},
-                    {"target", triple(scene.camera.target_m)},
+  page["origin"] = triple(page_origin(scene));
+  page["camera"] = {{"eye", triple(anchors.seen(scene.camera.eye_m))},
+                    {"target", triple(anchors.seen(scene.camera.target_m))},
                     {"fov", scene.camera.field_of_view_deg},
                     {"follow", scene.camera.follow ? anchors.body(*scene.camera.follow) : -1}};
   page["grid"] = {{"spacing", scene.grid_spacing_m ? Json(*scene.grid_spacing_m) : Json()},
-                  {"height", scene.grid_height_m}};
+                  {"height", anchors.seen({0, 0, scene.grid_height_m}).z()}};
   Meshes meshes;
   page["bodies"] = Json::array();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

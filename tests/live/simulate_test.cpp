@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
+#include "framework/live/history.h"
 #include "framework/live/recipe.h"
 #include "framework/live/records.h"
 #include "framework/live/simulate.h"
@@ -296,6 +297,27 @@ TEST(LiveRecipe, ImpossibleChangesAreRefused) {
        {R"({"restitution": 1.5})", R"({"friction": -1})", R"({"step_s": 0})",
         R"({"mass_kg": {"box": 0}})", R"({"restitution": "much"})", R"({"camera": 1})"})
     EXPECT_THROW(live::change(changes, change), UserError) << change;
+}
+
+// Single precision is 6 cm at a million metres.
+TEST(LiveRecords, PlacesForThePageAreFromItsOrigin) {
+  const Vector3d origin(1e6, -2e6, 0), place(0.25, 0.5, 0.125);  // exact sums
+  const auto frame_at = [&](const Vector3d& from) {
+    Frame frame{};
+    frame.poses.push_back(
+        {from + place, Quaterniond::Identity(), Vector3d::UnitX(), Vector3d::Zero()});
+    frame.contacts.push_back({0, 1, from - place, Vector3d::UnitZ(), Vector3d::UnitZ()});
+    return live::pack(frame);
+  };
+  const auto event_at = [&](const Vector3d& from) {
+    return live::pack(
+        Event{1.0, EventKind::kCollision, 0, 1, from + place, Vector3d::UnitZ(), 1.0, -1.0, 1.0});
+  };
+  const Vector3d here = Vector3d::Zero();
+  EXPECT_EQ(live::frame_for_page(frame_at(origin), frame_at(origin), origin),
+            live::frame_for_page(frame_at(here), frame_at(here), here));
+  EXPECT_EQ(live::event_for_page(event_at(origin), origin),
+            live::event_for_page(event_at(here), here));
 }
 
 TEST(LiveRecords, ComeApartPieceByPiece) {

@@ -72,6 +72,54 @@ TEST_F(PlayerInBrowser, BodiesAreDrawnAtTheirPositions) {
   }
 }
 
+// At 2e6 m single precision is 0.125 m, half of the ball's radius.
+TEST_F(PlayerInBrowser, FarFromTheOriginBodiesAreDrawnWhereTheyAre) {
+  const Vector3d far(1e6, -2e6, 3e5);  // m
+  scene::Scene scene = thrown_ball();
+  scene.camera.eye_m += far;
+  scene.camera.target_m += far;
+  Trajectory run = thrown_run();
+  for (Frame& frame : run.frames) {
+    for (BodyPose& pose : frame.poses) pose.com_world += far;
+    for (ContactPoint& contact : frame.contacts) contact.point_world += far;
+  }
+  for (Event& event : run.events) event.point_world += far;
+  // As the same run near the origin.
+  constexpr int kWidth = 640, kHeight = 480;
+  const std::string where = "#bare&t=0.3";
+  const Screen near_by = browser.screenshot(
+      browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}})) + where, kWidth, kHeight);
+  const Screen far_away =
+      browser.screenshot(browser.serve(player_page(scene, {{run, ""}})) + where, kWidth, kHeight);
+  const Spot ball = spot_of(far_away, is_red), same = spot_of(near_by, is_red);
+  // The rounding of places is 8e-6 m, a thousandth of a pixel: only pixels at the edge may change.
+  EXPECT_NEAR(ball.x, same.x, 0.2);
+  EXPECT_NEAR(ball.y, same.y, 0.2);
+  EXPECT_NEAR(ball.pixels, same.pixels, 0.02 * same.pixels);
+  // What is read is in the world.
+  const std::string script = R"(
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const { player, files } = tumble, run = player.runs[0];
+      player.choose(0);
+      const lines = files.tableText(player).trim().split('\n'), head = lines[0].split(',');
+      document.body.dataset.found = ['x [m]', 'y [m]', 'z [m]'].map(name =>
+        lines[31].split(',')[head.indexOf('ball <1>: ' + name)]).join(' ');
+      document.body.dataset.read = run.placeInWords(run.moving.get(0).slice(0, 3).map(c => c[30]))
+        .join(' '); };
+    wait();)";
+  const std::string elements =
+      browser.elements(browser.serve(player_page(scene, {{run, ""}}), script) + "#t=0");
+  EXPECT_EQ(body_data(elements, "error"), "");
+  for (const char* name : {"found", "read"}) {
+    std::istringstream found(body_data(elements, name));
+    for (int i = 0; i < 3; ++i) {
+      double value = std::nan("");
+      found >> value;
+      EXPECT_NEAR(value, run.frames[30].poses[0].com_world[i], 1e-4) << name;  // eleven digits
+    }
+  }
+}
+
 TEST_F(PlayerInBrowser, DataAreRestored) {
   const std::string script = R"(
     const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);

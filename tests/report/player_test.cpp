@@ -11,6 +11,7 @@
 #include "framework/core/error.h"
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"
+#include "framework/report/player_scene.h"
 #include "tests/report/player_fixtures.h"
 
 namespace tumble::testing {
@@ -204,6 +205,20 @@ TEST(PlayerPage, ShowsNamesAsText) {
   EXPECT_NE(page.find("A thrown ball &amp; a turning box"), std::string::npos);
   // in the table for browsers without scripts
   EXPECT_NE(page.find("<td>ball &lt;1&gt;, box</td>"), std::string::npos);
+}
+
+TEST(PlayerPage, HasAnOriginOfItsOwnFarFromThatOfTheWorld) {
+  scene::Scene scene = thrown_ball();
+  EXPECT_TRUE(page_origin(scene).isZero(0.0));
+  const Vector3d far(1e6, 2e6, 0);  // m
+  scene.camera.eye_m += far;
+  scene.camera.target_m += far;
+  const double sight_m = (scene.camera.eye_m - scene.camera.target_m).norm();
+  EXPECT_LT((page_origin(scene) - scene.camera.target_m).norm(), sight_m);
+  scene.grid_spacing_m = 0.3;  // whose lines stay where they are in the world
+  const Vector3d spacings = page_origin(scene) / 0.3;
+  // two roundings of a number of up to 7e6
+  EXPECT_LT((spacings - spacings.array().round().matrix()).norm(), 1e-8);
 }
 
 TEST(PlayerPage, HasTheSameBytesForTheSameRun) {

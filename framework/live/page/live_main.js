@@ -204,7 +204,7 @@ function begin(message) {
 }
 
 function forceOf(push) {
-  return { body: page.run.about.bodies.findIndex(body => body.name === push.body), force: push.force_n, point: push.point_m, start: push.start_s, duration: push.duration_s };
+  return { body: page.run.about.bodies.findIndex(body => body.name === push.body), force: push.force_n, point: push.point_m.map((x, i) => x - page.run.origin[i]), start: push.start_s, duration: push.duration_s };
 }
 
 const told = {

@@ -169,14 +169,14 @@ class BodyPane {
 
   show(run, body, t, pushes) {
     this.body = body;
-    const about = run.about.bodies[body], row = (name, values, unit) => html('tr', {}, html('th', {}, name), ...values.map(v => html('td', {}, short(v, 5))), html('td', { className: 'soft' }, unit));
+    const about = run.about.bodies[body], row = (name, values, unit) => html('tr', {}, html('th', {}, name), ...values.map(v => html('td', {}, typeof v === 'string' ? v : short(v, 5))), html('td', { className: 'soft' }, unit));
     this.name.textContent = about ? about.name : 'Choose a body: click it, or take it from the list below the picture';
     this.button.disabled = !about || about.immovable;
     this.table.textContent = '';
     const c = about && run.moving.get(body);
     if (c) {
       const k = run.frameAt(t).k, facts = run.facts.bodies[body];
-      this.table.append(row('place', [0, 1, 2].map(i => c[i][k]), 'm'), row('velocity', run.velocity(body, k), 'm/s'), row('ω', run.omega(body, k), 'rad/s'));
+      this.table.append(row('place', run.placeInWords([0, 1, 2].map(i => c[i][k]), 5), 'm'), row('velocity', run.velocity(body, k), 'm/s'), row('ω', run.omega(body, k), 'rad/s'));
       if (facts.mass_kg) this.table.append(row('mass', [facts.mass_kg], 'kg'), row('principal moments', principalOf(facts.inertia_kg_m2).map(p => p.moment), 'kg m²'));
     }
     if (pushes.length === this.count) return;

@@ -9,7 +9,7 @@ function floatsOf(text) {
 
 class LiveRun extends Run {
   constructor(head, label) {
-    super({ label, contactStride: 1, contacts: 0, frames: 0 });
+    super({ label, contactStride: 1, contacts: 0, frames: 0 }, undefined, head.scene.origin);
     this.about = head.scene;
     this.facts = head;
     this.times = [];

@@ -30,6 +30,7 @@ class Ghost {
       return { mesh, members: group.members };
     });
     this.scales = stage.scales;
+    this.shift = new THREE.Vector3(...run.origin).sub(new THREE.Vector3(...stage.run.origin));   // the scene before may have another origin
     this.place = new THREE.Vector3();
     this.turn = new THREE.Quaternion();
   }
@@ -41,7 +42,7 @@ class Ghost {
       if (!isShown) continue;
       members.forEach((i, slot) => {
         const seen = this.run.moving.has(i) && this.run.pose(i, at, this.place, this.turn);
-        mesh.setMatrixAt(slot, seen ? matrix.compose(this.place, this.turn, this.scales[i]) : matrix.makeScale(0, 0, 0));
+        mesh.setMatrixAt(slot, seen ? matrix.compose(this.place.add(this.shift), this.turn, this.scales[i]) : matrix.makeScale(0, 0, 0));
       });
       mesh.instanceMatrix.needsUpdate = true;
     }
@@ -279,6 +280,8 @@ class LivePicture {
     for (const pool of [this.handArrow, this.handLine, this.handBall]) pool.end();
   }
 
+  inWorld(point) { return point.toArray().map((x, i) => x + this.run.origin[i]); }
+
   rayOf(event) {
     const box = this.canvas.getBoundingClientRect(), x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
     const spot = new THREE.Vector3(2 * x - 1, 1 - 2 * y, 0.5).unproject(this.camera);
@@ -319,7 +322,7 @@ class LivePicture {
       canvas.classList.add('held');
       this.drag = { tool, body: hit.body, local: hit.point.clone().sub(hit.place).applyQuaternion(hit.turn.clone().conjugate()), to: null, way: new THREE.Vector3() };
       this.hand.choose(hit.body);
-      this.hand.aim([...ray.origin.toArray(), ...ray.direction.toArray()]);
+      this.hand.aim([...this.inWorld(ray.origin), ...ray.direction.toArray()]);
       event.preventDefault();
     });
     canvas.addEventListener('pointermove', event => {
@@ -332,7 +335,7 @@ class LivePicture {
       if (!to) return;
       this.drag.to = to;
       this.drag.way = to.clone().sub(point);
-      if (this.drag.tool === 'pull') this.hand.pull(to.toArray());
+      if (this.drag.tool === 'pull') this.hand.pull(this.inWorld(to));
       else this.hand.showPush(this.drag.body, this.drag.way.toArray());
     });
     const end = event => {

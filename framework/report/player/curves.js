@@ -24,8 +24,9 @@ function curvesOf(runs, pick) {
     for (const series of pick(run)) {
       if (series.plot === 'apart' && !series.values.some(v => v > 0)) continue;   // equal throughout, which the page states above
       if (!byPlot.has(series.plot)) byPlot.set(series.plot, { ...kPlots[series.plot], unit: series.unit, curves: [] });
+      if (series.from) byPlot.get(series.plot).heading = `${kPlots[series.plot].title}, drawn from ${series.from}`;
       const name = runs.length > 1 && series.plot !== 'apart' ? `${series.name}, ${run.label}` : series.name;
-      byPlot.get(series.plot).curves.push({ name, link: series.name, run: r, times: run.times, values: series.values, frameAt: t => run.frameAt(t).k });
+      byPlot.get(series.plot).curves.push({ name, link: series.name, run: r, times: run.times, values: series.values, offset: series.offset, frameAt: t => run.frameAt(t).k });
     }
   });
   return [...byPlot.values()].sort((a, b) => Object.values(kPlots).findIndex(p => p.title === a.title) - Object.values(kPlots).findIndex(p => p.title === b.title));

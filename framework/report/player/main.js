@@ -264,6 +264,7 @@ function addWords(player, picture) {
   place();
   const notes = [];
   if (picture && picture.stages[0].spacing) notes.push(`grid ${short(picture.stages[0].spacing)} m`);
+  if (player.runs[0].isFar) notes.push(`drawn from ${player.runs[0].originInWords()}`);
   for (const run of player.runs) if (run.head.stride > 1) notes.push(`one of ${run.head.stride} frames kept`);
   byId('words').append(html('div', { className: 'note' }, notes.join(' · ')));
 }
@@ -306,7 +307,7 @@ function runLoop(player, picture) {
 async function main() {
   const element = byId('about-run'), isText = element.type === 'application/json';
   const about = JSON.parse(isText ? element.textContent : new TextDecoder().decode(await openedBytes('about-run')));
-  const runs = await Promise.all(about.runs.map(async (head, r) => new Run(head, await openedBytes(`run${head.channelsOf ?? r}`))));
+  const runs = await Promise.all(about.runs.map(async (head, r) => new Run(head, await openedBytes(`run${head.channelsOf ?? r}`), about.origin)));
   const player = new Player(about, runs);
   byId('player').hidden = byId('side').hidden = false;
   let picture = null;

@@ -1,4 +1,5 @@
-// A run in the page: poses by body and frame, series, contacts, events. SI units, world frame.
+// A run in the page: poses by body and frame, series, contacts, events. SI units, world frame; places from the page's
+// origin, which is near them where they are far from the world's: single precision, too, draws them where they are.
 
 // Times nearer to each other than this [s] are one instant: a ten-thousandth of the mean time between frames, and never
 // more than a microsecond.
@@ -11,8 +12,11 @@ const kEventNames = ['', 'collision', 'comes to rest', 'force on', 'force off', 
 const kCollision = 1;
 
 class Run {
-  constructor(head, bytes) {
+  // @param origin  of the page, in the world [m]
+  constructor(head, bytes, origin = [0, 0, 0]) {
     this.head = head;
+    this.origin = origin;
+    this.isFar = origin.some(x => x !== 0);
     this.label = head.label;
     if (bytes) this.read(new ChannelReader(bytes));   // without: frames come later, from a run that goes on
   }
@@ -114,6 +118,11 @@ class Run {
     return Number.isFinite(place.x + place.y + place.z + turn.x + turn.w);
   }
 
+  // Of places [m] in the world, as text: with more digits where they are far from its origin.
+  placeInWords(values, digits) { return values.map((x, i) => (this.isFar ? allDigits(x + this.origin[i]) : short(x, digits))); }
+
+  originInWords() { return `(${this.origin.map(allDigits).join(', ')}) m`; }
+
   // First event at or after a time.
   eventFrom(t) {
     const times = this.events.time;
@@ -131,7 +140,9 @@ class Run {
     if (!c) return [];
     const size = first => c[first].map((x, i) => Math.hypot(x, c[first + 1][i], c[first + 2][i]));
     const list = (plot, unit, names, channels) => names.map((name, i) => ({ plot, unit, name, values: channels[i] }));
-    return [...list('place', 'm', ['x', 'y', 'z'], [c[0], c[1], c[2]]),
+    const places = list('place', 'm', ['x', 'y', 'z'], [c[0], c[1], c[2]]);
+    if (this.isFar) places.forEach((series, i) => Object.assign(series, { offset: this.origin[i], from: this.originInWords() }));   // a curve of metres, not of a million
+    return [...places,
             ...list('velocity', 'm/s', ['x', 'y', 'z', 'speed'], [c[7], c[8], c[9], size(7)]),
             ...list('omega', 'rad/s', ['x', 'y', 'z', 'size'], [c[10], c[11], c[12], size(10)])];
   }

@@ -48,6 +48,12 @@ function short(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// With the digits that double precision and the page's rounding leave: 1000000.25.
+function allDigits(value) { return Number.isFinite(value) ? String(Number(value.toPrecision(11))) : '–'; }
+
+// A value of a curve; of one that is drawn from an offset the true value.
+function valueInWords(curve, k, digits) { return curve.offset === undefined ? short(curve.values[k], digits) : allDigits(curve.values[k] + curve.offset); }
+
 // Of two runs the colour says the quantity and the dashes the run; of one run both say the quantity.
 function stylesOf(curves) {
   const quantities = [...new Set(curves.map(curve => curve.link))], isOfTwo = curves.some(curve => curve.run > 0);
@@ -58,7 +64,7 @@ function stylesOf(curves) {
 function zoomOf(event) { return Math.exp(Math.max(-0.5, Math.min(0.5, 0.004 * event.deltaY))); }
 
 class TimePlot {
-  // @param plot {title, axis, unit, isLog, curves: [{name, times, values, frameAt}]}; seek(t) is called on a click or
+  // @param plot {title, heading (where it says more than the title), axis, unit, isLog, curves: [{name, times, values, offset (of the true value), frameAt}]}; seek(t) is called on a click or
   //   drag, zoom(factor, t) on the wheel with the control key (and by two fingers on a touch pad), zoom(Infinity) on a double click
   constructor(plot, end, seek, zoom = () => {}) {
     this.plot = plot;
@@ -77,7 +83,7 @@ class TimePlot {
     const holder = html('div', { className: 'holder' }, this.svg, this.cursor, this.hover, this.tip);
     const legend = html('figcaption', { className: 'legend' });
     plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, i)));
-    this.box.append(html('h3', {}, plot.title), holder, legend);
+    this.box.append(html('h3', {}, plot.heading || plot.title), holder, legend);
     this.draw();
     this.svg.addEventListener('pointerdown', event => { this.svg.setPointerCapture(event.pointerId); seek(this.timeAt(event)); });
     this.svg.addEventListener('pointermove', event => { if (event.buttons) seek(this.timeAt(event)); this.tell(event); });
@@ -210,7 +216,7 @@ class TimePlot {
       if (this.hidden.has(i)) return;
       const k = curve.frameAt(t), n = Math.min(k + 1, curve.times.length - 1), near = t - curve.times[k] <= curve.times[n] - t ? k : n;
       at = curve.times[near];
-      lines.push(html('div', {}, `${curve.name}: `, html('b', {}, `${short(curve.values[near], 6)} ${this.plot.unit}`)));
+      lines.push(html('div', {}, `${curve.name}: `, html('b', {}, `${valueInWords(curve, near, 6)} ${this.plot.unit}`)));
     });
     this.hover.hidden = this.tip.hidden = lines.length === 0;
     if (lines.length === 0) return;
@@ -227,7 +233,7 @@ class TimePlot {
     this.cursor.style.transform = `translateX(${(100 * this.x(t) / kFrame.width).toFixed(3)}%)`;
     if (!isFull) return;
     this.plot.curves.forEach((curve, i) => {
-      this.readouts[i].textContent = `${short(curve.values[curve.frameAt(t)])} ${this.plot.unit}`;
+      this.readouts[i].textContent = `${valueInWords(curve, curve.frameAt(t))} ${this.plot.unit}`;
     });
   }
 }

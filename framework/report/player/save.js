@@ -77,7 +77,7 @@ function tableText(player) {
     for (const one of run.series) put(`${one.plot}: ${one.name} [${one.unit}]`, one.values);
     const channels = run.moving.get(chosen), name = chosen >= 0 ? about.bodies[chosen].name : '';
     const kinds = ['x [m]', 'y [m]', 'z [m]', 'qx', 'qy', 'qz', 'qw', 'vx [m/s]', 'vy [m/s]', 'vz [m/s]', 'wx [rad/s]', 'wy [rad/s]', 'wz [rad/s]'];
-    if (channels) channels.forEach((values, i) => put(`${name}: ${kinds[i]}`, values));
+    if (channels) channels.forEach((values, i) => put(`${name}: ${kinds[i]}`, i < 3 && run.isFar ? Array.from(values, x => x + run.origin[i]) : values));
   });
   lines.push([...(isOfTwo ? ['run'] : []), 'time [s]', ...series.keys()].map(csvField).join(','));
   runs.forEach((run, r) => {
@@ -91,11 +91,14 @@ function saveTable(player) { offer(new Blob([tableText(player)], { type: 'text/c
 
 // ---- glTF, by three.js's exporter
 
-// The first run: a node a body, which keeps its name and moves as an animation; y is up in glTF, so all lie in a node that turns z there.
+// The first run: a node a body, which keeps its name and moves as an animation; y is up in glTF, so all lie in a node that turns z there,
+// and in one at the page's origin, from which single precision holds their places.
 function gltfBytes(player, picture) {
-  const { about } = player, stage = picture.stages[0], { run } = stage, root = new THREE.Group(), tracks = [], place = new THREE.Vector3(), turn = new THREE.Quaternion();
+  const { about } = player, stage = picture.stages[0], { run } = stage, root = new THREE.Group(), origin = new THREE.Group(), tracks = [], place = new THREE.Vector3(), turn = new THREE.Quaternion();
   root.name = document.title;
   root.rotation.x = -Math.PI / 2;
+  origin.position.set(...run.origin);
+  if (run.isFar) root.add(origin);
   about.bodies.forEach((body, i) => {
     const color = new THREE.Color(...colorOf(body, i)), glass = body.immovable ? stage.isGlass(i) : 0;
     const material = new THREE.MeshStandardMaterial({ color, roughness: 0.8, metalness: 0, vertexColors: THREE.VertexColors, transparent: glass > 0, opacity: glass || 1 });
@@ -103,7 +106,7 @@ function gltfBytes(player, picture) {
     mesh.name = body.name;
     mesh.scale.copy(stage.scales[i]);
     run.pose(i, { k: 0, part: 0 }, mesh.position, mesh.quaternion);
-    root.add(mesh);
+    (run.isFar ? origin : root).add(mesh);
     if (!run.moving.has(i)) return;
     const times = [], places = [], turns = [], last = new THREE.Quaternion();
     for (let k = 0; k < run.times.length; ++k) {

@@ -133,7 +133,8 @@ class Stage {
     else if (this.about.camera.follow < 0) height = Math.min(height, this.lowest);
     this.spacing = spacing;
     const sky = new THREE.Color(kSky).convertGammaToLinear(2.2), line = new THREE.Color(kLine).convertGammaToLinear(2.2), floor = new THREE.Color(kFloor).convertGammaToLinear(2.2);
-    const cx = Math.round(this.target.x / spacing) * spacing, cy = Math.round(this.target.y / spacing) * spacing, reach = 2.6 * sight;
+    const nearest = axis => Math.round((this.target[axis] + this.run.origin['xy'.indexOf(axis)]) / spacing) * spacing - this.run.origin['xy'.indexOf(axis)];   // of the world's grid
+    const cx = nearest('x'), cy = nearest('y'), reach = 2.6 * sight;
     const fade = (from, r) => from.clone().lerp(sky, Math.min(1, r / Math.min(reach, 60 * spacing)));
     this.ground = new THREE.Group();
     const count = Math.min(60, Math.ceil(reach / spacing)), points = [], colors = [], parts = 6;
