@@ -83,15 +83,15 @@ ChosenLaws laws_of_second(const Context& context, const scene::Scene& scene,
                      beside.engine.empty() ? words.engine : beside.engine);
 }
 
-engines::RunOptions options_of_second(const Context& context, const BesideWords& beside,
-                                      const RunWords& words) {
-  engines::RunOptions options;
-  options.engine = beside.engine.empty() ? words.engine : beside.engine;
-  options.timewarp = engines::fast_timewarp();
-  options.step_s = beside.step_s ? beside.step_s : words.step_s;
-  options.duration_s = words.duration_s;
-  options.command = context.command_line;
-  return options;
+/// The words of the first run but for what --beside changes. What a search has chosen for the first
+/// run is not taken over.
+PlannedRun plan_of_second(const Context& context, const scene::Scene& scene,
+                          const ChosenLaws& chosen, const BesideWords& beside, RunWords words) {
+  words.accuracy_m.reset();
+  words.budget_s.reset();
+  if (!beside.engine.empty()) words.engine = beside.engine;
+  if (beside.step_s) words.step_s = beside.step_s;
+  return plan_run(context, scene, chosen, words);
 }
 
 /// Ends a run at its first frame: until then an engine refuses what it cannot do.
@@ -110,12 +110,11 @@ class OnlyTheStart final : public TrajectorySink {
 };
 
 /// @throws UserError where the second run would not come to its first frame
-void expect_start(const Context& context, const scene::Scene& scene, const Laws& laws,
-                  const BesideWords& beside, const RunWords& words) {
+void expect_start(const PlannedRun& plan, const RunWords& words) {
   OnlyTheStart start;
   std::string why;
   try {
-    engines::run_scene(scene, laws, options_of_second(context, beside, words), start);
+    engines::run_scene(plan.scene, plan.laws, plan.options, start);
     why = start.stopped_by();
   } catch (const OnlyTheStart::Reached&) {
     return;
@@ -133,13 +132,13 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   // Ctrl-C, which has ended the first run, has reached the submissions' processes, too.
   const ChosenLaws other =
       StopByHand::is_asked() ? laws_of_second(context, scene, beside, words) : *prepared.laws;
-  engines::RunOptions options = options_of_second(context, beside, words);
+  PlannedRun plan = plan_of_second(context, scene, other, beside, words);
   VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
-  options.timewarp = engines::fast_timewarp(&times);
+  plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
   std::string ended;
   try {
-    engines::run_scene(scene, other.laws, options, recorder);
+    engines::run_scene(plan.scene, plan.laws, plan.options, recorder);
   } catch (const grading::CallEnded& error) {
     ended = error.what();
   }
@@ -212,7 +211,7 @@ PreparedPage prepare_page(const Context& context, const scene::Scene& scene,
   expect_engine("--beside engine=", beside.engine);
   if (beside.recording.empty()) {
     prepared.laws = laws_of_second(context, scene, beside, words);
-    expect_start(context, scene, prepared.laws->laws, beside, words);
+    expect_start(plan_of_second(context, scene, *prepared.laws, beside, words), words);
     return prepared;
   }
   if (!fs::exists(beside.recording))

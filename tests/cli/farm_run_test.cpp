@@ -197,6 +197,14 @@ TEST_F(Farm, AWordOfOneBodyWinsOverThatOfAllInEitherOrder) {
 const std::string kChains =
     "sample ball_into_bin --modules reference --samples 60 --warm-up 10 --chains ";
 
+// Each world would be refused, and count as broken.
+TEST_F(Farm, AnEngineThatThereIsNotIsRefusedBeforeAWorldIsDrawn) {
+  const Said said = type("sample ball_into_bin --engine warp --modules reference");
+  EXPECT_EQ(said.code, 2) << said.out;
+  EXPECT_TRUE(holds(said.err, "there is no engine of that name")) << said.err;
+  EXPECT_TRUE(left_nothing());
+}
+
 TEST_F(Farm, ChainsGiveTheSameBytesForAnyNumberOfJobs) {
   const Said one = type(kChains + "3 --jobs 1 --prior 80 --out one"),
              three = type(kChains + "3 --jobs 3 --prior 80 --out three");

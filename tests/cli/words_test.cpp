@@ -243,6 +243,21 @@ TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
   EXPECT_FALSE(holds(recorded.err, "the recording is of")) << recorded.err;
 }
 
+// What is not named after --beside is that of the first run.
+TEST_F(CommandLine, ARunBesideHasTheMethodOfTheFirst) {
+  const Said said = type(
+      "run t_handle --modules library --duration-s 0.5 --method euler --step-s 0.02 --beside "
+      "step-s=0.01 --html method.html");
+  const std::string page = contents_of(folder_ / "method.html");
+  std::vector<std::string> motions;
+  const std::regex motion("\"motion\":\"([^\"]*)\"");
+  for (std::sregex_iterator it(page.begin(), page.end(), motion), end; it != end; ++it)
+    motions.push_back((*it)[1]);
+  ASSERT_EQ(motions.size(), 2U) << said.err;
+  EXPECT_EQ(motions[0], motions[1]);
+  EXPECT_TRUE(holds(motions[1], "Euler")) << motions[1];
+}
+
 TEST_F(CommandLine, ARecordingOfAnotherSceneIsShownWithANote) {
   for (const char* name : {"one", "two"})
     write_whole(folder_ / (std::string(name) + ".json"),
