@@ -225,9 +225,8 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
   if (word == "student" || word == "reference") {
     module = load_word(context, kind, word);
   } else {
-    std::filesystem::path file = word;
-    if (std::filesystem::is_directory(file)) file /= kind.folder + ".cpp";
-    const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
+    const SandboxedModule sandboxed =
+        load_sandboxed(context, kind, module_file(context, kind, word));
     module = sandboxed.step.module;
     subject.connections.push_back(sandboxed.step.connection);
   }

@@ -99,7 +99,7 @@ Sampling functions_of(const Context& context, const modules::ModuleKind& kind,
   const auto sampler = kind.note<sampling::Sampler>();
   if (word == "student" || word == "reference")
     return sampler.functions(load_word(context, kind, word));
-  const SandboxedModule sandboxed = load_sandboxed(context, kind, word);
+  const SandboxedModule sandboxed = load_sandboxed(context, kind, module_file(context, kind, word));
   subject.chosen.connections.push_back(sandboxed.search.connection);
   return sampler.functions(sandboxed.search.module);
 }

@@ -157,9 +157,10 @@ bool is_path(const std::string& word) {
   return !word.empty() && word != "student" && word != "reference" && word != "library";
 }
 
-/// The file of a path for a module; empty where the path, given for all modules, belongs to others.
-fs::path file_for(const Context& context, const ModuleKind& kind, const std::string& word,
-                  bool for_all) {
+}  // namespace
+
+fs::path module_file(const Context& context, const ModuleKind& kind, const std::string& word,
+                     bool for_all) {
   const std::string flag = "--modules " + (for_all ? word : kind.id + '=' + word);
   const fs::path path = word;
   if (fs::is_directory(path)) {
@@ -188,6 +189,8 @@ fs::path file_for(const Context& context, const ModuleKind& kind, const std::str
       });
   return is_other ? fs::path() : path;
 }
+
+namespace {
 
 template <class Law, class Call>
 std::string stand_in(Law& law, const Law& library, const Call& call) {
@@ -350,7 +353,7 @@ void expect_module_files(const Context& context, const ModuleWords& words) {
   for (const ModuleKind* kind : context.registry.all()) {
     const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
     if (told != words.end() && is_path(told->second))
-      file_for(context, *kind, told->second, told->first.empty());
+      module_file(context, *kind, told->second, told->first.empty());
   }
 }
 
@@ -387,7 +390,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
                               : !is_there(context, *kind, told == words.end() ? "" : told->second);
     if (for_all && !is_about(scene, *kind) && left_out) chosen[kind->id] = otherwise;
     if (told == words.end() || !is_path(told->second)) continue;
-    files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
+    files[kind->id] = module_file(context, *kind, told->second, told->first.empty());
     // The submission is another assignment's: this one must not make it fail, so it is right where
     // possible.
     if (files[kind->id].empty())

@@ -11,6 +11,7 @@
 /// scene is not about, with a notice.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -42,6 +43,13 @@ struct ChosenLaws {
   // to sandboxes: must outlive every call of the laws
   std::vector<std::shared_ptr<void>> connections;
 };
+
+/// The file of a word that is a path, or the one in that folder.
+/// @param for_all  whether the word stands for every module
+/// @return empty where the path, given for all modules, belongs to others
+/// @throws UserError where there is none
+std::filesystem::path module_file(const Context& context, const modules::ModuleKind& kind,
+                                  const std::string& word, bool for_all = false);
 
 /// Refuses what is known without loading: a word that is no module's, a file that is not there.
 /// @throws UserError

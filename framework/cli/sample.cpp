@@ -53,16 +53,27 @@ void choose_sampler(const Context& context, const ModuleWords& words, Sampled& s
     if (!sampler.functions) continue;
     std::string word = "student";
     for (const ChosenModule& module : sampled.chosen.modules)
-      if (module.id == kind->id) word = module.source;
+      if (module.id == kind->id && module.source != "library") word = module.source;
     const auto own = words.find(kind->id), all = words.find("");
-    if (own != words.end())
+    fs::path file;  // of a submission
+    const auto is_path = [](const std::string& text) {
+      return text != "student" && text != "reference" && text != "library";
+    };
+    if (own != words.end()) {
       word = own->second;
-    else if (all != words.end() && all->second != "library")
-      word = all->second;
-    if (word == "student" || word == "reference") {
+      if (is_path(word)) file = module_file(context, *kind, word);
+    } else if (all != words.end() && all->second != "library") {
+      if (is_path(all->second)) file = module_file(context, *kind, all->second, true);
+      if (!is_path(all->second) || !file.empty()) word = all->second;
+    }
+    if (word == "library")
+      throw UserError("--modules " + kind->id + "=library",
+                      "the library has no functions of a Markov chain",
+                      "Use " + kind->id + "=student, or name a file.");
+    if (file.empty()) {
       sampled.by = sampler.functions(load_word(context, *kind, word));
     } else {
-      const SandboxedModule sandboxed = load_sandboxed(context, *kind, word);
+      const SandboxedModule sandboxed = load_sandboxed(context, *kind, file);
       sampled.by = sampler.functions(sandboxed.search.module);
       sampled.chosen.connections.push_back(sandboxed.search.connection);
     }

@@ -202,6 +202,9 @@ TEST_F(Farm, AnEngineThatThereIsNotIsRefusedBeforeAWorldIsDrawn) {
   const Said said = type("sample ball_into_bin --engine warp --modules reference");
   EXPECT_EQ(said.code, 2) << said.out;
   EXPECT_TRUE(holds(said.err, "there is no engine of that name")) << said.err;
+  const Said library = type("sample ball_into_bin --modules a5=library");
+  EXPECT_EQ(library.code, 2) << library.out;
+  EXPECT_TRUE(holds(library.err, "no functions of a Markov chain")) << library.err;
   EXPECT_TRUE(left_nothing());
 }
 
