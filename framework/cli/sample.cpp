@@ -17,6 +17,8 @@
 #include "framework/cli/spread_words.h"
 #include "framework/core/files.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/render/picture.h"
+#include "framework/report/player.h"
 #include "framework/sampling/kept_chain.h"
 #include "framework/sampling/sampler.h"
 #include "framework/scene/load_sampling.h"
@@ -231,6 +233,10 @@ void run_sample(Context& context, const SampleWords& words) {
   const fs::path folder = fs::path(words.out) / sampled.worlds.scene.name;
   for (const char* file : {"index.html", "answers.json", "times.json", "chains.csv"})
     expect_writable(folder / file);
+  if (words.spread.shard.empty()) {  // the page is made here
+    render::expect_pictures();
+    report::expect_player();
+  }
   sample(context, words, folder, sampled);
   if (!words.spread.shard.empty()) return end_shard(context, words.spread, sampled.outcome, kUnit);
   const std::string lost = lost_in_words(sampled.outcome, kUnit);

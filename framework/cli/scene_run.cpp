@@ -352,6 +352,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   }
   if (!run.frames.empty()) write_pictures(context, scene, run, words, size);
   if (!run.frames.empty()) write_page(context, scene, chosen, page, run, words);
+  if (!run.frames.empty()) write_chart(scene, run, words);
 
   bool passed = run.stopped_by.empty();
   for (const auto& check : checks) passed = passed && check.passed;

@@ -599,6 +599,19 @@ TEST_F(CommandLine, ASchedulerIsTriedOnScenesOfOtherAssignments) {
   EXPECT_TRUE(holds(said.out, "rollbacks")) << said.out;
 }
 
+// How many moves there are is known after the run only.
+TEST_F(CommandLine, AMoveThatThereIsNotCostsTheChartAlone) {
+  if (!fs::exists(fs::path(test::binary_dir()) / "modules" / "a4_reference.so"))
+    GTEST_SKIP() << "this tree has no a4 but the student's";
+  const Said said = type(
+      "run late_hit --modules reference --virtual-times v.png --moves 100000 --png p.png --html "
+      "p.html");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "move 100000")) << said.err;
+  for (const char* file : {"p.png", "p.html"}) EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+  EXPECT_FALSE(fs::exists(folder_ / "v.png"));
+}
+
 TEST_F(CommandLine, RunAndPokeTakeAModelAtOnce) {
   const Said free = type("run t_handle.3ds --modules reference"),
              dropped = type("run wedge.3ds --drop --scale 0.5 --modules reference");
