@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/live/records.h"
@@ -13,8 +14,6 @@ namespace tumble::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kMostKept = 400u << 20;  // of a run that is kept
 
 Vector3d vector_from(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
@@ -28,7 +27,8 @@ std::vector<double> numbers_of(const std::string& packed) {
 
 }  // namespace
 
-History::History(std::string head) : head_(std::move(head)) {
+History::History(std::string head, std::size_t most_bytes)
+    : head_(std::move(head)), most_bytes_(most_bytes) {
   const Json json = Json::parse(head_), &scene = json.at("scene");
   if (scene.contains("origin")) origin_world_ = vector_from(scene.at("origin"));
   outline_.camera.eye_m = vector_from(scene.at("camera").at("eye"));
@@ -45,9 +45,17 @@ History::History(std::string head) : head_(std::move(head)) {
 
 // Once full it stays so until it is cut: a run with gaps is not the run.
 bool History::has_room_for(const std::string& bytes) {
-  is_full_ = is_full_ || bytes_ + bytes.size() > kMostKept;
+  is_full_ = is_full_ || bytes_ + bytes.size() > most_bytes_;
   if (!is_full_) bytes_ += bytes.size();
   return !is_full_;
+}
+
+std::string History::limit_in_words() const {
+  if (!is_full_) return "";
+  return fmt::format(
+      "The run is kept up to {:.6g} s only, because it has more than {} MB: what comes later is "
+      "shown, but neither saved nor compared.",
+      end_s(), most_bytes_ >> 20);
 }
 
 void History::add_frame(std::string bytes) {

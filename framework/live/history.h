@@ -12,9 +12,11 @@ namespace tumble::live {
 
 class History {
  public:
+  static constexpr std::size_t kMostKept = 400u << 20;  // bytes
+
   History() = default;
   /// @param head  JSON of the record kHead
-  explicit History(std::string head);
+  explicit History(std::string head, std::size_t most_bytes = kMostKept);
 
   const std::string& head() const { return head_; }
   /// Where the page measures places from, in the world. [m]
@@ -22,6 +24,8 @@ class History {
   const std::vector<std::string>& frames() const { return frames_; }
   const std::vector<std::string>& events() const { return events_; }
   bool is_full() const { return is_full_; }
+  /// Up to where the run is kept, and why no further, for people; empty: all of it is kept.
+  std::string limit_in_words() const;
   /// @param bytes  as packed by records.h; left out where the run is too long to be kept
   void add_frame(std::string bytes);
   void add_event(std::string bytes);
@@ -44,7 +48,7 @@ class History {
   scene::Scene outline_;
   std::vector<double> radii_;
   std::vector<std::string> frames_, events_;
-  std::size_t bytes_ = 0;
+  std::size_t bytes_ = 0, most_bytes_ = kMostKept;
   bool is_full_ = false;
 };
 

@@ -148,6 +148,8 @@ void Session::greet(Mailbox& page) {
     for (std::size_t k = first; k < events.size(); ++k)
       put(event_of("e", event_for_page(events[k], current_.origin_world())));
   }
+  if (current_.is_full())
+    put(event_of("say", dumped({{"kind", "limit"}, {"text", current_.limit_in_words()}})));
   for (const std::string& text : times_) put(event_of("say", text));
   for (const std::string* text : {&trouble_, &verdicts_, &difference_, &end_, &saved_})
     if (!text->empty()) put(event_of("say", *text));

@@ -175,11 +175,7 @@ void Session::hear(Simulator& from, Record record) {
     }
   }
   if (current_.is_full() && !was_full)
-    tell(
-        {{"kind", "notice"},
-         {"text", fmt::format("the run is too long to be kept beyond {:.6g} s: what comes later is "
-                              "neither saved nor compared",
-                              current_.end_s())}});
+    tell({{"kind", "limit"}, {"text", current_.limit_in_words()}});
 }
 
 // Its pipe has closed: it has said why, or something ended it.

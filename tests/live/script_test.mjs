@@ -20,3 +20,16 @@ chart.add({ processes: ['a', 'b'], from: 3, moves: [], is_cut: true });   // tol
 if (!/^The first 3 moves .*Later moves are not recorded, because/.test(chart.told())) throw new Error(chart.told());
 chart.add({ processes: ['a', 'b'], from: 0, moves: [] });   // another run
 if (chart.told().includes('Later moves')) throw new Error(chart.told());
+
+// Far from the world's origin places come from the page's; what is read is in the world.
+const part = name => readFileSync(join(root, name), 'utf8');
+const script = ['framework/report/player/model.js', 'framework/report/player/plot.js', 'framework/live/page/live_run.js'].map(part).join('\n');
+const runAt = origin => new Script(`${script}\nnew LiveRun({ scene: { origin: [${origin}], bodies: [{ immovable: false }] } }, 'now');`).runInNewContext({});
+const read = origin => {
+  const run = runAt(origin);
+  run.addFrame([0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, /* body */ 0.25, -0.5, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, /* drift */ 0]);
+  const [x] = run.bodySeries(0);
+  return [run.placeInWords(run.moving.get(0).slice(0, 3).map(c => c[0]), 5).join(' '), x.values[0], x.offset].join(' | ');
+};
+for (const [origin, expected] of [[[0, 0, 0], '0.25 -0.5 1 | 0.25 | '], [[1e6, -2e6, 0], '1000000.25 -2000000.5 1 | 0.25 | 1000000']])
+  if (read(origin) !== expected) throw new Error(`${read(origin)} instead of ${expected}`);

@@ -320,6 +320,25 @@ TEST(LiveRecords, PlacesForThePageAreFromItsOrigin) {
             live::event_for_page(event_at(here), here));
 }
 
+TEST(LiveRecords, OfARunThatIsTooLongToBeKeptSayUpToWhere) {
+  Frame frame{};
+  frame.poses.push_back(
+      {Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()});
+  const std::string head =
+      R"({"scene": {"camera": {"eye": [0, -5, 0], "target": [0, 0, 0]}, "bodies": []}})";
+  live::History history(head, 2 * live::pack(frame).size());
+  for (const double time : {0.0, 0.25, 0.5}) {
+    EXPECT_EQ(history.limit_in_words(), "") << time;
+    frame.time = time;
+    history.add_frame(live::pack(frame));
+  }
+  EXPECT_EQ(history.frames().size(), 2U);
+  const std::string told = history.limit_in_words();
+  EXPECT_NE(told.find("up to 0.25 s only, because"), std::string::npos) << told;
+  history.cut(0.25);  // from an earlier instant on there is room again
+  EXPECT_EQ(history.limit_in_words(), "");
+}
+
 TEST(LiveRecords, ComeApartPieceByPiece) {
   Pipe pipe;
   Frame frame;

@@ -158,7 +158,7 @@ function showHint() {
   const run = page.run;
   if (!run) return;
   const words = { push: 'Drag from a body and let go: a force pushes it.', pull: run.facts.can_pull ? 'Drag a body: the spring of a3 holds it.' : 'Pulling needs the engine rd and the spring of a3.', look: 'Drag turns the view.' };
-  if (page.ended) words.push = words.pull = 'The run has ended: start over, or go back to an earlier instant.';
+  if (page.ended) words.push = words.pull = `The run has ended${run.stopped ? '' : `, because it lasts ${short(run.facts.duration_s)} s`}: start over, or go back to an earlier instant.`;
   byId('hint').textContent = page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.';
 }
 
@@ -179,6 +179,7 @@ function begin(message) {
     times.clear();
   }
   page.run.about.forces = [...head.scene.forces.filter(force => !page.pushes.some(push => Math.abs(force.start - push.start_s) < 1e-9)), ...page.pushes.map(forceOf)];
+  byId('limit').hidden = true;
   page.needsStage = !isBack;
   page.follows = true;
   page.ended = false;
@@ -247,6 +248,7 @@ const told = {
   },
   trouble(message) { showTrouble(message); say(message.title.toLowerCase(), 'bad'); },
   notice(message) { byId('aimed').textContent = message.text; },
+  limit(message) { byId('limit').hidden = false; byId('limit').textContent = message.text; },
   judging(message) { panes.verdicts.busy(message.id); },
   verdicts(message) {
     panes.verdicts.set(message);
