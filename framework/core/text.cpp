@@ -19,4 +19,18 @@ std::string without_middle(const std::string& text, std::size_t width) {
   return text.substr(0, head) + ".." + text.substr(text.size() - (width - 2 - head));
 }
 
+std::vector<std::string> at_commas(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '<' || c == '(' || c == '[' || c == '{') ++depth;
+    if (c == '>' || c == ')' || c == ']' || c == '}') --depth;
+    if (c == ',' && depth == 0)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
 }  // namespace tumble

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace tumble {
 
@@ -14,5 +15,8 @@ std::string counted(std::size_t n, const std::string& noun);
 
 /// At most `width` bytes: a longer text loses its middle, "begin..end".
 std::string without_middle(const std::string& text, std::size_t width);
+
+/// "int a, std::map<int, int> b" -> two parts: commas inside brackets divide nothing.
+std::vector<std::string> at_commas(const std::string& text);
 
 }  // namespace tumble

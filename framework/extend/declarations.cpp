@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/extend/words_of_code.h"
 
 namespace tumble::extend {
@@ -20,21 +21,6 @@ std::string in_one_line(const std::string& text) {
   static const std::regex blanks("\\s+"), inside("([(<]) | ([),>])"), before(" ([&*])");
   const std::string line = std::regex_replace(trimmed(text), blanks, " ");
   return std::regex_replace(std::regex_replace(line, inside, "$1$2"), before, "$1");
-}
-
-// "int a, std::map<int, int> b" -> two; commas inside brackets belong to a type.
-std::vector<std::string> at_commas(const std::string& text) {
-  std::vector<std::string> parts(1);
-  int depth = 0;
-  for (const char c : text) {
-    if (c == '<' || c == '(' || c == '[') ++depth;
-    if (c == '>' || c == ')' || c == ']') --depth;
-    if (c == ',' && depth == 0)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
 }
 
 class Reader {

@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "framework/core/not_implemented.h"
 #include "framework/modules/answer_sizes.h"
@@ -41,8 +42,8 @@ class Connection {
   /// A callback has run, and its answer is sent next: the worker resumes the call.
   virtual void resume_call() {}
   virtual Channel::Clock::time_point deadline() const = 0;
-  /// The arguments, in words, of the call that is about to fail.
-  virtual void note_arguments(const std::string&) {}
+  /// The arguments of the call that is about to fail, each in words.
+  virtual void note_arguments(const char* /*function*/, const std::vector<std::string>&) {}
   /// The worker gave no answer: turn the transport error into a verdict. Must throw; the call is
   /// over.
   [[noreturn]] virtual void fail(const char* function, std::exception_ptr transport_error) = 0;
@@ -95,13 +96,13 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
     try {
       return action();
     } catch (const ChannelClosed&) {
-      connection.note_arguments(show_arguments(arguments...));
+      connection.note_arguments(name, show_arguments(arguments...));
       connection.fail(name, std::current_exception());
     } catch (const ChannelTimeout&) {
-      connection.note_arguments(show_arguments(arguments...));
+      connection.note_arguments(name, show_arguments(arguments...));
       connection.fail(name, std::current_exception());
     } catch (const WireError& error) {
-      connection.note_arguments(show_arguments(arguments...));
+      connection.note_arguments(name, show_arguments(arguments...));
       connection.refuse(
           name, std::string("answered with bytes that are not a valid answer: ") + error.what());
     }
@@ -169,12 +170,12 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           reader.value(text);
           return text;
         });
-        connection.note_arguments(show_arguments(arguments...));
+        connection.note_arguments(name, show_arguments(arguments...));
         connection.refuse(name, "threw an exception: " + what);
         break;
       }
       default:
-        connection.note_arguments(show_arguments(arguments...));
+        connection.note_arguments(name, show_arguments(arguments...));
         connection.refuse(name, "answered with a message of unknown kind");
     }
   }

@@ -1,7 +1,7 @@
 /// The arguments of a call in words, derived from their types like the wire format: for the story
 /// of a call that never returned.
-///   (0, 0, 5) for vectors, {time: 1, point: (0, 0, 5)} for structs, [n: ..., ...] for lists,
-///   "f" for functions
+///   (0, 0, 5) for vectors, {time: 1, point: (0, 0, 5)} for structs, [n: ..., ...] for lists
+/// Fields have the names of their types. Names of parameters are in no type, and so not here.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "framework/modules/wire.h"
 
@@ -17,7 +18,7 @@ namespace tumble::modules {
 
 namespace detail {
 
-inline constexpr std::size_t kArgumentsShown = 600;  // characters
+inline constexpr std::size_t kArgumentShown = 600;  // characters
 // of a list, and of a vector without fixed size
 inline constexpr int kItemsShown = 4;
 
@@ -74,9 +75,9 @@ void show_items(std::string& text, const char* brackets, Eigen::Index count, Eig
 
 template <class T>
 void show_argument(std::string& text, const T& x) {
-  if (text.size() > kArgumentsShown) return;
+  if (text.size() > kArgumentShown) return;
   if constexpr (is_function<T>::value) {
-    text += "f";
+    text += "a function";
   } else if constexpr (std::is_same_v<T, bool>) {
     text += x ? "true" : "false";
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
@@ -120,21 +121,20 @@ void show_argument(std::string& text, const T& x) {
 
 }  // namespace detail
 
-/// "{origin: (0, 0, 5), direction: (0, 0, -1)}, {a: (0, 0, 0), b: (1, 0, 0), c: (0, 1, 0)}"; a long
-/// text is cut and ends with "..."
+/// Each argument in words: "{origin: (0, 0, 5), direction: (0, 0, -1)}", "0.5". A long one is cut
+/// and ends with "...".
 template <class... A>
-std::string show_arguments(const A&... arguments) {
-  std::string text;
-  const auto show_one = [&text](const auto& a) {
-    if (!text.empty()) text += ", ";
+std::vector<std::string> show_arguments(const A&... arguments) {
+  std::vector<std::string> all;
+  const auto show_one = [&all](const auto& a) {
+    std::string& text = all.emplace_back();
     detail::show_argument(text, a);
+    if (text.size() <= detail::kArgumentShown) return;
+    text.resize(detail::kArgumentShown);
+    text += " ...";
   };
   (show_one(arguments), ...);
-  if (text.size() > detail::kArgumentsShown) {
-    text.resize(detail::kArgumentsShown);
-    text += " ...";
-  }
-  return text;
+  return all;
 }
 
 /// The arguments as bytes, without functions, and from bytes to words: for a call that crashes its
@@ -148,7 +148,7 @@ void write_arguments(Writer& writer, const A&... arguments) {
 }
 
 template <class... A>
-std::string show_written_arguments(const Bytes& bytes) {
+std::vector<std::string> show_written_arguments(const Bytes& bytes) {
   Reader reader(bytes);
   std::tuple<std::decay_t<A>...> arguments;
   const auto read = [&reader](auto& a) {

@@ -55,12 +55,16 @@ TEST(Arguments, AreShownAlikeDirectlyAndFromBytes) {
   const std::vector<waist::Inner> list(6, {true, waist::Colour::kBlue, 0.25, Vector3d(1, -2, 0.5)});
   const std::function<double(double)> f = [](double x) { return x; };
   const Eigen::VectorXd long_vector = Eigen::VectorXd::LinSpaced(20, 1, 20);
-  const std::string shown = modules::show_arguments(
+  const std::vector<std::string> shown = modules::show_arguments(
       f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
-  EXPECT_TRUE(shown.starts_with(
-      "f, -3, \"a\", (0.5, -0.5, 0.5, -0.5), (20: 1, 2, 3, 4, 5, 6, 7, 8, ...), [6: {flag: true, "
-      "colour: 7, weight: 0.25, point: (1, -2, 0.5)}, {"))
-      << shown;
+  ASSERT_EQ(shown.size(), 6u);
+  const std::vector<std::string> short_ones(shown.begin(), shown.end() - 1),
+      needed = {"a function", "-3", "\"a\"", "(0.5, -0.5, 0.5, -0.5)",
+                "(20: 1, 2, 3, 4, 5, 6, 7, 8, ...)"};
+  EXPECT_EQ(short_ones, needed);
+  EXPECT_TRUE(
+      shown.back().starts_with("[6: {flag: true, colour: 7, weight: 0.25, point: (1, -2, 0.5)}, {"))
+      << shown.back();
   modules::Writer writer;
   modules::write_arguments(writer, f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5),
                            long_vector, list);
@@ -71,7 +75,7 @@ TEST(Arguments, AreShownAlikeDirectlyAndFromBytes) {
           writer.bytes)),
       shown);
   // a story must stay readable
-  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).size(), 700u);
+  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).at(0).size(), 700u);
 }
 
 TEST(Wire, MessageCutAnywhereIsRefused) {

@@ -277,7 +277,7 @@ std::string CallLog::asked() const {
   if (argument_bytes == 0 || describer >= describers().size()) return "";
   try {
     return describers()[describer](
-        modules::Bytes(arguments, arguments + std::min(argument_bytes, kArguments)));
+        last_call, modules::Bytes(arguments, arguments + std::min(argument_bytes, kArguments)));
   } catch (const std::exception&) {  // damaged by the process that wrote them
     return "";
   }

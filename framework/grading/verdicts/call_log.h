@@ -7,9 +7,11 @@
 #include <functional>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "framework/core/not_implemented.h"
 #include "framework/grading/verdicts/death.h"
+#include "framework/grading/verdicts/parameter_names.h"
 #include "framework/grading/verdicts/verdict.h"
 #include "framework/modules/answer_sizes.h"
 #include "framework/modules/show_arguments.h"
@@ -47,14 +49,42 @@ CallLog& call_log();
 
 namespace detail {
 
-using Describer = std::string (*)(const modules::Bytes&);
+using Describer = std::string (*)(const std::string& function, const modules::Bytes&);
 /// Registers a describer in the parent process, which uses its number and trusts no pointer from a
 /// crashed process. @return the number
 std::size_t add_describer(Describer describer);
 
+template <class Module, class... A>
+std::string described(const std::string& function, const modules::Bytes& arguments) {
+  return with_names(modules::show_written_arguments<A...>(arguments),
+                    parameter_names(Module::kId, function));
+}
+
 // Initialised before main, and so in the parent.
-template <class... A>
-inline const std::size_t describer_of = add_describer(modules::show_written_arguments<A...>);
+template <class Module, class... A>
+inline const std::size_t describer_of = add_describer(described<Module, A...>);
+
+/// The call that another one is within: the log is about it again when the inner one has returned.
+class OuterCall {
+ public:
+  explicit OuterCall(const CallLog& log) {
+    if (!log.in_call) return;
+    function_ = log.last_call;
+    arguments_.assign(log.arguments, log.arguments + log.argument_bytes);
+    describer_ = log.describer;
+  }
+  void goes_on(CallLog& log) const {
+    if (function_.empty()) return;
+    log.begin(function_.c_str());
+    --log.calls;  // it was counted when it began
+    log.keep(arguments_, describer_);
+  }
+
+ private:
+  std::string function_;  // empty: there is none
+  modules::Bytes arguments_;
+  std::size_t describer_ = 0;
+};
 
 // A vector of the wrong size ends the call: otherwise an assertion would fail elsewhere.
 [[noreturn]] inline void end_by_size(const std::string& story) {
@@ -76,11 +106,12 @@ std::function<R(A...)> observe(std::size_t index, const char* name,
                                std::function<R(A...)> function) {
   return [index, name, function](A... arguments) -> R {
     CallLog& log = call_log();
+    const OuterCall outer(log);
     log.begin(name);
     thread_local modules::Writer writer;
     writer.bytes.clear();
     modules::write_arguments(writer, arguments...);
-    log.keep(writer.bytes, describer_of<A...>);
+    log.keep(writer.bytes, describer_of<Module, A...>);
     try {
       R result = function(guarded(arguments, name, arguments...)...);
       if (const std::string problem =
@@ -88,6 +119,7 @@ std::function<R(A...)> observe(std::size_t index, const char* name,
           !problem.empty())
         end_by_size(problem);
       log.end();
+      outer.goes_on(log);
       return result;
     } catch (const NotImplemented& missing) {
       log.note(Verdict::kNotAttempted, missing.what());

@@ -15,6 +15,7 @@
 
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/verdicts/death.h"
+#include "framework/grading/verdicts/parameter_names.h"
 #include "framework/grading/verdicts/xray.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_wire.h"
@@ -188,6 +189,10 @@ void WorkerConnection::end_call() {
   // the enclosing call continues; it was counted when it began
   log.begin(calls_.back().function.c_str());
   --log.calls;
+}
+
+void WorkerConnection::note_arguments(const char* function, const std::vector<std::string>& words) {
+  arguments_ = with_names(words, parameter_names(options_.id, function));
 }
 
 // For the story of a wrong answer, or of none. Long ones are not kept: nobody reads a thousand

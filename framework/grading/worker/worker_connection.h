@@ -64,7 +64,7 @@ class WorkerConnection : public modules::Connection {
   modules::Channel& begin_call(const char* function) override;
   void end_call() override;
   void abandon_call() override { reset(); }
-  void note_arguments(const std::string& words) override { arguments_ = words; }
+  void note_arguments(const char* function, const std::vector<std::string>& words) override;
   void note_call(const char* function, const modules::Bytes& call) override;
   void note_answer(const modules::Bytes& answer) override;
   void note_callback(const modules::Bytes& question, const modules::Bytes& answer) override;

@@ -1,0 +1,25 @@
+/// Names of the parameters of a module's functions, read from its header when a story needs them:
+/// no other file has them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tumble::grading {
+
+/// The names of a function's parameters, in their order: {"f", "t", "y", "h"}.
+/// @param header  the text of a header
+/// @return nothing where it does not declare the function, or a parameter has no name
+std::vector<std::string> names_in_declaration(const std::string& header,
+                                              const std::string& function);
+
+/// The same, from the header of an assignment of the course's tree.
+/// @param id  of the module, "a1"
+/// @return nothing where there is no such header: a story goes without names
+std::vector<std::string> parameter_names(const std::string& id, const std::string& function);
+
+/// "t = 0, h = 0.01"; without names, "0, 0.01", where there are not as many names as values.
+std::string with_names(const std::vector<std::string>& values,
+                       const std::vector<std::string>& names);
+
+}  // namespace tumble::grading
