@@ -25,6 +25,32 @@ TEST(Xray, MarksTheTermWhoseVariantGivesTheAnswerThatCame) {
   EXPECT_EQ(words.find("<-"), words.rfind("<-"));
 }
 
+// F x r and (x - p) x F are the same torque: either mistake may be the one that was made.
+TEST(Xray, NamesEveryVariantThatGivesTheAnswerThatCame) {
+  Xray x = impulse(6.0);
+  x.variants.push_back({1, "2 e", numbers(6.0)});
+  EXPECT_NE(
+      xray_in_words(x).find("1.5   <- what was found comes out with 1, or with 2 e in its place\n"),
+      std::string::npos)
+      << xray_in_words(x);
+  x.variants.back() = {2, "0.75", numbers(6.0)};
+  EXPECT_NE(xray_in_words(x).find("0.5 1/kg   <- or with 0.75 in its place\n"), std::string::npos)
+      << xray_in_words(x);
+}
+
+TEST(Xray, HasAsManyDigitsAsTellTheAnswersApart) {
+  const std::string words = xray_in_words(impulse(9.0 * (1 + 6e-8)));
+  EXPECT_NE(words.find("9 N s expected, 9.00000054 N s found"), std::string::npos) << words;
+  Xray part = impulse(9.0 * (1 + 6e-8));
+  part.terms[0].value = part.terms[0].found = numbers(1.0 / 3.0);  // a right one has six
+  part.terms[2].found = numbers(0.5 * (1 + 6e-8));
+  const std::string of_part = xray_in_words(part);
+  EXPECT_NE(of_part.find(" 0.333333 m/s\n"), std::string::npos) << of_part;
+  EXPECT_NE(of_part.find("0.5 1/kg   <- the first that is wrong: 0.50000003 1/kg found\n"),
+            std::string::npos)
+      << of_part;
+}
+
 TEST(Xray, MarksNothingWhereNoVariantFits) {
   const std::string words = xray_in_words(impulse(7.0));
   EXPECT_NE(words.find("x-ray:"), std::string::npos);

@@ -12,6 +12,7 @@ namespace {
 // reason.
 constexpr double kRoundOff = 1e-9;
 constexpr std::size_t kNameWidth = 24;
+constexpr int kDigits = 6;
 
 std::map<std::string, XrayOfCall>& xrays() {
   static std::map<std::string, XrayOfCall> all;
@@ -24,22 +25,57 @@ bool is_near(const VectorXd& a, const VectorXd& b) {
   return (a - b).cwiseAbs().maxCoeff() <= kRoundOff * scale;
 }
 
-std::string digits_of(double x) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", x == 0.0 ? 0.0 : x);
-  return digits;
+std::string digits_of(double x, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, x == 0.0 ? 0.0 : x);
+  return text;
 }
 
-std::string shown(const VectorXd& v, const std::string& unit) {
+std::string shown(const VectorXd& v, const std::string& unit, int digits = kDigits) {
   std::string text = v.size() == 1 ? "" : "(";
-  for (Eigen::Index i = 0; i < v.size(); ++i) text += (i > 0 ? ", " : "") + digits_of(v[i]);
+  for (Eigen::Index i = 0; i < v.size(); ++i) text += (i > 0 ? ", " : "") + digits_of(v[i], digits);
   return text + (v.size() == 1 ? "" : ")") + (unit.empty() ? "" : ' ' + unit);
+}
+
+// As many digits as tell two values apart: an error of float's size does not show in six.
+int digits_for(const VectorXd& a, const VectorXd& b) {
+  if (is_near(a, b)) return kDigits;
+  for (const int digits : {kDigits, 9, 12})
+    if (shown(a, "", digits) != shown(b, "", digits)) return digits;
+  return kDigits;  // neither is a number
 }
 
 std::string line_of(const std::string& name, const std::string& value) {
   std::string text = "\n            " + name;
   if (name.size() < kNameWidth) text.append(kNameWidth - name.size(), ' ');
   return text + "  " + value;
+}
+
+// Marks by terms. Different mistakes may give the same answer: each of them is named.
+std::map<std::size_t, std::string> variants_found(const Xray& xray) {
+  std::map<std::size_t, std::string> marks;
+  for (const XrayVariant& variant : xray.variants) {
+    if (!is_near(variant.answer, xray.found)) continue;
+    std::string& mark = marks[variant.term];
+    mark += (mark.empty() ? "" : ", or with ") + variant.says;
+  }
+  bool is_first = true;
+  for (auto& [term, mark] : marks) {
+    mark = (is_first ? "what was found comes out with " : "or with ") + mark + " in its place";
+    is_first = false;
+  }
+  return marks;
+}
+
+// The first term whose part of the answer is wrong.
+std::map<std::size_t, std::string> first_wrong(const Xray& xray) {
+  for (std::size_t i = 0; i < xray.terms.size(); ++i) {
+    const XrayTerm& term = xray.terms[i];
+    if (term.found.size() == 0 || is_near(term.value, term.found)) continue;
+    const int digits = digits_for(term.value, term.found);
+    return {{i, "the first that is wrong: " + shown(term.found, term.unit, digits) + " found"}};
+  }
+  return {};
 }
 
 }  // namespace
@@ -50,26 +86,24 @@ bool is_answered_rightly(const Xray& xray) { return is_near(xray.expected, xray.
 
 std::string xray_in_words(const Xray& xray, bool is_answered) {
   if (is_answered && is_answered_rightly(xray)) return "";
-  const auto variant =
-      std::find_if(xray.variants.begin(), xray.variants.end(),
-                   [&](const XrayVariant& v) { return is_near(v.answer, xray.found); });
-  bool is_marked = variant != xray.variants.end();  // nothing is marked twice
+  std::map<std::size_t, std::string> marks;
+  if (is_answered) marks = variants_found(xray);
+  if (is_answered && marks.empty()) marks = first_wrong(xray);
   std::string text = "\n  x-ray:    " + xray.equation;
 
   for (std::size_t i = 0; i < xray.terms.size(); ++i) {
     const XrayTerm& term = xray.terms[i];
-    text += line_of(term.name, shown(term.value, term.unit));
-    if (!is_answered) continue;
-    if (!is_marked && term.found.size() > 0 && !is_near(term.value, term.found)) {
-      text += "   <- the first that is wrong: " + shown(term.found, term.unit) + " found";
-      is_marked = true;
-    }
-    if (variant != xray.variants.end() && variant->term == i)
-      text += "   <- what was found comes out with " + variant->says + " in its place";
+    const bool is_marked = marks.contains(i);
+    const int digits =
+        is_marked && term.found.size() > 0 ? digits_for(term.value, term.found) : kDigits;
+    text += line_of(term.name, shown(term.value, term.unit, digits));
+    if (is_marked) text += "   <- " + marks[i];
   }
-  return text + line_of(xray.answer, shown(xray.expected, xray.unit) + " expected, " +
-                                         (is_answered ? shown(xray.found, xray.unit) + " found"
-                                                      : "no answer came"));
+  const int digits = is_answered ? digits_for(xray.expected, xray.found) : kDigits;
+  const std::string came =
+      is_answered ? shown(xray.found, xray.unit, digits) + " found" : "no answer came";
+  return text +
+         line_of(xray.answer, shown(xray.expected, xray.unit, digits) + " expected, " + came);
 }
 
 bool add_xray(const std::string& function, XrayOfCall xray) {

@@ -7,7 +7,8 @@
 ///
 /// An assignment describes its equations where its hidden tests are (solutions_private): the terms
 /// are computed from the call's arguments, and the answer must be that of the terms. Wrong variants
-/// of a term are tried: the one that gives the answer that came marks its term.
+/// of a term are tried: each that gives the answer that came is named at its term. Numbers have six
+/// digits, and more where the difference begins behind them.
 #pragma once
 
 #include <functional>
