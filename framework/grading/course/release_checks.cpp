@@ -11,8 +11,8 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "framework/core/code_text.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/code_text.h"
 
 namespace tumble::grading {
 namespace {

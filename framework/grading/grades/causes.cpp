@@ -9,24 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "framework/grading/course/code_text.h"
+#include "framework/core/code_text.h"
 
 namespace tumble::grading {
 namespace {
 
 bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-// The place behind the bracket that closes the one at `open`; npos where none does within what is
-// long for a list of parameters.
-std::size_t behind_bracket(const std::string& text, std::size_t open) {
-  constexpr std::size_t kLongest = 4096;
-  int depth = 0;
-  for (std::size_t i = open; i < std::min(text.size(), open + kLongest); ++i) {
-    if (text[i] == '(') ++depth;
-    if (text[i] == ')' && --depth == 0) return i + 1;
-  }
-  return std::string::npos;
-}
 
 bool is_failure(Verdict verdict) {
   return verdict == Verdict::kWrong || verdict == Verdict::kCrashed ||

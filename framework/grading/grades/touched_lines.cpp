@@ -3,8 +3,8 @@
 #include <regex>
 #include <sstream>
 
+#include "framework/core/code_text.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/code_text.h"
 #include "framework/grading/course/slip.h"
 
 namespace tumble::grading {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "framework/core/code_text.h"
 #include "framework/core/files.h"
 #include "framework/core/program_trees.h"
 #include "framework/core/text.h"
@@ -15,32 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_in_a_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-std::string without_comments(const std::string& code) {
-  std::string text;
-  for (std::size_t at = 0; at < code.size();) {
-    const bool is_line = code.compare(at, 2, "//") == 0;
-    if (!is_line && code.compare(at, 2, "/*") != 0) {
-      text += code[at++];
-      continue;
-    }
-    // a line's end stays, and is the blank between two words
-    const std::size_t end = is_line ? code.find('\n', at) : code.find("*/", at + 2);
-    at = end == code.npos ? code.size() : is_line ? end : end + 2;
-    if (!is_line) text += ' ';
-  }
-  return text;
-}
-
-// Behind the bracket that closes the one at `open`; npos where none does.
-std::size_t behind_bracket(const std::string& text, std::size_t open) {
-  int depth = 0;
-  for (std::size_t at = open; at < text.size(); ++at) {
-    if (text[at] == '(') ++depth;
-    if (text[at] == ')' && --depth == 0) return at + 1;
-  }
-  return text.npos;
-}
 
 // "const VectorXd& y" -> "y"; empty where there is a type alone, such as "const Vector3d&".
 std::string name_in(const std::string& parameter) {
@@ -78,7 +53,7 @@ fs::path header_of(const std::string& id) {
 
 std::vector<std::string> names_in_declaration(const std::string& header,
                                               const std::string& function) {
-  const std::string text = without_comments(header);
+  const std::string text = code_of(header);
   for (std::size_t at = text.find(function); at != text.npos; at = text.find(function, at + 1)) {
     const std::size_t open = text.find_first_not_of(" \t\n", at + function.size());
     if (open == text.npos || text[open] != '(') continue;

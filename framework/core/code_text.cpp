@@ -1,8 +1,8 @@
-#include "framework/grading/course/code_text.h"
+#include "framework/core/code_text.h"
 
 #include <algorithm>
 
-namespace tumble::grading {
+namespace tumble {
 
 std::string code_of(std::string text) {
   bool line_begins = true;
@@ -30,4 +30,14 @@ std::string code_of(std::string text) {
   return text;
 }
 
-}  // namespace tumble::grading
+std::size_t behind_bracket(const std::string& code, std::size_t open) {
+  constexpr std::size_t kLongest = 4096;
+  int depth = 0;
+  for (std::size_t i = open; i < std::min(code.size(), open + kLongest); ++i) {
+    if (code[i] == '(') ++depth;
+    if (code[i] == ')' && --depth == 0) return i + 1;
+  }
+  return std::string::npos;
+}
+
+}  // namespace tumble
