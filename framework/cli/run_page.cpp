@@ -37,7 +37,7 @@ std::string short_name(const std::string& source) {
              : fs::path(source).stem().string();
 }
 
-/// The label of a run: the laws that the other run does not have; else its engine or step.
+/// The label of a run: the laws that the other run does not have; else its motion, engine or step.
 std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const TrajectoryInfo& info,
                      const TrajectoryInfo& other) {
   std::set<std::string> names;
@@ -47,6 +47,8 @@ std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const Tra
         names.insert(short_name(module.source));
   std::string label;
   for (const std::string& name : names) label += (label.empty() ? "" : ", ") + name;
+  if (label.empty() && info.integrator_source != other.integrator_source)
+    label = info.integrator_source;  // a method in place of the module's own
   if (info.engine != other.engine) label += (label.empty() ? "" : ", ") + ("engine " + info.engine);
   if (info.step_s != other.step_s)
     label += (label.empty() ? "" : ", ") + fmt::format("step {:.4g} s", info.step_s);
@@ -83,12 +85,38 @@ ChosenLaws laws_of_second(const Context& context, const scene::Scene& scene,
                      beside.engine.empty() ? words.engine : beside.engine);
 }
 
+std::string source_of(const ChosenLaws& chosen, const std::string& id) {
+  for (const ChosenModule& module : chosen.modules)
+    if (module.id == id) return module.source;
+  return "library";
+}
+
+/// Whether a module after --beside is to move the bodies of the second run.
+/// @param named  the modules after --beside
+bool names_motion(const Context& context, const ChosenLaws& first, const ChosenLaws& second,
+                  const ModuleWords& named) {
+  const auto for_all = named.find("");
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    if (kind->methods.empty()) continue;  // it has no integration
+    const std::string source = source_of(second, kind->id);
+    if (named.contains(kind->id) || source != source_of(first, kind->id) ||
+        (for_all != named.end() && for_all->second == source))
+      return true;
+  }
+  return false;
+}
+
 /// The words of the first run but for what --beside changes. What a search has chosen for the first
-/// run is not taken over.
+/// run is not taken over, nor is a method that would stand in place of a module after --beside.
 PlannedRun plan_of_second(const Context& context, const scene::Scene& scene,
-                          const ChosenLaws& chosen, const BesideWords& beside, RunWords words) {
+                          const ChosenLaws& first, const ChosenLaws& chosen,
+                          const BesideWords& beside, RunWords words) {
   words.accuracy_m.reset();
   words.budget_s.reset();
+  if (names_motion(context, first, chosen, parse_module_words(beside.modules, context.registry))) {
+    words.method.clear();
+    words.tolerance.reset();
+  }
   if (!beside.engine.empty()) words.engine = beside.engine;
   if (beside.step_s) words.step_s = beside.step_s;
   return plan_run(context, scene, chosen, words);
@@ -132,7 +160,7 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   // Ctrl-C, which has ended the first run, has reached the submissions' processes, too.
   const ChosenLaws other =
       StopByHand::is_asked() ? laws_of_second(context, scene, beside, words) : *prepared.laws;
-  PlannedRun plan = plan_of_second(context, scene, other, beside, words);
+  PlannedRun plan = plan_of_second(context, scene, chosen, other, beside, words);
   VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
   plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
@@ -201,7 +229,7 @@ BesideWords parse_beside(const std::string& text) {
 }
 
 PreparedPage prepare_page(const Context& context, const scene::Scene& scene,
-                          const RunWords& words) {
+                          const ChosenLaws& chosen, const RunWords& words) {
   PreparedPage prepared;
   if (words.beside.empty()) return prepared;
   if (words.html.empty())
@@ -211,7 +239,7 @@ PreparedPage prepare_page(const Context& context, const scene::Scene& scene,
   expect_engine("--beside engine=", beside.engine);
   if (beside.recording.empty()) {
     prepared.laws = laws_of_second(context, scene, beside, words);
-    expect_start(plan_of_second(context, scene, *prepared.laws, beside, words), words);
+    expect_start(plan_of_second(context, scene, chosen, *prepared.laws, beside, words), words);
     return prepared;
   }
   if (!fs::exists(beside.recording))

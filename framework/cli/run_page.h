@@ -39,8 +39,10 @@ struct PreparedPage {
 
 /// Does before the first run what can be refused of --html and --beside: loads the modules of the
 /// second run, which is begun and ended at its first frame, or reads the recording.
+/// @param chosen  the laws of the first run
 /// @throws UserError with the word that does not fit
-PreparedPage prepare_page(const Context& context, const scene::Scene& scene, const RunWords& words);
+PreparedPage prepare_page(const Context& context, const scene::Scene& scene,
+                          const ChosenLaws& chosen, const RunWords& words);
 
 /// Makes the second run where --beside asks for one, writes words.html, and reports it on stderr.
 /// Does nothing where words.html is empty.

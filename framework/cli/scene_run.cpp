@@ -312,7 +312,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const PictureSize size = parse_size(words.size);  // refused before the run, not after it
   engines::refuse_other_units(scene);
   refuse_without_scheduler(chosen, words);
-  const PreparedPage page = prepare_page(context, scene, words);
+  const PreparedPage page = prepare_page(context, scene, chosen, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);

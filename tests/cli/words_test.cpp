@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/places.h"
@@ -243,19 +244,55 @@ TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
   EXPECT_FALSE(holds(recorded.err, "the recording is of")) << recorded.err;
 }
 
+// Of a page: what moves the bodies of each run.
+std::vector<std::string> motions_of(const std::string& page) {
+  std::vector<std::string> motions;
+  const std::regex motion("\"motion\":\"([^\"]*)\"");
+  for (std::sregex_iterator it(page.begin(), page.end(), motion), end; it != end; ++it)
+    motions.push_back((*it)[1]);
+  return motions;
+}
+
 // What is not named after --beside is that of the first run.
 TEST_F(CommandLine, ARunBesideHasTheMethodOfTheFirst) {
   const Said said = type(
       "run t_handle --modules library --duration-s 0.5 --method euler --step-s 0.02 --beside "
       "step-s=0.01 --html method.html");
-  const std::string page = contents_of(folder_ / "method.html");
-  std::vector<std::string> motions;
-  const std::regex motion("\"motion\":\"([^\"]*)\"");
-  for (std::sregex_iterator it(page.begin(), page.end(), motion), end; it != end; ++it)
-    motions.push_back((*it)[1]);
+  const std::vector<std::string> motions = motions_of(contents_of(folder_ / "method.html"));
   ASSERT_EQ(motions.size(), 2U) << said.err;
   EXPECT_EQ(motions[0], motions[1]);
   EXPECT_TRUE(holds(motions[1], "Euler")) << motions[1];
+}
+
+// The method of the first run would stand in place of what was asked for.
+TEST_F(CommandLine, AModuleOfMotionBesideMovesTheBodiesItself) {
+  for (const char* beside : {"a2=library", "library"}) {
+    const Said said = type(
+        "run t_handle --modules library --duration-s 0.5 --method euler --step-s 0.02 --html "
+        "own.html --beside " +
+        std::string(beside));
+    const std::string page = contents_of(folder_ / "own.html");
+    const std::vector<std::string> motions = motions_of(page);
+    ASSERT_EQ(motions.size(), 2U) << beside << ": " << said.err;
+    EXPECT_TRUE(holds(motions[0], "Euler")) << beside << ": " << motions[0];
+    EXPECT_FALSE(holds(motions[1], "Euler")) << beside << ": " << motions[1];
+    EXPECT_TRUE(holds(page, "\"label\":\"" + motions[0] + "\"")) << beside;
+    EXPECT_FALSE(holds(page, "\"difference\":null")) << beside;
+  }
+#ifdef TUMBLE_HAS_REFERENCE
+  const Said said = type(
+      "run t_handle --modules library --duration-s 0.5 --method euler --step-s 0.02 --html "
+      "reference.html --beside a2=reference");
+  const std::vector<std::string> motions = motions_of(contents_of(folder_ / "reference.html"));
+  ASSERT_EQ(motions.size(), 2U) << said.err;
+  EXPECT_EQ(motions[1], "a2 reference");
+  const Said other = type(
+      "run t_handle --modules library --duration-s 0.5 --method euler --step-s 0.02 --html "
+      "other.html --beside a1=reference");
+  const std::vector<std::string> same = motions_of(contents_of(folder_ / "other.html"));
+  ASSERT_EQ(same.size(), 2U) << other.err;
+  EXPECT_EQ(same[0], same[1]) << "a1 moves no body";
+#endif
 }
 
 TEST_F(CommandLine, ARecordingOfAnotherSceneIsShownWithANote) {
