@@ -107,7 +107,8 @@ bool names_motion(const Context& context, const ChosenLaws& first, const ChosenL
 }
 
 /// The words of the first run but for what --beside changes. What a search has chosen for the first
-/// run is not taken over, nor is a method that would stand in place of a module after --beside.
+/// run is not taken over, nor is a method that would stand in place of a module after --beside, nor
+/// what the second run's engine or sandbox would be refused for.
 PlannedRun plan_of_second(const Context& context, const scene::Scene& scene,
                           const ChosenLaws& first, const ChosenLaws& chosen,
                           const BesideWords& beside, RunWords words) {
@@ -117,7 +118,11 @@ PlannedRun plan_of_second(const Context& context, const scene::Scene& scene,
     words.method.clear();
     words.tolerance.reset();
   }
-  if (!beside.engine.empty()) words.engine = beside.engine;
+  if (!beside.engine.empty()) {
+    words.engine = beside.engine;
+    if (words.engine != "rd" && words.propagator == "laws") words.propagator.clear();
+  }
+  if (!chosen.connections.empty()) words.threads = 1;  // which gives the same run
   if (beside.step_s) words.step_s = beside.step_s;
   return plan_run(context, scene, chosen, words);
 }

@@ -295,6 +295,37 @@ TEST_F(CommandLine, AModuleOfMotionBesideMovesTheBodiesItself) {
 #endif
 }
 
+// The propagator of the first run is one that rd alone has.
+TEST_F(CommandLine, AnEngineBesideIsNotRefusedForThePropagatorOfTheFirst) {
+  write_whole(folder_ / "one.json", R"({"title": "one", "duration_s": 0.1, "bodies": [{
+        "name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}]})");
+  for (const std::string engine : {"ca", "ordered"}) {
+    const Said said = type(
+        "run one.json --modules library --engine rd --propagator laws --html p.html --beside "
+        "engine=" +
+        engine);
+    EXPECT_EQ(said.code, 0) << said.out << said.err;
+    EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "\"label\":\"engine " + engine + "\""))
+        << said.err;
+  }
+}
+
+#ifdef TUMBLE_HAS_REFERENCE
+// A sandbox answers one thread; the run is the same with any number of them.
+TEST_F(CommandLine, ASubmissionBesideIsNotRefusedForTheThreadsOfTheFirst) {
+  fs::copy_file(fs::path(test::source_dir()) / "solutions_private/a1_impulse/a1_impulse.cpp",
+                folder_ / "sub.cpp");
+  const std::string words =
+      "run pong_1 --duration-s 0.2 --engine tw --threads 2 --html p.html --modules ";
+  const Said said = type(words + "reference --beside a1=sub.cpp");
+  EXPECT_LE(said.code, 1) << said.out << said.err;
+  EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "\"label\":\"sub\"")) << said.err;
+  const Said first = type(words + "a1=sub.cpp,a2=reference");
+  EXPECT_EQ(first.code, 2) << first.out;
+  EXPECT_TRUE(holds(first.err, "one call at a time")) << first.err;
+}
+#endif
+
 TEST_F(CommandLine, ARecordingOfAnotherSceneIsShownWithANote) {
   for (const char* name : {"one", "two"})
     write_whole(folder_ / (std::string(name) + ".json"),
