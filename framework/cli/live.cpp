@@ -22,10 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kSaves = "out/live";
+
 struct LiveWords : RunWords {
   int port = 0;
-  std::string saves = "out/live";
-  std::string part, id;  // of the other processes (live_parts.h)
+  std::optional<std::string> saves;  // nothing: kSaves
+  std::string part, id;              // of the other processes (live_parts.h)
 };
 
 /// "a3" becomes a scene of it. @return the assignment's id; empty for a scene
@@ -120,6 +122,20 @@ std::string again(const LiveWords& words, const fs::path& file, const live::Chan
   return command;
 }
 
+/// Refuses a named folder in which scenes cannot be saved. Without a name the page is of use in a
+/// folder that cannot be written, too.
+/// @param can_save  whether the page can save its scene at all
+void expect_saves(const LiveWords& words, bool can_save) {
+  try {
+    expect_writable(fs::path(words.saves.value_or(kSaves)) / "scene.json");
+  } catch (const UserError& error) {
+    if (words.saves) throw;
+    if (can_save)
+      fmt::print(stderr, "Save in the page will fail: {}: {}. --saves FOLDER names another\n",
+                 error.where(), error.problem());
+  }
+}
+
 void live_verb(Context& context, LiveWords& words) {
   if (words.part == "judge") return judge_for_page(context, words, words.id);
   if (words.part == "locate") return locate_for_page(context, words);
@@ -131,7 +147,6 @@ void live_verb(Context& context, LiveWords& words) {
   expect_module_files(context, modules);
   expect_engine("--engine ", words.engine);
   check_plan_words(words);
-  expect_writable(fs::path(words.saves) / "scene.json");
 
   live::Sitting sitting;
   sitting.name = scene.name;
@@ -139,6 +154,7 @@ void live_verb(Context& context, LiveWords& words) {
   sitting.recipe.file = scene.file;
   if (fs::is_regular_file(scene.file) && scene.file.extension() == ".json")
     sitting.recipe.document = text_of(scene.file);
+  expect_saves(words, !sitting.recipe.document.empty());
   sitting.simulator = words_of_part(words, "simulate", "");
   sitting.locate = words_of_part(words, "locate", "");
   sitting.watched = watched_files(context, modules);
@@ -152,7 +168,7 @@ void live_verb(Context& context, LiveWords& words) {
     if (id.empty() && fs::absolute(scene.file).parent_path().parent_path() == fs::absolute(folder))
       sitting.first_judged = one.id;
   }
-  sitting.saves = words.saves;
+  sitting.saves = words.saves.value_or(kSaves);
   sitting.again = [words](const fs::path& file, const live::Changes& changes,
                           const std::string& laws) { return again(words, file, changes, laws); };
   sitting.handout = [&context](const std::string& name) { return handout_page(context, name); };
@@ -200,7 +216,7 @@ void add_live(CLI::App& app, Context& context) {
       .type_name("PORT");
   verb.option("--saves", words->saves, "Folder of scenes that are saved in the page")
       .type_name("FOLDER")
-      .shows_default();
+      .default_text(kSaves);
   verb.option("--part", words->part, "").hidden();
   verb.option("--id", words->id, "").hidden();
   verb.footer(

@@ -98,5 +98,22 @@ TEST_F(CommandLine, LiveRefusesInTheTerminalWhatItsPageCouldNotDo) {
   EXPECT_TRUE(left_nothing());
 }
 
+// The default folder of saved scenes cannot be made where "out" is a file. A sized scene is made by
+// code, and Save is greyed out.
+TEST_F(CommandLine, LiveGoesOnWhereNoSceneCouldBeSavedUnlessAFolderIsNamed) {
+  std::ofstream(folder_ / "out") << "a file";
+  for (const auto& [scene, is_told] : {std::pair{"t_handle", true}, {"gas --n 5", false}}) {
+    Terminal terminal(folder_, std::string("live ") + scene + " --modules library");
+    ASSERT_TRUE(terminal.shows("Ctrl-C ends")) << scene << ": " << terminal.said;
+    EXPECT_EQ(holds(terminal.said, "Save in the page will fail"), is_told) << terminal.said;
+    terminal.press("\x03");
+    EXPECT_TRUE(terminal.shows("ended; nothing is left running")) << scene << ": " << terminal.said;
+    EXPECT_EQ(terminal.exit_code(), 0) << scene;
+  }
+  Terminal named(folder_, "live t_handle --modules library --saves out/live");
+  EXPECT_TRUE(named.shows("cannot be written")) << named.said;
+  EXPECT_EQ(named.exit_code(), 2);
+}
+
 }  // namespace
 }  // namespace tumble::testing
