@@ -253,6 +253,28 @@ std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesW
   return ladder;
 }
 
+/// Refuses before the runs what could not be drawn after them. JSON has every row without a picture
+/// too, and names the problem at each scene: there a warning does.
+/// @throws UserError
+void expect_drawing(const EnginesWords& words) {
+  try {
+    render::expect_pictures();
+    report::expect_player();
+    if (words.no_videos) return;
+    try {
+      render::expect_video(words.out);
+    } catch (const UserError& error) {
+      throw UserError(error.where(), error.problem(),
+                      error.remedy() + " The page without videos: --no-videos.");
+    }
+  } catch (const UserError& error) {
+    if (!words.json) throw;
+    fmt::print(stderr,
+               "tumble: {}: {}. Rows are made all the same; \"problem\" of each scene names it\n",
+               error.where(), error.problem());
+  }
+}
+
 void print_scene(const EnginesScene& scene) {
   if (!scene.problem.empty()) return fmt::print("{}: FAILED {}\n\n", scene.name, scene.problem);
   fmt::print("{}\n", scene.title);
@@ -271,13 +293,7 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   expect_module_files(context, parse_module_words(modules_of(context, words), context.registry));
   const fs::path out = words.out;
   expect_writable(out / "index.html");
-  if (!words.quiet) {  // a larger report shows what cannot be drawn in its place
-    if (words.no_videos)
-      render::expect_pictures();
-    else
-      render::expect_video(out);
-    report::expect_player();
-  }
+  if (!words.quiet) expect_drawing(words);  // a larger report shows what is missing in its place
   // The scenes of the page, and their shares of the time.
   std::vector<Shown> all;
   for (const Shown& shown : kShown)

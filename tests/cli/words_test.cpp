@@ -221,6 +221,7 @@ TEST_F(CommandLine, AVideoWithoutFfmpegIsRefusedBeforeTheRun) {
     EXPECT_EQ(said.out, "");
     EXPECT_TRUE(holds(said.err, "ffmpeg is not installed")) << said.err;
   }
+  EXPECT_TRUE(holds(engines.err, "--no-videos")) << engines.err;
   EXPECT_TRUE(left_nothing());
 }
 
@@ -607,6 +608,28 @@ TEST_F(CommandLine, EnginesAreComparedInATableAndOnAPage) {
   for (const char* words :
        {"conservative advancement", "Average integration step", "Error of the energy"})
     EXPECT_TRUE(holds(page, words)) << words;
+}
+
+// What is missing is of pictures alone.
+TEST_F(CommandLine, JsonOfAllEnginesHasItsRowsWhereNothingCanBeDrawn) {
+  if (!fs::exists(fs::path(test::binary_dir()) / "modules" / "a3_reference.so"))
+    GTEST_SKIP() << "this tree has no a3 but the student's";
+  const std::string words = "engines --small --no-videos --modules reference";
+  ::setenv("TUMBLE_GL", "none", 1);
+  const Said page = type(words), json = type(words + " --json");
+  ::unsetenv("TUMBLE_GL");
+  EXPECT_EQ(page.code, 2);
+  EXPECT_EQ(page.out, "");
+  EXPECT_TRUE(holds(page.err, "TUMBLE_GL")) << page.err;
+  EXPECT_EQ(json.code, 1) << json.err;
+  EXPECT_TRUE(holds(json.err, "TUMBLE_GL: \"none\" is not known")) << json.err;
+  const auto scenes = nlohmann::json::parse(json.out).at("scenes");
+  ASSERT_FALSE(scenes.empty());
+  for (const auto& scene : scenes) {
+    EXPECT_TRUE(holds(scene.at("problem").get<std::string>(), "TUMBLE_GL")) << scene;
+    EXPECT_FALSE(scene.at("engines").empty()) << scene;
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "out/engines/atoms/index.html"));
 }
 
 // Who computes springs, rods and contact stands beside who computes the rest, on every path; what
