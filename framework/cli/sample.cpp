@@ -222,6 +222,20 @@ void print(const Sampled& sampled) {
   }
 }
 
+/// Where worlds cannot be drawn, chains may be made nevertheless: their page may be made elsewhere,
+/// and has no picture where every world broke.
+void warn_of_page() {
+  try {
+    render::expect_pictures();
+    report::expect_player();
+  } catch (const UserError& error) {
+    fmt::print(stderr,
+               "tumble: {}: {}: here the page may fail. Chains and their answers are kept, and the "
+               "same command makes the page on a machine that can draw\n",
+               error.where(), error.problem());
+  }
+}
+
 void run_sample(Context& context, const SampleWords& words) {
   check(words.spread);
   constexpr int kLeastPrior = 8 * kPriorParts;  // of a part: the least that answers are made of
@@ -233,15 +247,12 @@ void run_sample(Context& context, const SampleWords& words) {
   const fs::path folder = fs::path(words.out) / sampled.worlds.scene.name;
   for (const char* file : {"index.html", "answers.json", "times.json", "chains.csv"})
     expect_writable(folder / file);
-  if (words.spread.shard.empty()) {  // the page is made here
-    render::expect_pictures();
-    report::expect_player();
-  }
+  if (words.spread.shard.empty()) warn_of_page();  // which is made here
   sample(context, words, folder, sampled);
   if (!words.spread.shard.empty()) return end_shard(context, words.spread, sampled.outcome, kUnit);
   const std::string lost = lost_in_words(sampled.outcome, kUnit);
-  write_sample_page(context, sampled, folder);
   write_sample_files(context, sampled, folder);
+  write_sample_page(context, sampled, folder);
   const Answers& answers = sampled.growing.back();
   if (words.json) {
     ordered_json parts = {{"scene", sampled.worlds.scene.name},

@@ -228,6 +228,23 @@ TEST_F(Farm, ChainsGiveTheSameBytesForAnyNumberOfJobs) {
   EXPECT_TRUE(file("one/ball_into_bin/chains.csv").starts_with(table));
 }
 
+// On a machine that cannot draw, with another that makes the page of the same chains.
+TEST_F(Farm, ChainsAreMadeWhereTheirPageCannotBe) {
+  ::setenv("TUMBLE_GL", "none", 1);
+  const Said without = type(kChains + "2");
+  ::unsetenv("TUMBLE_GL");
+  EXPECT_EQ(without.code, 2) << without.out;
+  EXPECT_TRUE(holds(without.err, "here the page may fail")) << without.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out/sample/ball_into_bin/index.html"));
+  const std::string answers = file("out/sample/ball_into_bin/answers.json");
+  EXPECT_GT(answers.size(), 100u) << without.err;
+  const Said drawn = type(kChains + "2");
+  EXPECT_LE(drawn.code, 1) << drawn.err;
+  EXPECT_TRUE(holds(drawn.err, "2 chains of an earlier start taken over")) << drawn.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out/sample/ball_into_bin/index.html"));
+  EXPECT_EQ(file("out/sample/ball_into_bin/answers.json"), answers);
+}
+
 const std::vector<std::string> kLong = {
     "sample",    "ball_into_bin", "--modules", "reference", "--chains", "3",
     "--samples", "300",           "--warm-up", "0",         "--jobs",   "2"};
