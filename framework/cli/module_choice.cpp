@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include "framework/cli/sandboxed_module.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
@@ -421,11 +423,9 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
 
 std::string constraints_line(const scene::Scene& scene, const Laws& laws) {
   if (!scene.contact && !effects::asks_laws_of("a3", scene)) return "";
-  const auto rubs = [](const scene::BodySpec& body) { return body.friction > 0.0; };
-  return fmt::format("springs, rods and contact by {}{}", laws.constraint_source,
-                     scene.contact && std::any_of(scene.bodies.begin(), scene.bodies.end(), rubs)
-                         ? ", where it rubs by the framework"
-                         : "");
+  return fmt::format(
+      "springs, rods and contact by {}{}", laws.constraint_source,
+      scene.contact ? ", where it rubs, is linked or is one of many by the framework" : "");
 }
 
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads) {

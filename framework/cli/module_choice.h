@@ -61,8 +61,8 @@ void expect_module_files(const Context& context, const ModuleWords& words);
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
                        const std::string& engine = "");
 
-/// "springs, rods and contact by a3 student, where it rubs by the framework"; empty for a scene
-/// that has none of them.
+/// "springs, rods and contact by a3 student, where it rubs, is linked or is one of many by the
+/// framework"; empty for a scene that has none of them.
 std::string constraints_line(const scene::Scene& scene, const Laws& laws);
 
 /// @throws UserError where several threads would call laws of a sandbox, which executes one call at

@@ -66,6 +66,7 @@ struct ContactSolution {
   double residual = 0.0;
   bool converged = false;              // residual <= tolerance
   int sweeps = 0, factorisations = 0;  // what it cost
+  bool by_contact_forces = false;      // found by the laws' contact_forces, not by such a solver
 };
 
 struct ContactOptions {

@@ -27,6 +27,8 @@ struct ContactPoint {
   Vector3d point_world;          // [m]
   Vector3d normal_b_to_a_world;  // unit
   Vector3d force_on_a_world;     // [N], friction included
+  // whether the laws' contact_forces found it; files do not keep that
+  bool by_contact_forces = false;
 };
 
 /// All bodies at a frame time.

@@ -642,5 +642,49 @@ TEST(LinkForces, AHingeAndARodShareABoxByItsLever) {
   }
 }
 
+// ---- By what a contact was solved --------------------------------------------------------------
+
+scene::Scene box_on_a_floor(double friction) {
+  scene::BodySpec floor = plane("floor", Vector3d::Zero(), Vector3d::UnitZ());
+  floor.friction = friction;
+  return at_rest({floor, slab("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1}, friction)});
+}
+
+// Neither what rubs nor what a rod holds is a matter of contact_forces. The rod lies level, so that
+// the floor bears the box.
+TEST(ContactPoints, SayWhetherContactForcesFoundThem) {
+  scene::Scene on_a_rod = box_on_a_floor(0.0);
+  on_a_rod.effects.of<effects::RodSpec>().push_back(
+      {"rod", {"", Vector3d(1, 0, 0.1)}, {"box", Vector3d::Zero()}, 1.0});
+  for (const auto& [scene, expected] :
+       {std::pair{box_on_a_floor(0.0), true}, {box_on_a_floor(0.5), false}, {on_a_rod, false}})
+    for (const std::string& engine : kEngines) {
+      const Trajectory run = run_by(engine, scene);
+      ASSERT_FALSE(run.frames.back().contacts.empty()) << engine << said(run);
+      for (const ContactPoint& contact : run.frames.back().contacts)
+        EXPECT_EQ(contact.by_contact_forces, expected) << engine;
+    }
+}
+
+// What is said of a box whose energy has run away, with one contact that pushes it.
+std::string said_of_runaway(bool by_contact_forces, const Laws& laws) {
+  const World world = build_world(box_on_a_floor(0.0));
+  const std::vector<RigidBodyState> states{world.bodies[0].state, world.bodies[1].state};
+  const std::vector<ContactPoint> contacts{
+      {1, 0, Vector3d::Zero(), Vector3d::UnitZ(), Vector3d(0, 0, 9.81), by_contact_forces}};
+  const engines::LinkForces links(world);
+  return engines::runaway_message(0.1, world, {1, 100.0, 1.0, 0.0}, {states, links, contacts},
+                                  laws);
+}
+
+TEST(Runaway, NamesContactForcesOnlyWhereTheyWereAsked) {
+  Laws laws = reference_laws();
+  laws.constraint_source = "a3 student";
+  const std::string theirs = said_of_runaway(true, laws), ours = said_of_runaway(false, laws);
+  EXPECT_NE(theirs.find("'floor' (contact_forces of a3 student)"), std::string::npos) << theirs;
+  EXPECT_NE(ours.find("'floor' (impulses of the framework)"), std::string::npos) << ours;
+  EXPECT_EQ(ours.find("a3 student"), std::string::npos) << ours;
+}
+
 }  // namespace
 }  // namespace tumble::testing

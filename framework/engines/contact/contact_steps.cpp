@@ -192,6 +192,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
         {problem.bodies[k].velocity_world + change.segment<3>(6 * static_cast<Eigen::Index>(k)),
          problem.bodies[k].omega_world + change.segment<3>(6 * static_cast<Eigen::Index>(k) + 3)});
   solution.converged = true;
+  solution.by_contact_forces = true;
   return solution;
 }
 
@@ -245,7 +246,7 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island,
     if (slides) next_stuck_.erase(contacts[i].pair);
     if (!force.isZero(0.0))
       forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point,
-                         contacts[i].point.normal_b_to_a_world, force});
+                         contacts[i].point.normal_b_to_a_world, force, solution.by_contact_forces});
   }
 }
 

@@ -486,17 +486,12 @@ std::string runaway_message(double time, const World& world, const Runaway& runa
   for (const ContactPoint& contact : acting.contacts)
     pulls(contact.body_a, contact.body_b, contact.force_on_a_world.norm(), [&] {
       const int other = contact.body_a == runaway.body ? contact.body_b : contact.body_a;
-      // what rubs is solved for by other means than contact_forces
-      const auto friction = [&](int body) {
-        return world.bodies[static_cast<std::size_t>(body)].friction;
-      };
-      const bool rubs = friction(contact.body_a) > 0.0 && friction(contact.body_b) > 0.0;
       return fmt::format("persistent contact with '{}' ({} of {})",
                          world.bodies[static_cast<std::size_t>(other)].name,
-                         rubs ? "friction" : "contact_forces",
-                         !rubs                         ? laws.source_of_contacts()
-                         : laws.contact_solver.empty() ? "the framework"
-                                                       : laws.contact_solver);
+                         contact.by_contact_forces ? "contact_forces" : "impulses",
+                         contact.by_contact_forces || laws.friction_impulses
+                             ? laws.source_of_contacts()
+                             : "the framework");
     });
   if (runaway.by_impacts >= 0.5 * (runaway.energy - runaway.first_energy))
     effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
