@@ -16,6 +16,7 @@
 #include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
 #include "framework/engines/base/run_watch.h"
+#include "framework/engines/contact/impact_detection.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -528,6 +529,42 @@ TEST(RunWatch, ABodyThatIsLeftInAnotherIsNeverKeptSilent) {
     EXPECT_TRUE(deepest > -1e-3 * 0.1 || !run.stopped_by.empty() || !run.counters.faults.empty())
         << restitution << ": " << deepest << " m";
   }
+}
+
+/// What is told of a ball of 0.1 m that touches the floor where a lid hangs this high, after places
+/// were corrected; of another one beside it, that far above the floor.
+std::vector<RunFault> told_under_a_lid(double lid_m, double other_m) {
+  const Laws laws = reference_laws();
+  engines::RunCounters counters;
+  engines::MovingWorld moving(
+      build_world(scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ()),
+                            plane("lid", {0, 0, lid_m}, -Vector3d::UnitZ()),
+                            ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero()),
+                            ball("other", 0.1, 1.0, {5, 0, other_m}, Vector3d::Zero())},
+                           1.0)),
+      laws, counters);
+  engines::ImpactDetection detection(moving, laws, counters);
+  detection.separate({{0, 2}, {0, 3}, {1, 2}, {2, 3}});
+  return counters.watch.faults();
+}
+
+// Room for three quarters of its diameter: the last round leaves it off the lid, and half a radius
+// deep in the floor. The other ball is in nothing.
+TEST(RunWatch, ABallBetweenPlanesNearerThanItsDiameterIsAnOverlapLeft) {
+  const std::vector<RunFault> faults = told_under_a_lid(0.15, 0.3);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].kind, "overlap_left");
+  EXPECT_EQ(faults[0].subject, "'floor' and 'ball'");
+  EXPECT_EQ(faults[0].count, 1u);
+  EXPECT_NEAR(faults[0].worst, 0.5, 1e-9);  // spacings of a coordinate, a few a round
+  EXPECT_TRUE(told_under_a_lid(0.2001, 0.3).empty());
+  EXPECT_TRUE(told_under_a_lid(0.2001, 0.05).empty());  // it has room to be moved to
+}
+
+TEST(RunWatch, AnOverlapThatNoPictureShowsIsNotNoted) {
+  constexpr double kShown = engines::kApart * 0.1;  // m, of this ball
+  EXPECT_TRUE(told_under_a_lid(0.2 - 0.5 * kShown, 0.3).empty());
+  EXPECT_EQ(told_under_a_lid(0.2 - 2.0 * kShown, 0.3).size(), 1u);
 }
 
 TEST(RunWatch, AnOverlapThatIsLeftIsNamedWithoutAStep) {
