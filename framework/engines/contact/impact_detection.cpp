@@ -234,8 +234,12 @@ void ImpactDetection::note_overlaps(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     const double size = std::min(moving_.shape(pair.first).bounding_radius(),
                                  moving_.shape(pair.second).bounding_radius());
+    if (!(size > 0) ||
+        collision::least_gap(moving_.shape(pair.first), pose_of(pair.first),
+                             moving_.shape(pair.second), pose_of(pair.second)) >= -kApart * size)
+      continue;
     const double overlap = -gap(pair).distance;
-    if (!(size > 0) || !(overlap > kApart * size)) continue;
+    if (!(overlap > kApart * size)) continue;
     counters_.watch.note(RunWatch::Kind::kOverlapLeft,
                          names_of(moving_.world(), {pair.first, pair.second}),
                          {overlap / size, kApart, moving_.time(), 0.0});
