@@ -30,7 +30,7 @@ VectorXd units_of_state(const Inertia& inertia, double length);
 
 /// One step by the laws' integration: y(t) to y(t + h), in units where the laws ask for them
 /// (Laws::steps_in_units).
-/// @param units  (n), powers of two
+/// @param units  (n), powers of two; not looked at where the laws do not ask for units
 /// Cost: two products of n numbers an evaluation of f, where the laws ask for units; else nothing
 VectorXd integrate_by(const Laws& laws, const OdeFunction& f, double t, const VectorXd& y, double h,
                       const VectorXd& units);

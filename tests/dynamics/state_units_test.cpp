@@ -75,6 +75,15 @@ TEST(StateUnits, OfABodyOfAKilogramAndAMetreAreThoseOfSi) {
   EXPECT_EQ(units_of_state(inertia, 1.0), VectorXd::Ones(kStateSize));
 }
 
+TEST(StateUnits, AreNotNeededByLawsThatDoNotAskForThem) {
+  const OdeFunction growth = [](double, const VectorXd& y) -> VectorXd { return y; };
+  Laws laws;
+  laws.integrate_step = step_of(method_named("rk4"), 0.0);
+  const VectorXd y = VectorXd::Constant(3, 2.0);
+  EXPECT_EQ(integrate_by(laws, growth, 0.0, y, 0.5, VectorXd()),
+            laws.integrate_step(growth, 0.0, y, 0.5));
+}
+
 TEST(StateUnits, ArePowersOfTwoNearestInRatio) {
   for (const auto& [value, nearest] : {std::pair{1.0, 1.0},
                                        {1.4, 1.0},

@@ -309,7 +309,9 @@ std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyS
     return reduced_rate(time, state);
   };
   ++counters_.integrations;
-  const VectorXd units = tree_->units(nearest_power_of_two(length_ > 0.0 ? length_ : 1.0));
+  const VectorXd units = laws_.steps_in_units
+                             ? tree_->units(nearest_power_of_two(length_ > 0.0 ? length_ : 1.0))
+                             : VectorXd();
   const VectorXd end = naming(subject(), [&] { return integrate_by(laws_, f, t, y, h, units); });
   stand_fixed_ends_at(t + h);
   tree_->stand_at(end, ends_);
