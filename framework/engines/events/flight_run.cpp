@@ -237,7 +237,7 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   if (on_membership_) report_membership(frame.time, flight_of);
   frame_times_.take();
   if (!callbacks_.empty()) return;  // callbacks may add energy
-  if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
+  if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_, frame.contacts))
     throw StoppedRun(
         runaway_message(frame.time, world_.world(), *runaway,
                         {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));

@@ -62,6 +62,7 @@ class RetroactiveRun : private StepStages {
     write();
   }
   void report_light_bodies();
+  const std::vector<ContactPoint>& contacts() const;  // of the step that was taken last
   void stop_for(const Runaway& runaway);
   void run_to_the_end();
   double next_target() const;
@@ -227,12 +228,15 @@ void RetroactiveRun::run() {
   sink_.end(counters_.named(), stopped_by_);
 }
 
+const std::vector<ContactPoint>& RetroactiveRun::contacts() const {
+  static const std::vector<ContactPoint> none;
+  return world_step_.has_contacts() ? world_step_.contacts().forces() : none;
+}
+
 void RetroactiveRun::stop_for(const Runaway& runaway) {
-  const std::vector<ContactPoint> none,
-      &contacts = world_step_.has_contacts() ? world_step_.contacts().forces() : none;
-  const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
+  const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts());
   stopped_by_ = runaway_message(moving_.time(), moving_.world(), runaway,
-                                {moving_.states(), links, contacts}, laws_);
+                                {moving_.states(), links, contacts()}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {
@@ -247,7 +251,8 @@ void RetroactiveRun::run_to_the_end() {
   run_callbacks();
   const auto watch_energy = [&] {
     if (!callbacks_.empty()) return;  // they bring energy in
-    if (const auto runaway = energy_watch_.look(moving_.time(), moving_.world(), moving_.states()))
+    if (const auto runaway =
+            energy_watch_.look(moving_.time(), moving_.world(), moving_.states(), contacts()))
       stop_for(*runaway);
   };
   watch_energy();  // what the first step does counts, too

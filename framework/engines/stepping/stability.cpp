@@ -389,7 +389,25 @@ void EnergyWatch::note_rise(double time, double energy, double kinetic, const Wo
     return;
   rounding_ = std::max(rounding_, kDeviations * kEpsilon * (1.0 + std::sqrt(time / step_)) *
                                       terms_of_energy(world, states, kinetic));
-  rises_.push_back({time, rise, body_with_most_energy(world, states)});
+  const int body = body_with_most_energy(world, states);
+  rises_.push_back({time, rise, body, is_at_contact(body, world)});
+}
+
+// A contact acts on all that rods, joints and springs link with its bodies. What has opened since
+// the look before may have made the rise that is seen now.
+bool EnergyWatch::is_at_contact(int body, const World& world) const {
+  const auto touches = [&](int one) {
+    return std::count(touching_.begin(), touching_.end(), one) +
+               std::count(touching_before_.begin(), touching_before_.end(), one) >
+           0;
+  };
+  if (touching_.empty() && touching_before_.empty()) return false;
+  if (touches(body)) return true;
+  const std::vector<LinkedGroup> groups = groups_of_linked_bodies(world);
+  return std::any_of(groups.begin(), groups.end(), [&](const LinkedGroup& group) {
+    return std::binary_search(group.bodies.begin(), group.bodies.end(), body) &&
+           std::any_of(group.bodies.begin(), group.bodies.end(), touches);
+  });
 }
 
 void EnergyWatch::tell(const World& world, RunCounters& counters) const {
@@ -397,11 +415,11 @@ void EnergyWatch::tell(const World& world, RunCounters& counters) const {
       available() +
       (unseen(counters.large_island_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) /
           kEnergyRises;
-  const double order = counters.contact_solves > 0 ? kOrderAtContacts : kOrderOfMethods;
   for (const Rise& rise : rises_)
     counters.watch.note(RunWatch::Kind::kEnergyRises,
                         fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name),
-                        {rise.size / whole, kEnergyRises, rise.time, step_, order});
+                        {rise.size / whole, kEnergyRises, rise.time, step_,
+                         rise.is_at_contact ? kOrderAtContacts : kOrderOfMethods});
 }
 
 // What effects have brought in since the last look, at most.
@@ -428,7 +446,8 @@ void EnergyWatch::take_in(const World& world) {
 }
 
 std::optional<Runaway> EnergyWatch::look(double time, const World& world,
-                                         const std::vector<RigidBodyState>& states) {
+                                         const std::vector<RigidBodyState>& states,
+                                         const std::vector<ContactPoint>& contacts) {
   const auto driven = [](const WorldBody& b) { return b.immovable() && is_driven(b.motion); };
   if (!has_meters_) take_in(world);
   if ((!sees_switches_ && !meters_.empty()) ||
@@ -444,6 +463,10 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
     scale_ = std::max(scale_, energy_at_work(world, states, sums));
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
+  touching_before_ = std::exchange(touching_, {});
+  for (const ContactPoint& contact : contacts)
+    for (const int body : {contact.body_a, contact.body_b})
+      if (!world.bodies[static_cast<std::size_t>(body)].immovable()) touching_.push_back(body);
   note_rise(time, energy, sums.kinetic_energy, world, states);
   if (energy - first_energy_ <=
       kRunaway * available() + unseen(kLiftedInLargeIslands) + kSixDigits * std::abs(first_energy_))

@@ -158,9 +158,11 @@ class EnergyWatch {
             ? event.energy_change
             : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
+  /// @param contacts  persistent ones of the step that leads to these states
   /// @return nothing while all is well, and for worlds that moving walls drive
   std::optional<Runaway> look(double time, const World& world,
-                              const std::vector<RigidBodyState>& states);
+                              const std::vector<RigidBodyState>& states,
+                              const std::vector<ContactPoint>& contacts);
   /// Entries have been appended to the world: what they bring in is measured, too.
   void take_in(const World& world);
   /// Notes what energy has risen by above the least it has been, where that is more than steps
@@ -169,13 +171,15 @@ class EnergyWatch {
 
  private:
   struct Rise {
-    double time, size;  // [s], [J]
-    int body;           // that had most of the world's energy then
+    double time, size;   // [s], [J]
+    int body;            // that had most of the world's energy then
+    bool is_at_contact;  // of that body, or of what it is linked with
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, double kinetic, const World& world,
                  const std::vector<RigidBodyState>& states);
+  bool is_at_contact(int body, const World& world) const;
   /// What the model itself is free to make: what moves slower than the restitution threshold, and
   /// lies, is lifted by this part of its size. [J]
   double unseen(double lifted) const { return of_restitution_threshold_ + lifted * of_sizes_; }
@@ -194,7 +198,9 @@ class EnergyWatch {
          by_impacts_ = 0.0;
   // the least so far; of all bodies m v^2 of the restitution threshold, and m g size [J]
   double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;
-  double rounding_ = 0.0;    // what it leaves of an energy, where one has risen [J]
+  double rounding_ = 0.0;  // what it leaves of an energy, where one has risen [J]
+  // bodies in persistent contact at this look and at the one before
+  std::vector<int> touching_, touching_before_;
   std::vector<Rise> rises_;  // each larger than the one before
 };
 
