@@ -330,6 +330,13 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
 CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind,
                           const CostWords& words) {
   CostSubject subject;
+  const std::string word = words.modules.empty() ? "student" : words.modules;
+  if (word == "library")
+    refuse_library(
+        kind, "functions of " + kind.id + " to measure",
+        kind.methods.empty()
+            ? ""
+            : "Its own methods: tumble cost SCENE --modules library --methods rk4,dopri5");
   if (words.on.empty() && kind.note<engines::CostShowcase>().scene.empty())
     throw UserError("tumble cost " + kind.id,
                     "no scene is known on which this assignment is measured",
@@ -347,7 +354,6 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
                                      context.registry));
   subject.truth_laws = right.laws;
   subject.connections = right.connections;
-  const std::string word = words.modules.empty() ? "student" : words.modules;
   subject.title = fmt::format("{} ({}) on: {}", kind.id, word, subject.scene.title);
   // Without a reference in the tree, laws that the library lacks are the student's in the reference
   // solution too.

@@ -302,6 +302,7 @@ void cost_of_sampling(Context& context, const modules::ModuleKind& kind, const C
                     "Leave it out. What can be chosen: --modules, --on SCENE, --duration-s, "
                     "--budget-s.");
   const std::string word = words.modules.empty() ? "student" : words.modules;
+  if (word == "library") refuse_library(kind, "functions of a Markov chain");
   Subject subject = subject_of(context, kind, word, words);
   const Sampling yours = functions_of(context, kind, word, subject);
   const bool has_reference =

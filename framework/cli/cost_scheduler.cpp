@@ -253,6 +253,7 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
                         kind.id,
                     "Leave it out. What can be chosen: --modules, --on SCENE, --steps, "
                     "--duration-s, --n, --budget-s.");
+  if (words.modules == "library") refuse_library(kind, "scheduler");
   const Measuring measuring(context, kind, words);
   std::vector<Way> ways = methods_of(context, kind, words);
   for (Way& way : ways) measuring.run(way);

@@ -428,6 +428,12 @@ std::string constraints_line(const scene::Scene& scene, const Laws& laws) {
       scene.contact ? ", where it rubs, is linked or is one of many by the framework" : "");
 }
 
+void refuse_library(const ModuleKind& kind, const std::string& functions, const std::string& more) {
+  throw UserError(
+      "--modules " + kind.id + "=library", "the library has no " + functions,
+      "Use " + kind.id + "=student, or name a file." + (more.empty() ? "" : " " + more));
+}
+
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads) {
   if (threads > 1 && !chosen.connections.empty())
     throw UserError("--threads " + std::to_string(threads),

@@ -65,6 +65,11 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
 /// framework"; empty for a scene that has none of them.
 std::string constraints_line(const scene::Scene& scene, const Laws& laws);
 
+/// Refuses the word library where a module's own functions are asked for, which the library lacks.
+/// @param functions  "functions of a Markov chain"  @param more  a remedy besides, a sentence
+[[noreturn]] void refuse_library(const modules::ModuleKind& kind, const std::string& functions,
+                                 const std::string& more = "");
+
 /// @throws UserError where several threads would call laws of a sandbox, which executes one call at
 ///   a time
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads);

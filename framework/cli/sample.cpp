@@ -68,10 +68,7 @@ void choose_sampler(const Context& context, const ModuleWords& words, Sampled& s
       if (is_path(all->second)) file = module_file(context, *kind, all->second, true);
       if (!is_path(all->second) || !file.empty()) word = all->second;
     }
-    if (word == "library")
-      throw UserError("--modules " + kind->id + "=library",
-                      "the library has no functions of a Markov chain",
-                      "Use " + kind->id + "=student, or name a file.");
+    if (word == "library") refuse_library(*kind, "functions of a Markov chain");
     if (file.empty()) {
       sampled.by = sampler.functions(load_word(context, *kind, word));
     } else {

@@ -222,6 +222,10 @@ TEST_F(CommandLine, CostRefusesBeforeItMeasures) {
         {"all --solvers jacobi", "--solvers jacobi"},
         {"all --steps 1/0", "--steps 1/0"},
         {"all --modules a1=nowhere.cpp", "there is no such file"},
+        {"a5 --modules library", "the library has no functions of a Markov chain"},
+        {"a2 --modules library", "the library has no functions of a2 to measure"},
+        {"a1 --modules library", "the library has no functions of a1 to measure"},
+        {"a4 --modules library", "the library has no scheduler"},
         {"toi --impacts bisection,nowton", "nowton"},
         {"toi --modules a2=nowhere.cpp", "there is no such file"}}) {
     const Said said = type(std::string("cost ") + words);
