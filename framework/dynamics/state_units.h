@@ -4,7 +4,8 @@
 /// In SI units it may not: 1e-9 of a kg m^2/s is nothing to a lorry and everything to a coin, whose
 /// momenta it would then not follow at all. In units of the body
 ///   place / l,   orientation,   momentum / (m l / s),   angular momentum / (I / s)         (U.1)
-///   l: its radius of gyration, or the size of what it is linked in [m]
+///   l: its radius of gyration, or the size of what it is linked in [m]: its longest rod or spring,
+///      its largest radius of gyration, but of point masses, which have no size
 ///   m: its mass [kg];  I = m r^2, r: its radius of gyration: a mean moment of inertia [kg m^2]
 /// an error counts as a part of l, as an angle, as a velocity in l a second, and as an angular
 /// velocity in radians a second: the same for a scene in other units of length and mass. Of a body

@@ -28,6 +28,8 @@ struct WorldBody {
   RigidBodyState state;                        // of a movable body
   scene::PrescribedMotion motion;              // of an immovable one, about com_at_0
   Vector3d com_at_0_world = Vector3d::Zero();  // [m]
+  // a point mass: its moment of inertia only keeps equations regular (scene/build_shape.h)
+  bool has_no_size = false;
 
   bool immovable() const { return inertia.inverse_mass == 0.0; }
 };

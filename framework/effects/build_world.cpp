@@ -21,6 +21,8 @@ WorldBody build_body(const scene::BodySpec& spec, scene::Solid solid) {
   body.com_at_0_world = spec.position_m;
   body.inertia = solid.is_immovable() ? infinite_inertia()
                                       : finite_inertia(solid.mass_kg, solid.inertia_body_kg_m2);
+  const auto* sphere = std::get_if<scene::SphereSpec>(&spec.shape);
+  body.has_no_size = sphere && sphere->radius_m == 0.0 && !spec.inertia_body_kg_m2;
   if (spec.motion) body.motion = *spec.motion;
   body.state.com_world = spec.position_m;
   body.state.world_from_body = spec.world_from_body.normalized();

@@ -132,6 +132,9 @@ class GroupTerms {
   virtual void append_joints(std::vector<TreeLink>&) const {}
   /// The largest length that they keep: what errors of places are compared with. [m]
   virtual double size() const { return 0.0; }
+  /// The largest length over which they act, kept or not: what a tolerance of places is a part of.
+  /// [m]
+  virtual double reach() const { return size(); }
   virtual void note_open(const std::vector<Body>&, const NoteOpen&) const {}
 
   /// nullptr where it looks at nothing.

@@ -7,6 +7,7 @@
 #include "framework/effects/drag/drag.h"
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
 
@@ -146,6 +147,62 @@ TEST(Invariance, AToleranceAsksForAsManyStepsInUnitsOfAnySize) {
           << word << ", 2^" << exponent << " m";
     }
   }
+}
+
+/// Two point masses on a spring that fall and turn about each other: all that has a length is the
+/// spring. In units as above. @param is_long_at_rest  else it has no length at rest
+scene::Scene points_on_a_spring(int exponent, bool is_long_at_rest) {
+  const double length = std::ldexp(1.0, exponent), mass = std::ldexp(1.0, 3 * exponent);
+  scene::Scene scene = scene_of(
+      {ball("a", 0.0, mass, Vector3d::Zero(), length * Vector3d(0, 1, 0)),
+       ball("b", 0.0, 2 * mass, length * Vector3d(1, 0, 0.25), length * Vector3d(0, -1, 2))},
+      2.0, length * Vector3d(0, 0, -9.81));
+  for (scene::BodySpec& body : scene.bodies) body.collides = false;
+  scene.step_s = 0.25;
+  scene.rest_speed_m_s = 1e-3 * length;
+  effects::SpringSpec spring;
+  spring.name = "spring";
+  spring.a.body = "a";
+  spring.b.body = "b";
+  spring.stiffness_n_m = 40.0 * mass;
+  spring.rest_length_m = is_long_at_rest ? 0.75 * length : 0.0;
+  scene.effects.of<effects::SpringSpec>().push_back(spring);
+  return scene;
+}
+
+// A point mass has no size of its own: with its tolerance in metres, springs of a millimetre would
+// be followed by nothing, and those of a kilometre at a thousand times the cost.
+TEST(Invariance, AToleranceOfPointMassesIsAPartOfTheirSpring) {
+  Laws laws = test_laws();
+  laws.integrate_step = step_of(method_named("dopri5"), 1e-7);
+  laws.steps_in_units = true;
+  laws.spring_force = [](const Spring& spring, const AnchorState& a,
+                         const AnchorState& b) -> Vector3d {
+    const Vector3d way = b.point_world - a.point_world;
+    return spring.stiffness * (1.0 - spring.rest_length / way.norm()) * way;
+  };
+  const auto run_of = [&](int exponent, bool is_long_at_rest, const char* engine) {
+    scene::Scene scene = points_on_a_spring(exponent, is_long_at_rest);
+    scene.engine = engine;
+    return run(scene, laws);
+  };
+  const auto evaluations = [](const Trajectory& run) {
+    return static_cast<double>(run.counters.counts.at("spring_calls"));
+  };
+  for (const char* engine : {"rd", "ordered"})
+    for (const bool is_long_at_rest : {true, false}) {
+      const Trajectory expected = run_of(0, is_long_at_rest, engine);
+      ASSERT_EQ(expected.stopped_by, "") << engine;
+      for (const int exponent : {-10, 10}) {
+        const Trajectory found = run_of(exponent, is_long_at_rest, engine);
+        SCOPED_TRACE(std::string(engine) + ", 2^" + std::to_string(exponent) + " m" +
+                     (is_long_at_rest ? "" : ", no length at rest"));
+        ASSERT_EQ(found.stopped_by, "");
+        EXPECT_NEAR(evaluations(found) / evaluations(expected), 1.0, 0.02);
+        // but for roundings of what is around the steps, the same numbers
+        EXPECT_LT(farthest(found, expected, std::ldexp(1.0, exponent)), 1e-9);
+      }
+    }
 }
 
 // Places that both scenes can hold, or they would differ from the start: a rounding of one

@@ -1,5 +1,6 @@
 #include "framework/effects/spring/spring.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ class SpringTerms final : public GroupTerms {
   SpringTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
       : laws_(acting.laws),
         calls_(acting.calls),
+        world_(acting.world),
         all_(acting.world.effects.of<SpringLink>()),
         springs_(placed_links(all_, entries, places)) {}
 
@@ -31,6 +33,22 @@ class SpringTerms final : public GroupTerms {
       add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
       add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
     }
+  }
+  // At rest; of a spring without a length at rest, where the world starts.
+  double reach() const override {
+    const auto start_of = [&](const Anchor& anchor) -> Vector3d {
+      if (anchor.body < 0) return anchor.point_body;
+      const RigidBodyState& start = world_.bodies[static_cast<std::size_t>(anchor.body)].state;
+      return start.com_world + start.world_from_body * anchor.point_body;
+    };
+    double longest = 0.0;
+    for (const PlacedLink& link : springs_) {
+      const SpringLink& spring = all_[static_cast<std::size_t>(link.entry)];
+      longest = std::max(longest, spring.spring.rest_length > 0.0
+                                      ? spring.spring.rest_length
+                                      : (start_of(spring.a) - start_of(spring.b)).norm());
+    }
+    return longest;
   }
   void measure(const std::vector<Body>& bodies, const VectorXd&,
                std::vector<double>& forces) override {
@@ -47,6 +65,7 @@ class SpringTerms final : public GroupTerms {
  private:
   const Laws& laws_;
   std::uint64_t& calls_;
+  const World& world_;
   const std::vector<SpringLink>& all_;
   std::vector<PlacedLink> springs_;
 };

@@ -14,9 +14,9 @@ int place_of(const std::vector<int>& bodies, int body) {
 
 // Without its shape, which may be large.
 WorldBody body_of(const WorldBody& whole) {
-  WorldBody body{whole.name,     whole.inertia,       Sphere{0.0},          whole.restitution,
-                 whole.friction, whole.collides,      whole.passes_movable, whole.state,
-                 whole.motion,   whole.com_at_0_world};
+  WorldBody body{whole.name,     whole.inertia,        Sphere{0.0},          whole.restitution,
+                 whole.friction, whole.collides,       whole.passes_movable, whole.state,
+                 whole.motion,   whole.com_at_0_world, whole.has_no_size};
   return body;
 }
 

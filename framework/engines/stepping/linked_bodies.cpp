@@ -94,14 +94,25 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     if (acting->control() != nullptr) controls_.push_back(terms_.size());
     terms_.push_back({k, std::move(acting)});
   }
-  for (const Terms& terms : terms_) length_ = std::max(length_, terms.acting->size());
-  for (const int body : bodies_)
-    length_ = std::max(length_, radius_of_gyration(world_.bodies[body].inertia));
+  length_ = length_of_units();
   units_.resize(static_cast<Eigen::Index>(bodies_.size()) * kStateSize);
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     units_.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) =
         units_of_state(world_.bodies[bodies_[i]].inertia, length_);
   if (world_.coordinates == scene::Coordinates::kReduced) plant_tree();
+}
+
+// What links the group says how large it is, and the bodies do. The radius of gyration of a point
+// mass is no size: it counts where there is nothing else.
+double LinkedBodies::length_of_units() const {
+  double length = 0.0, of_points = 0.0;
+  for (const Terms& terms : terms_) length = std::max(length, terms.acting->reach());
+  for (const int index : bodies_) {
+    const WorldBody& body = world_.bodies[static_cast<std::size_t>(index)];
+    double& largest = body.has_no_size ? of_points : length;
+    largest = std::max(largest, radius_of_gyration(body.inertia));
+  }
+  return length > 0.0 ? length : of_points;
 }
 
 bool LinkedBodies::has(int body) const {

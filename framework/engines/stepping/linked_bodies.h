@@ -130,6 +130,7 @@ class LinkedBodies final : effects::GroupPlaces {
  private:
   std::string subject() const;  // of messages
   double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
+  double length_of_units() const;
   bool has(int body) const override;
   int place_of(int body) override;
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
@@ -178,8 +179,9 @@ class LinkedBodies final : effects::GroupPlaces {
   std::vector<std::size_t> controls_;  // those of terms_ that look
   double time_of_stage_ = 0.0;
   double step_ = kUnset;  // the last that advance() took [s]
-  double length_ = 0.0;   // its longest rod, or its largest radius of gyration [m]
-  VectorXd units_;        // of the packed states of its bodies, by length_
+  // its longest rod or spring, or its largest radius of gyration [m]
+  double length_ = 0.0;
+  VectorXd units_;  // of the packed states of its bodies, by length_
 
   std::optional<ArticulatedTree>
       tree_;  // absent: the group is integrated in six coordinates a body
