@@ -53,9 +53,9 @@ class History {
 };
 
 /// Numbers of a record as the page gets them: float32, little-endian, in base64, with places from
-/// the page's origin. Of a frame: time, kinetic and potential energy, momentum (3), angular momentum
-/// (3), smallest gap, numbers of bodies, springs, rods, joints and contacts, and so on as in
-/// records.cpp; last, what the total energy has changed by since the first frame, which float32
+/// the page's origin. Of a frame: time, kinetic and potential energy, momentum (3), angular
+/// momentum (3), smallest gap, numbers of bodies, springs, rods, joints and contacts, and so on as
+/// in records.cpp; last, what the total energy has changed by since the first frame, which float32
 /// would not show.
 /// @param first  the run's first frame, packed
 std::string frame_for_page(const std::string& packed, const std::string& first,
