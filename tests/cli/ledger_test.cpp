@@ -6,6 +6,7 @@
 #include "framework/core/digest.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/ledger.h"
 
 namespace tumble::grading {
@@ -88,6 +89,31 @@ TEST_F(LedgerOfThree, HoldsTheLastScoreBehindAnEntryWithoutOne) {
   EXPECT_EQ(Ledger(file()).last_score("ada")->score, 80.0) << "it is lost by reading it again";
   EXPECT_EQ(Ledger(file()).last_score("ada")->submission, digest("ada"));
   EXPECT_EQ(ledger.last_score("dora"), nullptr);
+}
+
+// What a class is shown and students get is held against the ledger, as what is graded.
+TEST_F(LedgerOfThree, AnOlderResultThatWasPutBackIsNotAmongThoseOfTheClass) {
+  const std::string key(32, 'k');
+  const auto put_back = [&](const std::string& name, double score, const std::string& submission) {
+    GradeRecord record;
+    record.assignment = "a9";
+    record.key.submission = submission;
+    record.grade.name = record.grade.folder = name;
+    record.grade.state = GradeState::kJudged;
+    record.grade.score = score;
+    record.files = digests_below(out() / name);
+    write_whole(out() / name / "record.json", record_json(record, key));
+  };
+  put_back("ada", 70.0, digest("ada"));
+  put_back("blaise", 80.0, digest("blaise"));
+  put_back("carl", 70.0, digest("another file of his"));
+  std::string said;
+  std::vector<std::string> names;
+  for (const GradeRecord& record :
+       records_of(out(), "a9", key, [&](const std::string& text) { said += text + '\n'; }))
+    names.push_back(record.grade.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"blaise", "carl"}));
+  EXPECT_EQ(said, std::string("ada is left out, because ") + kOlderThanLedger + '\n');
 }
 
 // The name of a folder with a line break: escaped once, and the same after it was read again.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/text.h"
+#include "framework/grading/grades/ledger.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -135,13 +136,24 @@ std::vector<GradeRecord> records_of(const fs::path& out, const std::string& assi
     if (entry.is_directory() && !entry.is_symlink() && fs::exists(entry.path() / "record.json"))
       folders.push_back(entry.path());
   std::sort(folders.begin(), folders.end());
+  const LedgerContent ledger = read_ledger(out / kLedgerFile);
+  if (!ledger.fault.empty())
+    notice(
+        "the ledger does not fit together, and results are not compared with it from there on: " +
+        ledger.fault);
+  const std::map<std::string, LedgerScore> scores = last_scores(ledger);
   std::vector<GradeRecord> records;
   for (const fs::path& folder : folders) {
+    const std::string name = folder.filename().string();
     EarlierRun run = read_earlier_run(folder, assignment, machine_key);
+    const auto last = scores.find(name);
+    if (run.record &&
+        is_older_than_ledger(*run.record, last == scores.end() ? nullptr : &last->second))
+      run = {{}, kOlderThanLedger};
     if (run.record)
       records.push_back(std::move(*run.record));
-    else if (!folder.filename().string().starts_with('.'))
-      notice(plain_name(folder.filename().string()) + " is left out, because " + run.problem);
+    else if (!name.starts_with('.'))
+      notice(plain_name(name) + " is left out, because " + run.problem);
   }
   return records;
 }

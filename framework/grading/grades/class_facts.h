@@ -58,8 +58,9 @@ std::vector<TestCount> test_counts(const std::vector<Grade>& grades);
 /// Submissions of the same text, byte for byte: each group has at least two names.
 std::vector<std::vector<std::string>> equal_submissions(const std::vector<GradeRecord>& records);
 
-/// All trusted results of a folder of results, by name of their folder.
-/// @param notice  called with a sentence for each that is not trusted
+/// All trusted results of a folder of results, by name of their folder. One that is older than the
+/// ledger's last score of the same file is not trusted: it was put back.
+/// @param notice  called with a sentence for each that is left out, and why
 std::vector<GradeRecord> records_of(const std::filesystem::path& out, const std::string& assignment,
                                     const std::string& machine_key,
                                     const std::function<void(const std::string&)>& notice);

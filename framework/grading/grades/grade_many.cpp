@@ -180,11 +180,9 @@ class Batch {
 
   // A signed result may be an old one that was put back.
   void distrust_older_than_ledger(Work& work) const {
-    if (!ledger_ || !work.earlier.record || !work.earlier.record->grade.has_score()) return;
-    const LedgerScore* last = ledger_->last_score(work.folder);
-    if (last && last->submission == work.earlier.record->key.submission &&
-        work.earlier.record->grade.score < last->score)
-      work.earlier = {{}, "it is older than the ledger's last score of the same file"};
+    if (ledger_ && work.earlier.record &&
+        is_older_than_ledger(*work.earlier.record, ledger_->last_score(work.folder)))
+      work.earlier = {{}, kOlderThanLedger};
   }
 
   void take_over_or_open(Work& work) {

@@ -191,6 +191,18 @@ std::map<std::string, LedgerEntry> latest_entries(const LedgerContent& ledger) {
   return latest;
 }
 
+std::map<std::string, LedgerScore> last_scores(const LedgerContent& ledger) {
+  std::map<std::string, LedgerScore> scores;
+  for (const LedgerEntry& entry : ledger.entries)
+    if (entry.score) scores[entry.folder] = {entry.submission, *entry.score};
+  return scores;
+}
+
+bool is_older_than_ledger(const GradeRecord& record, const LedgerScore* last) {
+  return last && record.grade.has_score() && last->submission == record.key.submission &&
+         record.grade.score < last->score;
+}
+
 std::vector<std::string> differences_from_results(const LedgerContent& ledger,
                                                   const fs::path& out) {
   std::vector<std::string> differences;
@@ -221,8 +233,7 @@ Ledger::Ledger(const fs::path& file) : file_(file) {
                     "Nothing was graded. Keep this folder as it is, find out who changed it, and "
                     "give --out another one.");
   latest_ = latest_entries(ledger);
-  for (const LedgerEntry& entry : ledger.entries)
-    if (entry.score) scores_[entry.folder] = {entry.submission, *entry.score};
+  scores_ = last_scores(ledger);
   count_ = ledger.entries.size();
   head_ = ledger.head;
   was_mended_ = !ledger.unfinished.empty();

@@ -83,6 +83,18 @@ struct LedgerScore {
   double score = 0.0;
 };
 
+/// Why a record is not trusted that is_older_than_ledger.
+inline constexpr const char* kOlderThanLedger =
+    "it is older than the ledger's last score of the same file";
+
+/// The last score of each folder, also where later entries have none.
+std::map<std::string, LedgerScore> last_scores(const LedgerContent& ledger);
+
+/// Whether a record is an earlier one that was put back: the ledger holds a higher score of the
+/// same submission. A score that somebody agreed to lower is the ledger's last one.
+/// @param last  of the record's folder; null: none
+bool is_older_than_ledger(const GradeRecord& record, const LedgerScore* last);
+
 /// A ledger open for appending.
 class Ledger {
  public:
