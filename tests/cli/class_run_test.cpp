@@ -312,6 +312,14 @@ TEST_F(Lowering, NeedsAYesAlsoWhereTheResultIsLostOrItsKey) {
   EXPECT_EQ(regrade().code, 1);
   EXPECT_NE(text_of(root / "out/blaise/index.html").find("This result is missing"),
             std::string::npos);
+  EXPECT_EQ(text_of(root / "out/blaise/student.html").find("the ledger's"), std::string::npos);
+
+  const std::size_t entries = ledger().size();
+  const ProgramOutcome only_carl = regrade({"--only", "carl"});
+  EXPECT_EQ(only_carl.code, 1) << "what is held is no fault of the grader: " << only_carl.printed;
+  EXPECT_TRUE(says(only_carl, "blaise: not lowered")) << only_carl.printed;
+  EXPECT_EQ(ledger().size(), entries) << "what is held became a result";
+  EXPECT_EQ(text_of(root / "out/gradebook.csv"), gradebook);
 
   const ProgramOutcome agreed = regrade({"--yes"});
   EXPECT_EQ(agreed.code, 0) << agreed.printed;

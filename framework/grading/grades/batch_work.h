@@ -21,6 +21,7 @@ struct GradedWork {
   LedgerEntry entry;                    // of `record`, until it is appended
   bool is_settled = false;              // `record` is final and lies in place
   bool is_left_out = false;             // not asked for, and without an earlier result
+  bool is_untouched = false;            // what lies in place is not `record`: no entry
   std::vector<std::string> remarks;
   double seconds = 0.0;  // that it took, now
 };

@@ -150,6 +150,8 @@ std::vector<GradeRecord> records_of(const fs::path& out, const std::string& assi
     if (run.record &&
         is_older_than_ledger(*run.record, last == scores.end() ? nullptr : &last->second))
       run = {{}, kOlderThanLedger};
+    if (run.record && run.record->grade.is_held)
+      run = {{}, "it is missing, and tumble regrade asks whether the new score may be lower"};
     if (run.record)
       records.push_back(std::move(*run.record));
     else if (!name.starts_with('.'))

@@ -97,7 +97,7 @@ struct Grade {
   // nothing has changed since an earlier run, whose results are kept
   bool taken_over = false;
   // lower than the ledger's score, whose own result is lost or not trusted, and nobody has agreed:
-  // it has no score
+  // it has no score, and is no entry of the ledger
   bool is_held = false;
   // "80 -> 85: the tests changed"; empty without an earlier, different result
   std::string change;

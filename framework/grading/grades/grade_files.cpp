@@ -190,6 +190,7 @@ GradeRecord record_of(const Json& json) {
   grade.notes = json.at("notes").get<std::vector<std::string>>();
   grade.sandbox = json.at("sandbox");
   grade.is_official = json.at("official");
+  grade.is_held = json.value("held", false);
   grade.has_handout = json.value("handout", false);
   grade.no_page_code = json.value("no_page_code", std::string());
   grade.faults = json.value("faults", std::vector<std::string>());
@@ -343,6 +344,7 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   json["notes"] = grade.notes;
   json["sandbox"] = grade.sandbox;
   json["official"] = grade.is_official;
+  if (grade.is_held) json["held"] = true;
   json["handout"] = grade.has_handout;
   if (grade.own_tests.is_there)
     json["own_tests"] = {{"final", grade.own_tests.is_final},

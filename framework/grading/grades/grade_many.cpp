@@ -21,6 +21,7 @@
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/ledger.h"
+#include "framework/grading/grades/lowering.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/course/handout_page.h"
 #include "framework/grading/course/machine_key.h"
@@ -187,6 +188,8 @@ class Batch {
 
   void take_over_or_open(Work& work) {
     if (is_asked_for(work) && (options_.again || !is_current(work))) {
+      if (work.earlier.record && work.earlier.record->grade.is_held)
+        work.earlier.record.reset();  // the result itself is missing
       if (work.earlier.record) marks_.let_go_of_details(*work.earlier.record);
     } else if (work.earlier.record) {
       take_over(work, std::move(*work.earlier.record));
@@ -256,7 +259,8 @@ class Batch {
   void log_settled() {
     if (!ledger_) return;
     for (; logged_ < work_.size() && work_[logged_].is_settled; ++logged_)
-      if (!work_[logged_].is_left_out && !work_[logged_].record.grade.is_held)
+      if (const Work& work = work_[logged_];
+          !work.is_left_out && !work.is_untouched && !work.record.grade.is_held)
         ledger_->append(std::exchange(work_[logged_].entry, LedgerEntry()));
   }
 
@@ -398,23 +402,17 @@ class Batch {
     if (status == 0) record = read_earlier_run(made, id_, key_.bytes).record;
     if (!record) record = write_verdicts(work, status);
     if (!record) record = write_fault(work, status);
-    const std::optional<GradeRecord>& earlier = work.earlier.record;
-    const bool old_stands = earlier && earlier->grade.is_final() &&
-                            earlier->key.submission == work.key.submission &&
-                            !record->grade.is_final();
-    const LedgerScore* above = lowers_ledger(work, *record);
-    if (!options_.shard && !old_stands && (lowers_earlier(work, *record) || above)) {
-      if (!lowers_earlier(work, *record))
-        record->grade.change = change_from_ledger(work, record->grade, *above);
-      marks_.let_go_of_details(*record);
-      work.record = std::move(*record);  // until decide_lowerings
-      held_.push_back(&work);
-      return;
-    }
-    if (old_stands) {
-      GradeRecord old = earlier_record(work).value_or(*earlier);
+    const LedgerScore* last = ledger_ ? ledger_->last_score(work.folder) : nullptr;
+    const Placing placing = placing_of(
+        work, *record, {last, options_.guard_changed_files, fs::exists(fs::symlink_status(place))});
+    if (placing == Placing::kAsk && !options_.shard)
+      return hold_back(work, std::move(*record), last);
+    if (placing == Placing::kEarlier) {
+      GradeRecord old = earlier_record(work).value_or(*work.earlier.record);
       old.grade.change = "the grader failed on a new run; this is the result of the earlier one";
       settle_with(work, std::move(old));
+    } else if (placing == Placing::kUntouched) {
+      settle_untouched(work, std::move(*record));
     } else {
       put_in_place(made, place, draft / ".old");
       settle_with(work, std::move(*record));
@@ -423,30 +421,29 @@ class Batch {
     fs::remove_all(draft, ignored);
   }
 
-  // Whether somebody has to agree before this result replaces one of this score.
-  bool is_lower(const GradeRecord& now, double score, const std::string& submission) const {
-    if (!now.grade.is_final()) return false;
-    if (!options_.guard_changed_files && submission != now.key.submission) return false;
-    return !now.grade.has_score() || now.grade.score < score;
+  // Until decide_lowerings.
+  void hold_back(Work& work, GradeRecord record, const LedgerScore* last) {
+    if (!lowers_earlier(work, record))
+      record.grade.change = change_from_ledger(work, record.grade, *last);
+    marks_.let_go_of_details(record);
+    work.record = std::move(record);
+    held_.push_back(&work);
   }
+
+  // What lies in place does not count, and is left as it is.
+  void settle_untouched(Work& work, GradeRecord record) {
+    record.grade.name = work.submission->name;
+    record.grade.media.clear();
+    record.grade.change = "the grader failed on a new run; what lies in place stays";
+    if (!work.earlier.problem.empty())
+      record.grade.change += " and does not count: " + work.earlier.problem;
+    marks_.let_go_of_details(record);
+    work.record = std::move(record);
+    work.is_untouched = work.is_settled = true;
+  }
+
   bool lowers_earlier(const Work& work, const GradeRecord& now) const {
-    const std::optional<GradeRecord>& old = work.earlier.record;
-    return old && old->grade.has_score() && is_lower(now, old->grade.score, old->key.submission);
-  }
-  // The ledger keeps a score whose result was lost, changed, or signed by a key that was lost.
-  const LedgerScore* lowers_ledger(const Work& work, const GradeRecord& now) const {
-    const LedgerScore* last = ledger_ ? ledger_->last_score(work.folder) : nullptr;
-    return last && is_lower(now, last->score, last->submission) ? last : nullptr;
-  }
-  static std::string change_from_ledger(const Work& work, const Grade& now,
-                                        const LedgerScore& last) {
-    const bool is_lost = work.earlier.problem.empty() && !work.earlier.record;
-    return fmt::format("{0} -> {1}: the ledger holds {0}, and {2}", points_text(last.score),
-                       now.has_score() ? points_text(now.score) : "none",
-                       is_lost ? "the result itself is missing"
-                       : work.earlier.problem.empty()
-                           ? "the result in place is another one"
-                           : "that result does not count: " + work.earlier.problem);
+    return grading::lowers_earlier(work, now, options_.guard_changed_files);
   }
 
   // Asks once for all; results that may not be lowered stay as they were.
@@ -484,17 +481,16 @@ class Batch {
   // that reads the gradebook keeps the one it has; the ledger gets no entry.
   void leave_blank(Work& work) {
     Grade& grade = work.record.grade;
-    if (!fs::exists(fs::symlink_status(place_of(work)))) {
-      write_whole(draft_of(work) / ".fault.txt",
-                  "This result is missing, and a new one would be lower than the ledger's: "
-                  "tumble regrade asks whether it may be.");
-      write_fault(work, 0);
-      put_in_place(made_of(work), place_of(work), draft_of(work) / ".old");
-    }
     grade.name = work.submission->name;
     grade.is_held = true;
     grade.change = "not lowered (" + grade.change + ")";
     grade.media.clear();
+    if (!fs::exists(fs::symlink_status(place_of(work)))) {
+      GradeRecord held = held_record(work, id_, rubric_, grade.change);
+      note_protection(held.grade);
+      write_made(work, held);
+      put_in_place(made_of(work), place_of(work), draft_of(work) / ".old");
+    }
     work.is_settled = true;
   }
 

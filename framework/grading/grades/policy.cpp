@@ -109,17 +109,17 @@ Standing best_of(const Policy& policy, const Person& person, const std::vector<A
   const Attempt* counted = nullptr;
   for (const Attempt& attempt : attempts) {
     // A result that may still change leaves open which attempt counts.
-    if (!attempt.grade->is_final()) {
-      chosen = standing_of(policy, person, attempt);
-      chosen.attempts = attempts.size();
-      chosen.why = plain_name(chosen.submission) + " has no final result: grade it again";
-      return chosen;
-    }
     if (attempt.grade->is_held) {
       chosen = standing_of(policy, person, attempt);
       chosen.attempts = attempts.size();
       chosen.why = plain_name(chosen.submission) +
                    " would be lower than in the ledger: no score until tumble regrade is answered";
+      return chosen;
+    }
+    if (!attempt.grade->is_final()) {
+      chosen = standing_of(policy, person, attempt);
+      chosen.attempts = attempts.size();
+      chosen.why = plain_name(chosen.submission) + " has no final result: grade it again";
       return chosen;
     }
     if (counted && !attempt.grade->has_score()) continue;
