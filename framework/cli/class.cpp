@@ -221,8 +221,15 @@ void together(const Class& all) {
   const auto& kind = all.context.registry.find(all.settings.assignment);
   const auto sources = grading::sources_in(all.settings.submissions, kind);
   const grading::Course course{all.context.root, all.context.build, &all.context.registry, ""};
-  const auto pairs =
-      grading::similar_pairs(sources, grading::starter_of(course, kind), kLeastPercent, 0);
+  std::vector<grading::SimilarPair> pairs;
+  try {
+    pairs = grading::similar_pairs(sources, grading::starter_of(course, kind), kLeastPercent, 0);
+  } catch (const grading::SourcesNotCompared& error) {
+    told["alike"] = Json();
+    if (json) print_json(all.context, told);
+    return fmt::print(json ? stderr : stdout, "not compared further: {}\n",
+                      grading::plain_text(error.what()));
+  }
   if (json) {
     for (const auto& pair : pairs)
       told["alike"].push_back(

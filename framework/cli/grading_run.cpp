@@ -73,7 +73,7 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   };
   grading::SlipTally slips({});
   if (!options.shard) slips = grading::SlipTally(grading::known_slips(course, request.id));
-  bool has_failed = false;
+  bool has_failed = false, has_standings = false;
   options.failed = [&](const std::string& what, const std::string& why) {
     fmt::print(stderr,
                "the grader failed at {}: {}\nEvery grade is in place; the same command makes it "
@@ -84,7 +84,8 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   options.each = [&](const grading::Grade& grade) { slips.add(grade); };
   options.overview = [&](const fs::path& out, const std::vector<grading::Grade>& grades) {
     grading::write_class_files(course, kind, request.folder, policy ? &*policy : nullptr, out,
-                               grades, slips, options.failed);
+                               grades, slips, options);
+    has_standings = policy.has_value();
   };
   for (const std::string& name : found.passed_over)
     fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
@@ -94,7 +95,7 @@ std::vector<grading::Grade> run_grading(Context& context, const GradingRequest& 
   if (request.before) request.before(found.all.size(), options);
   const auto grades =
       grading::grade_submissions(course, request.id, found, fs::absolute(request.out), options);
-  if (policy && !has_failed) tell_standings(request.out);
+  if (has_standings) tell_standings(request.out);
   set_exit(context, grades);
   if (has_failed) context.exit = ExitCode::kOurBug;
   return grades;

@@ -255,6 +255,19 @@ TEST_F(Grading, APolicyIsNotDroppedBecauseAWordWasForgotten) {
   EXPECT_EQ(text_of(root / "out/gradebook.csv"), gradebook);
 }
 
+TEST_F(OtherRubric, APageOfTheClassThatFailsHidesNobodyWhoHasNoScore) {
+  fs::create_directories(course / "handouts/a1_impulse.md");  // of a folder no page is made
+  put("ada/a1_impulse.cpp", "int x = ;\n");
+  write_whole(root / "roster.csv", "name,id\nada,7\nbo,8\n");
+  write_whole(root / "policy.json",
+              R"({"due": {"a1": "2026-10-12T23:59:00+02:00"}, "roster": "roster.csv"})");
+  const ProgramOutcome graded =
+      grade("out", {"--no-media", "--policy", (root / "policy.json").string()});
+  EXPECT_EQ(graded.code, 3) << graded.printed;
+  EXPECT_TRUE(says(graded, "the grader failed at handout.html")) << graded.printed;
+  EXPECT_TRUE(says(graded, "look: bo: nothing was handed in")) << graded.printed;
+}
+
 TEST_F(Grading, EveryStudentsPageIsOneCommandAndOutsideOfTheResults) {
   put("quentin/a1_impulse.cpp", "int x = ;\n");
   put("xaver/a1_impulse.cpp", "int y = ;\n");

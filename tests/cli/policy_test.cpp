@@ -1,5 +1,7 @@
 // The rules of a course: late days, penalties with a cap, attempts, groups, and nobody's silent 0.
 #include <algorithm>
+#include <filesystem>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -357,18 +359,68 @@ TEST(ClassFiles, APageThatCannotBeMadeSaysSoAndTheOthersAreMade) {
   kind.id = "a9";
   kind.title = "Thing";
   std::vector<std::string> failed;
-  write_class_files({}, kind, out.path() / "gone", nullptr, out.path(), {scored("ada", 80.0)},
-                    SlipTally({}), [&](const std::string& what, const std::string& why) {
-                      failed.push_back(what);
-                      EXPECT_NE(why.find("gone"), std::string::npos) << why;
-                    });
+  GradeOptions options;
+  options.failed = [&](const std::string& what, const std::string& why) {
+    failed.push_back(what);
+    EXPECT_NE(why.find("gone"), std::string::npos) << why;
+  };
+  PolicyFile policy;
+  policy.policy = rules();
+  policy.roster = {{"ada", "7", "", {}}, {"bo", "8", "", {}}};
+  write_class_files({}, kind, out.path() / "gone", &policy, out.path(), {scored("ada", 80.0)},
+                    SlipTally({}), options);
   EXPECT_EQ(failed, std::vector<std::string>{"similar.html"});
+  EXPECT_EQ(read_standings(out.path() / kStandingFile).size(), 2u);
   EXPECT_NE(text_of(out.path() / "similar.html").find("The grader failed at this page"),
             std::string::npos);
   for (const char* file : {"class.html", "pictures.html"}) {
     EXPECT_FALSE(text_of(out.path() / file).empty()) << file;
     EXPECT_EQ(text_of(out.path() / file).find("The grader failed"), std::string::npos) << file;
   }
+}
+
+// A gradebook of an earlier run would be taken for this one's.
+TEST(ClassFiles, AGradebookThatCannotBeWrittenEndsTheGrading) {
+  const PrivateFolder out;
+  write_whole(out.path() / "gradebook.csv" / "full", "a folder lies in its place");
+  GradeOptions options;
+  options.failed = [](const std::string& what, const std::string&) { ADD_FAILURE() << what; };
+  PolicyFile policy;
+  policy.policy = rules();
+  EXPECT_THROW(write_class_files({}, {}, out.path() / "gone", &policy, out.path(),
+                                 {scored("ada", 80.0)}, SlipTally({}), options),
+               UserError);
+  EXPECT_FALSE(std::filesystem::exists(out.path() / kStandingFile));
+}
+
+TEST(ClassFiles, APageThatCannotBeWrittenIsSaidAndTheOthersAreMade) {
+  const PrivateFolder out;
+  write_whole(out.path() / "class.html" / "full", "a folder lies in its place");
+  std::set<std::string> failed;
+  GradeOptions options;
+  options.failed = [&](const std::string& what, const std::string&) { failed.insert(what); };
+  write_class_files({}, {}, out.path() / "gone", nullptr, out.path(), {scored("ada", 80.0)},
+                    SlipTally({}), options);
+  EXPECT_EQ(failed, (std::set<std::string>{"class.html", "similar.html"}));
+  EXPECT_TRUE(std::filesystem::is_regular_file(out.path() / "pictures.html"));
+}
+
+// One file that sim_c++ cannot read must not make each night's grading a fault of the grader.
+TEST(ClassFiles, SourcesThatCannotBeComparedAreANoticeAndNoFault) {
+  std::string said;
+  const auto compare = []() -> std::vector<SimilarPair> {
+    throw SourcesNotCompared("sim_c++ failed: <odd>");
+  };
+  const report::Page page = page_of_similar({}, {{"ada", "int x;"}, {"bo", "int y;"}}, compare,
+                                            [&](const std::string& sentence) { said += sentence; });
+  EXPECT_NE(said.find("Nothing was compared: sim_c++ failed: <odd>"), std::string::npos) << said;
+  const PrivateFolder out;
+  page.write(out.path() / "similar.html");
+  const std::string text = text_of(out.path() / "similar.html");
+  EXPECT_NE(text.find("Nothing was compared"), std::string::npos);
+  EXPECT_EQ(text.find("No two of them are alike"), std::string::npos);
+  const auto break_down = []() -> std::vector<SimilarPair> { throw std::runtime_error("no disk"); };
+  EXPECT_THROW(page_of_similar({}, {}, break_down, {}), std::runtime_error);
 }
 
 TEST(LetGoOfDetails, KeepsWhatThePagesOfAClassShow) {

@@ -141,21 +141,35 @@ std::string starter_of(const Course& course, const modules::ModuleKind& kind) {
   return text_of(course.root / "assignments" / kind.folder / (kind.folder + ".cpp"));
 }
 
+report::Page page_of_similar(const modules::ModuleKind& kind,
+                             const std::vector<NamedSource>& sources,
+                             const std::function<std::vector<SimilarPair>()>& compare,
+                             const std::function<void(const std::string&)>& notice) {
+  std::vector<SimilarPair> pairs;
+  std::string problem;
+  try {
+    pairs = compare();
+  } catch (const SourcesNotCompared& error) {
+    problem = std::string("Nothing was compared: ") + error.what() +
+              ". One odd file may be the cause. No grade depends on it.";
+    if (notice) notice("similar.html: " + problem);
+  }
+  return similar_page(kind, sources, pairs, plain_text(problem));
+}
+
 namespace {
 
 // Files that are alike, as far as they can be compared.
-report::Page page_of_similar(const Course& course, const modules::ModuleKind& kind,
-                             const fs::path& submissions) {
+report::Page page_of_similar_in(const fs::path& submissions, const Course& course,
+                                const modules::ModuleKind& kind, const GradeOptions& options) {
   const auto sources = sources_in(submissions, kind);
-  std::vector<SimilarPair> pairs;
-  std::string problem;
   if (!can_compare_sources())
-    problem =
-        "Nothing was compared, because sim_c++ is not installed: sudo apt-get install "
-        "similarity-tester, then run the same command again.";
-  else
-    pairs = similar_pairs(sources, starter_of(course, kind));
-  return similar_page(kind, sources, pairs, problem);
+    return similar_page(kind, sources, {},
+                        "Nothing was compared, because sim_c++ is not installed: sudo apt-get "
+                        "install similarity-tester, then run the same command again.");
+  return page_of_similar(
+      kind, sources, [&] { return similar_pairs(sources, starter_of(course, kind)); },
+      options.notice);
 }
 
 }  // namespace
@@ -163,7 +177,7 @@ report::Page page_of_similar(const Course& course, const modules::ModuleKind& ki
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const fs::path& submissions, const PolicyFile* policy, const fs::path& out,
                        const std::vector<Grade>& grades, const SlipTally& slips,
-                       const std::function<void(const std::string&, const std::string&)>& failed) {
+                       const GradeOptions& options) {
   std::vector<Standing> standings;
   if (policy) {
     standings = apply_policy(policy->policy, policy->roster, policy->hand_ins, grades);
@@ -178,21 +192,30 @@ void write_class_files(const Course& course, const modules::ModuleKind& kind,
   } else {
     fs::remove(out / kStandingFile);
   }
+  const auto write_failure = [&](const std::string& file, const std::string& why) {
+    report::Page page(kind.title + ": " + file, kind.id);
+    page.paragraph("The grader failed at this page: " + plain_text(why) +
+                       ". No grade depends on it; the same command makes it again.",
+                   report::Look::kWarning);
+    try {
+      page.write(out / file);
+    } catch (const std::exception&) {
+      // the file cannot be written at all: `failed` says so
+    }
+  };
   const auto write_page = [&](const std::string& file, const std::function<report::Page()>& make) {
     try {
       make().write(out / file);
     } catch (const std::exception& error) {
-      report::Page page(kind.title + ": " + file, kind.id);
-      page.paragraph("The grader failed at this page: " + plain_text(error.what()) +
-                         ". No grade depends on it; the same command makes it again.",
-                     report::Look::kWarning);
-      page.write(out / file);
-      failed(file, error.what());
+      if (!options.failed) throw;
+      write_failure(file, error.what());
+      options.failed(file, error.what());
     }
   };
   write_page("class.html", [&] { return class_page(kind, grades, slips, standings); });
   write_page("pictures.html", [&] { return pictures_page(kind, grades, out); });
-  write_page("similar.html", [&] { return page_of_similar(course, kind, submissions); });
+  write_page("similar.html",
+             [&] { return page_of_similar_in(submissions, course, kind, options); });
 }
 
 }  // namespace tumble::grading

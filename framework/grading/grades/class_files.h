@@ -38,16 +38,26 @@ std::vector<NamedSource> sources_in(const std::filesystem::path& submissions,
                                     const modules::ModuleKind& kind);
 std::string starter_of(const Course& course, const modules::ModuleKind& kind);
 
+/// The page of sources that are alike. Where sim_c++ fails on them the page says so, and a notice:
+/// one odd file may be the cause, and is no fault of the grader.
+/// @param compare  finds the pairs
+/// @throws whatever `compare` throws but SourcesNotCompared
+report::Page page_of_similar(const modules::ModuleKind& kind,
+                             const std::vector<NamedSource>& sources,
+                             const std::function<std::vector<SimilarPair>()>& compare,
+                             const std::function<void(const std::string&)>& notice);
+
 /// Writes class.html, pictures.html, similar.html, and with a policy gradebook.csv and
 /// standing.json (without one, an earlier standing.json is removed).
 /// @param policy  none: nullptr
-/// @param failed  called with each of the three pages that could not be made, and why; the page
-///   says so, too
-/// @throws UserError, and whatever the policy throws: without it there is no gradebook
+/// @param options  its `failed` is called with each of the three pages that could not be made, and
+///   why (the page says so, too, where it can be written), `notice` with what else a person should
+///   know
+/// @throws UserError when a file of the policy cannot be written, and whatever the policy throws:
+///   without it there is no gradebook
 void write_class_files(const Course& course, const modules::ModuleKind& kind,
                        const std::filesystem::path& submissions, const PolicyFile* policy,
                        const std::filesystem::path& out, const std::vector<Grade>& grades,
-                       const SlipTally& slips,
-                       const std::function<void(const std::string&, const std::string&)>& failed);
+                       const SlipTally& slips, const GradeOptions& options);
 
 }  // namespace tumble::grading

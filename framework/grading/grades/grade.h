@@ -174,7 +174,7 @@ struct GradeOptions {
   // stories are at hand
   std::function<void(const Grade&)> each;
   // called with the folder of results and all grades, without their stories, before the folder is
-  // released: writes more pages
+  // released: writes more pages, and the gradebook of a policy. What it throws ends the grading
   std::function<void(const std::filesystem::path&, const std::vector<Grade>&)> overview;
   // called where a page of the class could not be made, with the reason, when all grades are in
   // place; empty: the exception goes on

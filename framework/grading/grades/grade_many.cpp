@@ -584,8 +584,7 @@ class Batch {
     make_page(kHandoutPage, [&] { write_handout(course_, id_, out / kHandoutPage); });
     write_whole(out / "times.json",
                 times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
-    if (options_.overview)
-      make_page("the pages of the class", [&] { options_.overview(out, grades); });
+    if (options_.overview) options_.overview(out, grades);
     return grades;
   }
 

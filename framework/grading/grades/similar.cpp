@@ -30,8 +30,12 @@ std::string trimmed(const std::string& line) {
 std::string run_sim(std::vector<std::string> words) {
   words.insert(words.begin(), kProgram);
   const ProgramOutcome outcome = run_program(words, Output::kCaptured, kLongest_s);
+  constexpr int kNotStarted = 127;
+  if (outcome.code == kNotStarted) throw std::runtime_error("sim_c++ could not be started");
+  if (!outcome.in_time)
+    throw SourcesNotCompared(fmt::format("sim_c++ did not end within {:g} s", kLongest_s));
   if (outcome.code != 0)
-    throw std::runtime_error("sim_c++ failed: " + outcome.printed.substr(0, 300));
+    throw SourcesNotCompared("sim_c++ failed: " + outcome.printed.substr(0, 300));
   return outcome.printed;
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct SimilarPair {
   std::vector<SimilarRun> runs;  // longest first; filled for the first pairs only
 };
 
+/// That sim_c++ failed on these sources, which one odd file among them may cause.
+struct SourcesNotCompared : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Whether sim_c++ is installed here.
 bool can_compare_sources();
 
@@ -39,6 +45,8 @@ std::string without_starter(const std::string& text, const std::string& starter)
 /// @param with_runs      pairs, the most similar ones, whose runs are found as well
 /// @return pairs, most similar first, then in the order of the sources
 /// @pre can_compare_sources()
+/// @throws SourcesNotCompared when sim_c++ fails or takes too long; std::runtime_error when it
+///   cannot be started, as with more names than a command line takes
 std::vector<SimilarPair> similar_pairs(const std::vector<NamedSource>& sources,
                                        const std::string& starter, int least_percent = 50,
                                        std::size_t with_runs = 10);
