@@ -80,6 +80,12 @@ std::vector<std::string> words_of_task(const Context& context, const GradeWords&
   return all;
 }
 
+grading::RunSettings settings_of_run(const GradeWords& words,
+                                     const grading::GradeOptions& options) {
+  return {words.id,       fs::canonical(words.folder),          options.budget_s, options.media,
+          options.policy, grading::word_of(options.page_code())};
+}
+
 void grade_shards(const Context& context, const GradeWords& words, std::size_t total,
                   const grading::GradeOptions& options, const fs::path& out) {
   grading::ShardedGrading job;
@@ -94,9 +100,10 @@ void grade_shards(const Context& context, const GradeWords& words, std::size_t t
   job.jobs = words.jobs;
   job.progress = options.progress;
   job.notice = options.notice;
-  {  // refused before any job
+  {  // Refused before any job. Its settings are those of the grading: where it is killed before the
+     // end, the policy must not be forgotten.
     const grading::OutputFolder check(
-        out, words.folder, words.id, {},
+        out, words.folder, words.id, settings_of_run(words, options),
         words.mend_list ? grading::BrokenList::kMend : grading::BrokenList::kRefuse);
   }
   grading::grade_on(job);

@@ -98,6 +98,30 @@ TEST_F(Shards, GnuParallelGivesTheBytesOfALocalRun) {
   EXPECT_EQ(files("out"), files("local"));
 }
 
+// Ended before any shard: by a signal, or because nothing runs them here.
+TEST_F(Shards, AGradingThatEndsBeforeTheyDoKeepsItsPolicy) {
+  write_whole(root / "roster.csv", "name,id\nann,7\n");
+  write_whole(root / "policy.json",
+              R"({"due": {"a1": "2026-10-12T23:59:00+02:00"}, "roster": "roster.csv"})");
+  const std::string policy = (root / "policy.json").string();
+  const char* const found = std::getenv("PATH");
+  const std::string path = found ? found : "";
+  const auto without_programs = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"--no-media", "--on", "parallel", "--shards", "2"});
+    ::setenv("PATH", (root / "no programs").c_str(), 1);
+    const ProgramOutcome ended = grade("out", words);
+    ::setenv("PATH", path.c_str(), 1);
+    EXPECT_EQ(ended.code, 2) << ended.printed;
+    EXPECT_FALSE(fs::exists(root / "out/gradebook.csv"));
+    const ProgramOutcome forgotten = grade("out");
+    EXPECT_EQ(forgotten.code, 2) << "the policy was dropped: " << forgotten.printed;
+    EXPECT_TRUE(says(forgotten, "--policy " + policy)) << forgotten.printed;
+  };
+  without_programs({"--policy", policy});
+  write_whole(root / "out/.tumble-grade.json", "{");
+  without_programs({"--policy", policy, "--mend-list"});
+}
+
 TEST_F(Shards, AMachineThatSeesNoCourseIsNamed) {
   if (run_program({"parallel", "--version"}, Output::kDropped).code != 0)
     GTEST_SKIP() << "GNU parallel is not here: apt-get install parallel";
