@@ -40,6 +40,25 @@ TEST_F(Shards, WhatAShardDidNotFinishIsGradedByTheWhole) {
   EXPECT_EQ(files("out"), files("local"));
 }
 
+// As on machines that cannot draw: the verdicts are there, and grading a class again on one machine
+// takes a night.
+TEST_F(OtherRubric, VerdictsOfAShardWhoseStageFailedAreTakenOverWithTheFault) {
+  put("ann/a1_impulse.cpp", text_of(kStub));
+  write_whole(course / "solutions_private/a1_impulse/causes.json", "{\"slips\": [");
+  const ProgramOutcome part = grade("out", {"--no-media", "--shard", "1/2"});
+  ASSERT_EQ(part.code, 3) << part.printed;
+  const ProgramOutcome whole = grade("out");
+  EXPECT_EQ(whole.code, 3) << whole.printed;
+  EXPECT_TRUE(says(whole, "what to mend first")) << whole.printed;
+  EXPECT_FALSE(says(whole, "[1/1] ann")) << "its verdicts were made again: " << whole.printed;
+  EXPECT_NE(text_of(root / "out/gradebook.csv").find("\nann,,ann,,0\n"), std::string::npos);
+  const ProgramOutcome next = grade("out");
+  EXPECT_TRUE(says(next, "[1/1] ann")) << "the stage is not made again: " << next.printed;
+  grade("local");
+  EXPECT_EQ(ledger().size(), 1u);
+  EXPECT_EQ(results("ann"), results("ann", "local"));
+}
+
 TEST_F(Shards, AShardStartedAgainGoesOn) {
   shard("1/2");
   const ProgramOutcome again = shard("1/2");

@@ -198,22 +198,29 @@ class Batch {
     }
   }
 
-  // What a shard has finished is treated as if this process had made it now.
+  // What a shard has finished is treated as if this process had made it now. Where a stage behind
+  // the verdicts failed there, and no other shard has a result without a fault, the verdicts are
+  // taken over with the fault: the next run makes that stage again.
   bool settle_from_shard(Work& work) {
     const auto finished = finished_.find(work.folder);
     if (finished == finished_.end()) return false;
+    const fs::path* taken = nullptr;
     for (const fs::path& made : finished->second) {
       Work trial = work;
       trial.earlier = read_earlier_run(made, id_, key_.bytes);
       if (!trial.earlier.problem.empty())
         report_distrusted({trial}, [this](const std::string& sentence) { notice(sentence); });
-      if (!is_current(trial)) continue;
-      fs::create_directories(draft_of(work));
-      fs::rename(made, made_of(work));
-      settle(work, 0);
-      return true;
+      if (is_current(trial)) {
+        taken = &made;
+        break;
+      }
+      if (!taken && is_current_but_for_a_stage(trial)) taken = &made;
     }
-    return false;
+    if (!taken) return false;
+    fs::create_directories(draft_of(work));
+    fs::rename(*taken, made_of(work));
+    settle(work, 0);
+    return true;
   }
 
   // A shard has no gradebook: only the class has.
@@ -268,15 +275,24 @@ class Batch {
     const bool are_asked_for = options_.media || options_.page_code() != CodeInPages::kNone;
     return !are_asked_for || work.earlier.record->key.pictures == work.key.pictures;
   }
-  bool verdicts_stand(const Work& work) const {
+  // Whether the earlier result is final and of this submission and grader.
+  bool has_same_verdicts(const Work& work) const {
     if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
-    if (!work.earlier.record->grade.faults.empty()) return false;
     const GradeKey& old = work.earlier.record->key;
-    return old.submission == work.key.submission && old.judging == work.key.judging &&
+    return old.submission == work.key.submission && old.judging == work.key.judging;
+  }
+  bool verdicts_stand(const Work& work) const {
+    return has_same_verdicts(work) && work.earlier.record->grade.faults.empty() &&
            pictures_do(work);
   }
   bool is_current(const Work& work) const {
     return verdicts_stand(work) && work.earlier.record->key.rubric == work.key.rubric;
+  }
+  // The record of a process that died behind the verdicts has no pictures.
+  bool is_current_but_for_a_stage(const Work& work) const {
+    return has_same_verdicts(work) && !work.earlier.record->grade.faults.empty() &&
+           work.earlier.record->key.rubric == work.key.rubric &&
+           (pictures_do(work) || work.earlier.record->key.pictures.empty());
   }
 
   void grade_open_ones() {
