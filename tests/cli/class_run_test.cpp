@@ -121,6 +121,23 @@ TEST_F(OneScene, ASceneThatCannotBeDrawnTakesNoVerdictAndIsDrawnNextTime) {
   EXPECT_TRUE(says(again, "[1/1] carl")) << "a result without its pictures is taken over";
 }
 
+// Without pictures a page has no code either: the pictures that are kept do not make it whole.
+TEST_F(OneScene, ARunWithoutPicturesLeavesThePageToBeMadeWholeAgain) {
+  put("carl/a1_impulse.cpp", text_of(kStub));
+  const fs::path causes = course / "solutions_private/a1_impulse/causes.json";
+  write_whole(causes, "{\"slips\": [");
+  EXPECT_EQ(grade("out", {"--jobs", "1"}).code, 3);
+  fs::remove(causes);
+  const ProgramOutcome without = grade("out");
+  EXPECT_EQ(without.code, 0) << without.printed;
+  EXPECT_TRUE(says(without, "[1/1] carl")) << without.printed;
+  EXPECT_FALSE(says(grade("out"), "[1/1] carl")) << "without pictures nothing is missing";
+  const ProgramOutcome with = grade("out", {"--jobs", "1"});
+  EXPECT_EQ(with.code, 0) << with.printed;
+  EXPECT_TRUE(says(with, "[1/1] carl")) << "a page without its code is taken over";
+  EXPECT_NE(text_of(root / "out/carl/index.html").find("Try this file's code"), std::string::npos);
+}
+
 // Begins a grading whose words go to no terminal.
 pid_t start_words(const std::vector<std::string>& words) {
   const pid_t child = ::fork();

@@ -372,10 +372,9 @@ class Batch {
       grade->folder = work.folder;
       if (!is_rerun || !options_.media)
         keep_media(work.earlier_place, made_of(work), earlier, *grade, key);
-      if (is_rerun) {
-        forget_page_code(made_of(work));
-        if (grade->state == GradeState::kJudged) add_page_code(work, *grade);
-      }
+      if (is_rerun) forget_page_code(made_of(work));
+      if (!options_.media && has_no_code()) key.pictures.clear();
+      if (grade->state == GradeState::kJudged) add_page_code(work, *grade, is_rerun);
       grade->change.clear();
       grade->changes.clear();
       if (earlier) note_changes(*earlier, key, *grade);
@@ -397,9 +396,17 @@ class Batch {
                 record_json({std::move(judged), key, id_, {}}, key_.bytes));
   }
 
-  void add_page_code(const Work& work, Grade& grade) const {
+  // Whether pages get no code now though the assignment has some. Pictures that are kept then
+  // belong to a page with code: the next run that is to have both makes them.
+  bool has_no_code() const {
+    return options_.page_code() == CodeInPages::kNone && !page_code_->laws().script.empty();
+  }
+
+  // Where only points have changed, the submission's own module is there already.
+  void add_page_code(const Work& work, Grade& grade, bool is_rerun) const {
     const char* const what = "the code in its page";
     if (!page_code_fault_.empty()) return note_failed_stage(grade, what, page_code_fault_);
+    if (!is_rerun) return;
     run_stage(grade, what, [&] {
       grade.no_page_code = page_code_->add(work.submission->source, made_of(work));
     });
