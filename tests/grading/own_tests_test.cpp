@@ -21,11 +21,17 @@ TriedModule right(const Failed& first, const Failed& second) {
   return {"right solution 1", "reference", true, {first, second}};
 }
 
+// Of a file in which every test has a name of its own.
+OwnTestsGrade graded(const OwnTestsRule& rule, const Failed& tests,
+                     const std::vector<TriedModule>& modules) {
+  return graded_own_tests(rule, tests, modules, tests);
+}
+
 TEST(OwnTests, EachSlipCaughtEarnsItsShare) {
   const OwnTestsGrade grade =
-      graded_own_tests(kFourSlips, {"S.A", "S.B"},
-                       {slip(1, {"S.A"}, {"S.A"}), slip(2, {"S.B"}, {"S.B"}), slip(3, {}, {}),
-                        slip(4, {"S.A", "S.B"}, {"S.A", "S.B"}), right({}, {})});
+      graded(kFourSlips, {"S.A", "S.B"},
+             {slip(1, {"S.A"}, {"S.A"}), slip(2, {"S.B"}, {"S.B"}), slip(3, {}, {}),
+              slip(4, {"S.A", "S.B"}, {"S.A", "S.B"}), right({}, {})});
   EXPECT_EQ(grade.score, 3.0);
   EXPECT_NE(grade.names.find("slip 3 is secret, not caught"), std::string::npos) << grade.names;
 }
@@ -33,9 +39,9 @@ TEST(OwnTests, EachSlipCaughtEarnsItsShare) {
 // Which of its slips a test fails for is a bit for each of them, chosen by what the slip answered.
 TEST(OwnTests, AStudentIsToldOfEachTestOnlyWhetherItCaughtASlip) {
   const auto told = [](const Failed& by_first, const Failed& by_second) {
-    return graded_own_tests(kFourSlips, {"S.A", "S.B"},
-                            {slip(1, by_first, by_first), slip(2, by_second, by_second),
-                             slip(3, {}, {}), slip(4, {}, {}), right({}, {})})
+    return graded(kFourSlips, {"S.A", "S.B"},
+                  {slip(1, by_first, by_first), slip(2, by_second, by_second), slip(3, {}, {}),
+                   slip(4, {}, {}), right({}, {})})
         .story;
   };
   const std::string story = told({"S.A"}, {"S.A", "S.B"});
@@ -63,23 +69,57 @@ TEST(OwnTestNames, WhatTheProgramReportsOnlyChoosesOneOfThem) {
 
 TEST(OwnTests, ATestThatAccusesARightSolutionCatchesNothingAndTakesOneBack) {
   const Failed all = {"S.Always"}, both = {"S.A", "S.Always"};
-  EXPECT_EQ(graded_own_tests(kFourSlips, {"S.Always"},
-                             {slip(1, all, all), slip(2, all, all), slip(3, all, all),
-                              slip(4, all, all), right(all, all)})
+  EXPECT_EQ(graded(kFourSlips, {"S.Always"},
+                   {slip(1, all, all), slip(2, all, all), slip(3, all, all), slip(4, all, all),
+                    right(all, all)})
                 .score,
             0.0);
-  EXPECT_EQ(graded_own_tests(kFourSlips, {"S.A", "S.Always"},
-                             {slip(1, both, both), slip(2, both, both), slip(3, all, all),
-                              slip(4, all, all), right(all, all)})
+  EXPECT_EQ(graded(kFourSlips, {"S.A", "S.Always"},
+                   {slip(1, both, both), slip(2, both, both), slip(3, all, all), slip(4, all, all),
+                    right(all, all)})
                 .score,
             1.0);
 }
 
-TEST(OwnTests, AVerdictThatIsNotRepeatedCatchesNothing) {
+TEST(OwnTests, AnInstanceThatAccusesTakesNothingFromTheOthersOfItsName) {
+  const Failed good = {"All/S.Each/0"}, bad = {"All/S.Each/1"}, both = {"All/S.Each/0", bad[0]};
   const OwnTestsGrade grade =
-      graded_own_tests(kFourSlips, {"S.Lot"},
-                       {slip(1, {"S.Lot"}, {"S.Lot"}), slip(2, {"S.Lot"}, {}), slip(3, {}, {}),
-                        slip(4, {}, {}), right({}, {})});
+      graded_own_tests(kFourSlips, both,
+                       {slip(1, both, both), slip(2, good, good), slip(3, good, good),
+                        slip(4, {}, {}), right(bad, bad)},
+                       {"S.Each"});
+  EXPECT_EQ(grade.score, 2.0) << "three are caught, one is taken back";
+  EXPECT_EQ(grade.story,
+            "1 test: 3 of 4 slips caught, 4 needed for all 4 points; 1 test against right "
+            "solutions or not repeatable (1 slip taken back)\n"
+            "S.Each accuses a right solution: it catches nothing, and takes one slip back\n");
+  EXPECT_NE(grade.names.find("slip 1 is secret, caught by S.Each;"), std::string::npos)
+      << grade.names;
+  EXPECT_EQ(grade.names.find("/"), std::string::npos) << "a reported name: " << grade.names;
+}
+
+// Made by a macro, or while the tests ran: how many there are is not shown.
+TEST(OwnTests, EachTestWithoutANameInTheFileTakesASlipBack) {
+  const auto with = [](std::size_t unnamed) {
+    Failed tests = {"S.Good"}, accusing;
+    for (std::size_t i = 0; i < unnamed; ++i) accusing.push_back("M.Made" + std::to_string(i));
+    tests.insert(tests.end(), accusing.begin(), accusing.end());
+    return graded_own_tests(kFourSlips, tests,
+                            {slip(1, tests, tests), slip(2, tests, tests), slip(3, tests, tests),
+                             slip(4, {}, {}), right(accusing, accusing)},
+                            {"S.Good"});
+  };
+  EXPECT_EQ(with(1).score, 2.0);
+  EXPECT_EQ(with(2).score, 1.0);
+  EXPECT_EQ(with(50).score, 0.0);
+  EXPECT_EQ(with(50).story, with(3).story) << "a student reads how many tests were reported";
+  EXPECT_NE(with(50).story.find(kUnnamedTest), std::string::npos);
+}
+
+TEST(OwnTests, AVerdictThatIsNotRepeatedCatchesNothing) {
+  const OwnTestsGrade grade = graded(kFourSlips, {"S.Lot"},
+                                     {slip(1, {"S.Lot"}, {"S.Lot"}), slip(2, {"S.Lot"}, {}),
+                                      slip(3, {}, {}), slip(4, {}, {}), right({}, {})});
   EXPECT_EQ(grade.score, 0.0);
   EXPECT_NE(grade.story.find("S.Lot gave two verdicts"), std::string::npos);
 }
@@ -88,15 +128,14 @@ TEST(OwnTests, TheShareIsEnoughForAllPoints) {
   OwnTestsRule rule = kFourSlips;
   rule.share = 0.5;
   const Failed a = {"S.A"};
-  EXPECT_EQ(graded_own_tests(
-                rule, {"S.A"},
-                {slip(1, a, a), slip(2, a, a), slip(3, {}, {}), slip(4, {}, {}), right({}, {})})
+  EXPECT_EQ(graded(rule, {"S.A"},
+                   {slip(1, a, a), slip(2, a, a), slip(3, {}, {}), slip(4, {}, {}), right({}, {})})
                 .score,
             4.0);
 }
 
 TEST(OwnTests, WithoutTestsThereAreNoPoints) {
-  EXPECT_EQ(graded_own_tests(kFourSlips, {}, {slip(1, {}, {}), right({}, {})}).score, 0.0);
+  EXPECT_EQ(graded(kFourSlips, {}, {slip(1, {}, {}), right({}, {})}).score, 0.0);
 }
 
 TEST(KeptFile, CountsOnlyWholeAndUnderItsOwnName) {

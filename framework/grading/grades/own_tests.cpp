@@ -90,6 +90,21 @@ void build(const Course& course, const std::string& id, const Module& module) {
   keep_file(module.kept, text_of(object));
 }
 
+// What a student reads of a test, the better before the worse.
+enum class SaidOfTest { kCatchesNothing, kCatches, kUnsteady, kAccuses };
+
+const char* words_for_student(SaidOfTest said) {
+  switch (said) {
+    case SaidOfTest::kAccuses:
+      return " accuses a right solution: it catches nothing, and takes one slip back";
+    case SaidOfTest::kUnsteady:
+      return " gave two verdicts for one module: it catches nothing, and takes one slip back";
+    case SaidOfTest::kCatches: return " caught at least one slip";
+    case SaidOfTest::kCatchesNothing: break;
+  }
+  return " caught no slip";
+}
+
 // One run of all tests on one module. @return nothing where the grader failed
 std::optional<std::vector<TestResult>> run_once(const Course& course, const std::string& id,
                                                 const fs::path& program, const fs::path& kept) {
@@ -169,7 +184,7 @@ OwnTestsGrade judge_own_tests(const Course& course, const std::string& id, const
     for (std::size_t i = 0; i < modules.size(); ++i) order.push_back(i);
   // The result is the same in any order; a file of tests must not know it.
   std::shuffle(order.begin(), order.end(), std::mt19937_64(std::random_device{}()));
-  std::vector<std::string> names;
+  std::set<std::string> names;
   std::vector<std::pair<std::size_t, std::vector<TestResult>>> runs;
   int slow = 0;
   for (const std::size_t i : order) {
@@ -187,29 +202,26 @@ OwnTestsGrade judge_own_tests(const Course& course, const std::string& id, const
       grade.story = fmt::format("out of time: the tests themselves did not end in {} runs", slow);
       return grade;
     }
-    for (const TestResult& result : *results)
-      if (std::find(names.begin(), names.end(), result.test) == names.end())
-        names.push_back(result.test);
+    for (const TestResult& result : *results) names.insert(result.test);
     runs.emplace_back(i, std::move(*results));
   }
-  // A test that did not run did not pass. From here on its name is that of the file.
-  const std::vector<std::string> in_file = names_of_tests(text_of(tests));
-  std::set<std::string> shown;
-  for (const std::string& name : names) shown.insert(name_in_file(name, in_file));
+  // A test that did not run did not pass.
   for (const auto& [i, results] : runs) {
-    std::set<std::string> failed;
+    std::vector<std::string> failed;
     for (const std::string& name : names)
       if (std::none_of(results.begin(), results.end(), [&](const TestResult& r) {
             return r.test == name && r.verdict == Verdict::kRight;
           }))
-        failed.insert(name_in_file(name, in_file));
-    tried[i].failed.push_back({failed.begin(), failed.end()});
+        failed.push_back(name);
+    tried[i].failed.push_back(std::move(failed));
   }
-  return graded_own_tests(rule, {shown.begin(), shown.end()}, tried);
+  return graded_own_tests(rule, {names.begin(), names.end()}, tried,
+                          names_of_tests(text_of(tests)));
 }
 
 OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::string>& tests,
-                               const std::vector<TriedModule>& modules) {
+                               const std::vector<TriedModule>& modules,
+                               const std::vector<std::string>& in_file) {
   std::map<std::string, std::set<std::string>> accuses;  // by test: right solutions
   std::set<std::string> unsteady;
   for (const TriedModule& module : modules) {
@@ -224,6 +236,14 @@ OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::
   }
   std::set<std::string> bad = unsteady;
   for (const auto& [test, right] : accuses) bad.insert(test);
+  // what is written anywhere; the points are those of the names that were reported
+  std::map<std::string, std::string> shown;
+  for (const std::string& test : tests) shown[test] = name_in_file(test, in_file);
+  const auto names_of = [&](const auto& reported) {
+    std::set<std::string> names;
+    for (const std::string& test : reported) names.insert(shown.at(test));
+    return std::vector<std::string>(names.begin(), names.end());
+  };
 
   OwnTestsGrade grade;
   grade.is_there = true;
@@ -241,34 +261,39 @@ OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::
       if (!bad.contains(test)) by.push_back(test);
     caught += !by.empty();
     catching.insert(by.begin(), by.end());
-    name_for_grader(module, by.empty() ? ", not caught" : ", caught by " + joined_names(by));
+    name_for_grader(module,
+                    by.empty() ? ", not caught" : ", caught by " + joined_names(names_of(by)));
   }
   for (const TriedModule& module : modules) {
     if (!module.is_right) continue;
     std::vector<std::string> by;
     for (const auto& [test, right] : accuses)
       if (right.contains(module.shown)) by.push_back(test);
-    name_for_grader(module, by.empty() ? "" : ", accused by " + joined_names(by));
+    name_for_grader(module, by.empty() ? "" : ", accused by " + joined_names(names_of(by)));
   }
-  // For the student one word a test: which slips it catches would tell what a test can compute of
-  // each of them.
-  std::string lines;
+  // For the student one word a name of the file, the worst of its instances: which slips it catches
+  // would tell what a test can compute of each of them, and so would how many instances do.
+  std::map<std::string, SaidOfTest> said_of;
   for (const std::string& test : tests) {
-    const char* const what =
-        accuses.contains(test)
-            ? " accuses a right solution: it catches nothing, and takes one slip "
-              "back"
-        : unsteady.contains(test)
-            ? " gave two verdicts for one module: it catches nothing, and takes one slip back"
-        : catching.contains(test) ? " caught at least one slip"
-                                  : " caught no slip";
-    lines += test + what + '\n';
+    const SaidOfTest said = accuses.contains(test)    ? SaidOfTest::kAccuses
+                            : unsteady.contains(test) ? SaidOfTest::kUnsteady
+                            : catching.contains(test) ? SaidOfTest::kCatches
+                                                      : SaidOfTest::kCatchesNothing;
+    const auto [it, is_new] = said_of.emplace(shown.at(test), said);
+    it->second = std::max(it->second, said);
+  }
+  std::string lines;
+  std::size_t bad_names = 0;
+  for (const auto& [name, said] : said_of) {
+    lines += name + words_for_student(said) + '\n';
+    bad_names += said >= SaidOfTest::kUnsteady;
   }
   // at least one, or a file without tests would have all points
   const std::size_t needed = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(rule.share * static_cast<double>(slips) - 1e-9)));
   const std::size_t counted_slips = std::min(caught, needed);
-  const std::size_t left = counted_slips > bad.size() ? counted_slips - bad.size() : 0;
+  const std::size_t taken_back = std::min(counted_slips, bad.size());
+  const std::size_t left = counted_slips - taken_back;
   constexpr double kGrain = 100.0;  // hundredths of a point
   grade.score =
       std::floor(rule.points * static_cast<double>(left) / static_cast<double>(needed) * kGrain +
@@ -276,9 +301,10 @@ OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::
       kGrain;
   grade.story = fmt::format(
       "{}: {} of {} slips caught, {} needed for all {} points; {} against right solutions or not "
-      "repeatable\n",
-      counted(tests.size(), "test"), caught, slips, needed, points_text(rule.points),
-      counted(bad.size(), "test"));
+      "repeatable{}\n",
+      counted(said_of.size(), "test"), caught, slips, needed, points_text(rule.points),
+      counted(bad_names, "test"),
+      taken_back == 0 ? "" : fmt::format(" ({} taken back)", counted(taken_back, "slip")));
   grade.story += lines;
   return grade;
 }

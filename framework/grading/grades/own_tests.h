@@ -19,8 +19,9 @@
 ///   failing always, or by chance     accuses right solutions, or is not repeated
 /// What it does learn is what a test is for: the answers. They are those of right solutions, too,
 /// so nothing that it makes of them is shown: not what it prints, not the names that it reports
-/// (own_test_names.h), not which slips each test catches. A student's page has the names that stand
-/// in the file, each with whether it caught a slip, and how many slips were caught in all.
+/// (own_test_names.h), not how many it reports, not which slips each test catches. A student's page
+/// has the names that stand in the file, each with the worst that its instances did, how many slips
+/// were caught in all, and how many of them were taken back.
 #pragma once
 
 #include <filesystem>
@@ -53,12 +54,15 @@ struct TriedModule {
   std::string shown;  // "slip 3", "right solution 1"
   std::string name;   // of the slip
   bool is_right = false;
-  std::vector<std::vector<std::string>> failed;  // tests that did not pass, by run
+  std::vector<std::vector<std::string>> failed;  // tests that did not pass, as reported, by run
 };
 
 /// The rule above, on runs that have been made.
-/// @param tests  all that ran, by their names in the file
+/// @param tests    all that ran, by the names that the program reported: each instance of a TEST_P
+///   counts by itself
+/// @param in_file  names that stand in the file, which alone are written (names_of_tests)
 OwnTestsGrade graded_own_tests(const OwnTestsRule& rule, const std::vector<std::string>& tests,
-                               const std::vector<TriedModule>& modules);
+                               const std::vector<TriedModule>& modules,
+                               const std::vector<std::string>& in_file);
 
 }  // namespace tumble::grading
