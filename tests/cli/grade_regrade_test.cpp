@@ -116,6 +116,34 @@ TEST_F(Placed, AFaultOfTheGraderLeavesWhatHasTheLedgersScoreAndDoesNotCount) {
   EXPECT_EQ(of(unfinished(), &seventy, false), Placing::kNew) << "nothing lies there";
 }
 
+TEST_F(Placed, VerdictsOfAnEarlierResultStandWhereItsKeysAreTheSameAndNothingIsMissing) {
+  const GradeOptions options;  // with pictures
+  GradeRecord earlier = record(80.0);
+  earlier.key = work.key = {"s", "judging", "rubric", "pictures"};
+  put_earlier(earlier);
+  EXPECT_TRUE(is_current(work, options));
+  EXPECT_FALSE(is_current_but_for_a_stage(work, options)) << "nothing is missing";
+
+  earlier.grade.faults = {"the pictures: no ffmpeg"};
+  put_earlier(earlier);
+  EXPECT_FALSE(is_current(work, options));
+  EXPECT_TRUE(is_current_but_for_a_stage(work, options));
+  earlier.key.pictures.clear();
+  put_earlier(earlier);
+  EXPECT_TRUE(is_current_but_for_a_stage(work, options)) << "its process died at the pictures";
+
+  for (std::string GradeKey::*part :
+       {&GradeKey::submission, &GradeKey::judging, &GradeKey::rubric, &GradeKey::pictures}) {
+    GradeRecord other = earlier;
+    other.key.*part = "another";
+    put_earlier(other);
+    EXPECT_FALSE(is_current_but_for_a_stage(work, options));
+  }
+  earlier.grade.state = GradeState::kGraderFault;
+  put_earlier(earlier);
+  EXPECT_FALSE(is_current_but_for_a_stage(work, options)) << "it has no verdicts";
+}
+
 TEST_F(Placed, WhatIsHeldHasNoScoreAlsoWhenItIsReadAgain) {
   Submission submission;
   submission.name = "ada";

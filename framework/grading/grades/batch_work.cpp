@@ -19,6 +19,42 @@ namespace tumble::grading {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+bool pictures_do(const GradedWork& work, const GradeOptions& options) {
+  const bool are_asked_for = options.media || options.page_code() != CodeInPages::kNone;
+  return !are_asked_for || work.earlier.record->key.pictures == work.key.pictures;
+}
+
+bool has_same_verdicts(const GradedWork& work) {
+  if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
+  const GradeKey& old = work.earlier.record->key;
+  return old.submission == work.key.submission && old.judging == work.key.judging;
+}
+
+}  // namespace
+
+bool is_asked_for(const GradedWork& work, const GradeOptions& options) {
+  const auto& only = options.only;
+  return only.empty() || std::find(only.begin(), only.end(), work.submission->name) != only.end();
+}
+
+bool verdicts_stand(const GradedWork& work, const GradeOptions& options) {
+  return has_same_verdicts(work) && work.earlier.record->grade.faults.empty() &&
+         pictures_do(work, options);
+}
+
+bool is_current(const GradedWork& work, const GradeOptions& options) {
+  return verdicts_stand(work, options) && work.earlier.record->key.rubric == work.key.rubric;
+}
+
+bool is_current_but_for_a_stage(const GradedWork& work, const GradeOptions& options) {
+  if (!has_same_verdicts(work) || work.earlier.record->grade.faults.empty()) return false;
+  // the record of a process that died behind the verdicts has no pictures
+  const GradeKey& old = work.earlier.record->key;
+  return old.rubric == work.key.rubric && (pictures_do(work, options) || old.pictures.empty());
+}
+
 std::vector<std::string> folders_for(const std::vector<Submission>& submissions) {
   std::set<std::string> taken;
   std::vector<std::string> folders;

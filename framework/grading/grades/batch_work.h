@@ -26,6 +26,20 @@ struct GradedWork {
   double seconds = 0.0;  // that it took, now
 };
 
+/// Whether this submission is to be graded, or keeps what it has.
+bool is_asked_for(const GradedWork& work, const GradeOptions& options);
+
+/// Whether the earlier result is final, of this submission and grader, and lacks nothing that is
+/// asked for now: only its points may have changed.
+bool verdicts_stand(const GradedWork& work, const GradeOptions& options);
+
+/// Whether the earlier result is what grading would give now.
+bool is_current(const GradedWork& work, const GradeOptions& options);
+
+/// Whether the earlier result is what grading would give now but for a stage behind the verdicts
+/// that failed (stages.h).
+bool is_current_but_for_a_stage(const GradedWork& work, const GradeOptions& options);
+
 /// What stays in memory of the submissions of a class: some hundred bytes each, and one list of
 /// tests for all that have the same.
 class MarksOfClass {

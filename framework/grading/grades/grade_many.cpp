@@ -187,7 +187,7 @@ class Batch {
   }
 
   void take_over_or_open(Work& work) {
-    if (is_asked_for(work) && (options_.again || !is_current(work))) {
+    if (is_asked_for(work, options_) && (options_.again || !is_current(work, options_))) {
       if (work.earlier.record && work.earlier.record->grade.is_held)
         work.earlier.record.reset();  // the result itself is missing
       if (work.earlier.record) marks_.let_go_of_details(*work.earlier.record);
@@ -210,11 +210,11 @@ class Batch {
       trial.earlier = read_earlier_run(made, id_, key_.bytes);
       if (!trial.earlier.problem.empty())
         report_distrusted({trial}, [this](const std::string& sentence) { notice(sentence); });
-      if (is_current(trial)) {
+      if (is_current(trial, options_)) {
         taken = &made;
         break;
       }
-      if (!taken && is_current_but_for_a_stage(trial)) taken = &made;
+      if (!taken && is_current_but_for_a_stage(trial, options_)) taken = &made;
     }
     if (!taken) return false;
     fs::create_directories(draft_of(work));
@@ -231,11 +231,6 @@ class Batch {
                 fmt::format("{} of {} submissions graded, {} were current\n", fresh_, work_.size(),
                             work_.size() - fresh_));
     return grades;
-  }
-
-  bool is_asked_for(const Work& work) const {
-    const auto& only = options_.only;
-    return only.empty() || std::find(only.begin(), only.end(), work.submission->name) != only.end();
   }
 
   void take_over(Work& work, GradeRecord whole) {
@@ -269,30 +264,6 @@ class Batch {
       if (const Work& work = work_[logged_];
           !work.is_left_out && !work.is_untouched && !work.record.grade.is_held)
         ledger_->append(std::exchange(work_[logged_].entry, LedgerEntry()));
-  }
-
-  bool pictures_do(const Work& work) const {
-    const bool are_asked_for = options_.media || options_.page_code() != CodeInPages::kNone;
-    return !are_asked_for || work.earlier.record->key.pictures == work.key.pictures;
-  }
-  // Whether the earlier result is final and of this submission and grader.
-  bool has_same_verdicts(const Work& work) const {
-    if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
-    const GradeKey& old = work.earlier.record->key;
-    return old.submission == work.key.submission && old.judging == work.key.judging;
-  }
-  bool verdicts_stand(const Work& work) const {
-    return has_same_verdicts(work) && work.earlier.record->grade.faults.empty() &&
-           pictures_do(work);
-  }
-  bool is_current(const Work& work) const {
-    return verdicts_stand(work) && work.earlier.record->key.rubric == work.key.rubric;
-  }
-  // The record of a process that died behind the verdicts has no pictures.
-  bool is_current_but_for_a_stage(const Work& work) const {
-    return has_same_verdicts(work) && !work.earlier.record->grade.faults.empty() &&
-           work.earlier.record->key.rubric == work.key.rubric &&
-           (pictures_do(work) || work.earlier.record->key.pictures.empty());
   }
 
   void grade_open_ones() {
@@ -360,7 +331,7 @@ class Batch {
       const std::optional<GradeRecord> earlier = earlier_record(work);
       std::optional<Grade> grade;
       // only points have changed: added up again, not run again
-      if (earlier && verdicts_stand(work) && !options_.again)
+      if (earlier && verdicts_stand(work, options_) && !options_.again)
         grade = graded_by(rubric_, earlier->grade);
       GradeKey key = work.key;
       const bool is_rerun = !grade;
