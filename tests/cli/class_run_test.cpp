@@ -108,19 +108,11 @@ TEST_F(OtherRubric, ABrokenFileOfCausesTakesNoVerdict) {
   EXPECT_EQ(text_of(root / "out/carl/index.html").find("the grader failed"), std::string::npos);
 }
 
-// The scene runs for so long.
-void last(const fs::path& scene, double duration_s) {
-  auto json = nlohmann::ordered_json::parse(text_of(scene));
-  json["duration_s"] = duration_s;
-  write_whole(scene, json.dump(1));
-}
-
 // As where ffmpeg was not there yet: nothing in the key of a result differs between the two runs.
 TEST_F(OneScene, PicturesThatCannotBeMadeTakeNoVerdictAndAreMadeNextTime) {
   if (run_program({"ffmpeg", "-version"}, Output::kDropped).code != 0)
     GTEST_SKIP() << "ffmpeg is not here: apt-get install ffmpeg";
   put("blaise/a1_impulse.cpp", with_wrong_sign());
-  last(scene, 0.2);
   const std::vector<std::string> words = {"--jobs", "1", "--code-in-pages", "none"};
   const char* const found = std::getenv("PATH");
   const std::string path = found ? found : "";
@@ -185,7 +177,9 @@ void kill_children_of(pid_t parent) {
 // video take minutes: the process that is killed is at them.
 TEST_F(OneScene, AProcessThatDiesBehindTheVerdictsLeavesThem) {
   put("blaise/a1_impulse.cpp", with_wrong_sign());
-  last(scene, 1000.0);
+  auto json = nlohmann::ordered_json::parse(text_of(scene));
+  json["duration_s"] = 1000;
+  write_whole(scene, json.dump(1));
   const pid_t child = start_words(words_for("out", {"--jobs", "1"}));
   const fs::path verdicts = root / "out/.making-blaise/.verdicts/blaise/record.json";
   int status = 0;
