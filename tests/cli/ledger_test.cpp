@@ -8,6 +8,7 @@
 #include "framework/core/files.h"
 #include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/ledger.h"
+#include "framework/grading/grades/ledger_records.h"
 
 namespace tumble::grading {
 namespace {

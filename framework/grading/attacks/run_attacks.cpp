@@ -16,6 +16,7 @@
 #include "framework/grading/attacks/make_attack.h"
 #include "framework/grading/attacks/watchers.h"
 #include "framework/core/run_program.h"
+#include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/ledger.h"
 #include "framework/grading/verdicts/plain_text.h"
 

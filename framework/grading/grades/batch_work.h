@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/ledger.h"
 
 namespace tumble::grading {

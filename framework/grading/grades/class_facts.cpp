@@ -9,6 +9,7 @@
 
 #include "framework/core/text.h"
 #include "framework/grading/grades/ledger.h"
+#include "framework/grading/grades/ledger_records.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {

@@ -16,6 +16,7 @@
 #include "framework/grading/grades/own_tests_grade.h"
 #include "framework/grading/grades/page_code.h"
 #include "framework/grading/grades/shard.h"
+#include "framework/grading/grades/test_change.h"
 #include "framework/grading/verdicts/verdict.h"
 
 namespace tumble::grading {
@@ -71,13 +72,6 @@ struct GradeKey {
   std::string judging;
   std::string rubric;    // points, levels and titles
   std::string pictures;  // scenes and options; empty: without pictures
-};
-
-/// A test with another result than in the earlier run of the same submission's folder.
-struct TestChange {
-  std::string test, title;
-  std::string before, after;  // "wrong, 0 of 5"
-  std::string reason;         // "the submission changed"
 };
 
 struct Grade {

@@ -21,6 +21,7 @@
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/ledger.h"
+#include "framework/grading/grades/ledger_records.h"
 #include "framework/grading/grades/lowering.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/course/handout_page.h"

@@ -13,7 +13,6 @@
 #include "framework/core/digest.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/core/version.h"
 #include "framework/core/run_program.h"
 #include "framework/grading/verdicts/plain_text.h"
 
@@ -123,28 +122,6 @@ std::string compiler_in_words() {
   return plain_name(said.substr(0, said.find('\n')));
 }
 
-LedgerEntry ledger_entry_of(const GradeRecord& record, const std::string& compiler) {
-  const Grade& grade = record.grade;
-  const auto results = record.files.find("results.json");
-  LedgerEntry entry;
-  entry.assignment = record.assignment;
-  entry.name = plain_name(grade.name);
-  entry.folder = grade.folder;
-  entry.submission = record.key.submission;
-  entry.judging = record.key.judging;
-  entry.rubric = record.key.rubric;
-  entry.version = kProgramVersion;
-  entry.compiler = compiler;
-  entry.sandbox = grade.sandbox;
-  entry.is_official = grade.is_official;
-  entry.is_final = grade.is_final();
-  entry.results = results == record.files.end() ? "missing" : results->second;
-  if (grade.has_score()) entry.score = grade.score;
-  entry.change = grade.change;
-  entry.changes = grade.changes;
-  return entry;
-}
-
 std::string ledger_line(const LedgerEntry& entry, std::size_t number, const std::string& previous) {
   Json json = {{"entry", number}};
   json.update(facts_of(entry));
@@ -196,11 +173,6 @@ std::map<std::string, LedgerScore> last_scores(const LedgerContent& ledger) {
   for (const LedgerEntry& entry : ledger.entries)
     if (entry.score) scores[entry.folder] = {entry.submission, *entry.score};
   return scores;
-}
-
-bool is_older_than_ledger(const GradeRecord& record, const LedgerScore* last) {
-  return last && record.grade.has_score() && last->submission == record.key.submission &&
-         record.grade.score < last->score;
 }
 
 std::vector<std::string> differences_from_results(const LedgerContent& ledger,

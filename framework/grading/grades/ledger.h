@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/grading/grades/grade_files.h"
+#include "framework/grading/grades/test_change.h"
 
 namespace tumble::grading {
 
@@ -44,9 +44,6 @@ struct LedgerEntry {
 
 /// "g++ (Debian 12.2.0-14) 12.2.0": the compiler of submissions, as it names itself.
 std::string compiler_in_words();
-
-/// An entry for a record that lies in place.
-LedgerEntry ledger_entry_of(const GradeRecord& record, const std::string& compiler);
 
 /// The line of an entry, without its line break.
 /// @param number  of the entry, from 1
@@ -83,17 +80,8 @@ struct LedgerScore {
   double score = 0.0;
 };
 
-/// Why a record is not trusted that is_older_than_ledger.
-inline constexpr const char* kOlderThanLedger =
-    "it is older than the ledger's last score of the same file";
-
 /// The last score of each folder, also where later entries have none.
 std::map<std::string, LedgerScore> last_scores(const LedgerContent& ledger);
-
-/// Whether a record is an earlier one that was put back: the ledger holds a higher score of the
-/// same submission. A score that somebody agreed to lower is the ledger's last one.
-/// @param last  of the record's folder; null: none
-bool is_older_than_ledger(const GradeRecord& record, const LedgerScore* last);
 
 /// A ledger open for appending.
 class Ledger {
