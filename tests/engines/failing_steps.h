@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "framework/effects/point_force/point_force.h"
+#include "framework/modules/answer_sizes.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -13,16 +14,23 @@ constexpr double kCartFails = 0.5;  // s: for a cart at y = 0, while it goes on 
 
 /// `laws`, where no step of a body that goes to the right begins at kCartFails or later; for each
 /// metre of y an eighth of a second later.
-inline Laws with_failing_steps(Laws laws) {
+/// @param Failure  what such a step throws
+template <class Failure = std::runtime_error>
+Laws with_failing_steps(Laws laws) {
   laws.integrate_step = [step = laws.integrate_step](const OdeFunction& f, double t,
                                                      const VectorXd& y, double h) {
     constexpr int kMomentumX = 7;
     if (y.size() == kStateSize && y[kMomentumX] > 0.0 &&
         t > kCartFails + 0.125 * y[1] - 0.25 * kFailingStep)
-      throw std::runtime_error("no way through");
+      throw Failure("no way through");
     return step(f, t, y, h);
   };
   return laws;
+}
+
+/// The same, where such a step returns a vector of a wrong size.
+inline Laws with_steps_of_a_wrong_size(Laws laws) {
+  return with_failing_steps<modules::WrongSize>(std::move(laws));
 }
 
 /// Carts at y = 0, 2, ..., each a process since a force pushes it: x = t + t^2 / 20 [m, s]. A ball

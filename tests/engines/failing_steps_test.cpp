@@ -14,12 +14,13 @@ struct Told {
   engines::FaultInjection faults{};
 };
 
-Trajectory run_told(const Told& told, const scene::Scene& scene) {
+Trajectory run_told(const Told& told, const scene::Scene& scene,
+                    const Laws& laws = with_failing_steps(test_laws())) {
   engines::RunOptions options;
   options.engine = told.engine;
   options.threads = told.threads;
   options.faults = told.faults;
-  return run_as_told(std::move(options), scene, with_failing_steps(test_laws()));
+  return run_as_told(std::move(options), scene, laws);
 }
 
 engines::FaultInjection by_lot(std::uint64_t seed) {
@@ -33,16 +34,19 @@ engines::FaultInjection by_lot(std::uint64_t seed) {
 }
 
 // What `ordered` does, in any order of execution.
-void expect_the_reference_everywhere(const scene::Scene& scene, const Trajectory& reference) {
-  EXPECT_EQ(difference(reference, run_told({"ca"}, scene)), "");
+void expect_the_reference_everywhere(const scene::Scene& scene, const Trajectory& reference,
+                                     const Laws& laws = with_failing_steps(test_laws())) {
+  const auto difference_of = [&](const Told& told) {
+    return difference(reference, run_told(told, scene, laws));
+  };
+  EXPECT_EQ(difference_of({"ca"}), "");
   for (const int threads : {1, 2, 3})
-    EXPECT_EQ(difference(reference, run_told({"tw", threads}, scene)), "") << threads << " threads";
+    EXPECT_EQ(difference_of({"tw", threads}), "") << threads << " threads";
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
-    EXPECT_EQ(difference(reference, run_told({"tw", 1, by_lot(seed)}, scene)), "")
-        << "seed " << seed;
+    EXPECT_EQ(difference_of({"tw", 1, by_lot(seed)}), "") << "seed " << seed;
   engines::FaultInjection cut;
   cut.regions = 3;
-  EXPECT_EQ(difference(reference, run_told({"tw", 1, cut}, scene)), "") << "three regions";
+  EXPECT_EQ(difference_of({"tw", 1, cut}), "") << "three regions";
 }
 
 // Timewarp takes up to eight steps of an island at once, and every engine one step beyond where it
@@ -89,6 +93,20 @@ TEST(FailingStep, OfSeveralTheFirstThatNothingPreventsCounts) {
     const Trajectory reference = run_told({"ordered"}, scene);
     EXPECT_EQ(reference.stopped_by.find(fault), 0U) << reference.stopped_by;
     expect_the_reference_everywhere(scene, reference);
+  }
+}
+
+// A size depends on the state that the function is called with, so an impact may prevent a wrong
+// one, too.
+TEST(FailingStep, OfAWrongSizeIsLikeAnyOther) {
+  const Laws laws = with_steps_of_a_wrong_size(test_laws());
+  for (const double met_at : {0.43, 0.47, 0.7}) {
+    SCOPED_TRACE(met_at);
+    const scene::Scene scene = pushed_carts(1, met_at, 1.0);
+    const Trajectory reference = run_told({"ordered"}, scene, laws);
+    const std::string stop = "at t = 0.500000 s, body 'cart0'";
+    EXPECT_EQ(reference.stopped_by.substr(0, stop.size()), met_at < kCartFails ? "" : stop);
+    expect_the_reference_everywhere(scene, reference, laws);
   }
 }
 

@@ -120,8 +120,9 @@ void IslandSegments::take_step(Segment& segment) {
   std::optional<ProcessWorld::Outcome> taken;
   try {
     taken.emplace(outcome_of_step(segment));
-  } catch (const std::exception& error) {
-    if (dynamic_cast<const Final*>(&error)) throw;  // whatever happens before it
+  } catch (const OutOfTime&) {
+    throw;  // whatever happens before it
+  } catch (const std::exception&) {
     segment.failure = std::current_exception();
     // In place of the step one without length, which gives the state at its start.
     const double now = segment.front->time;

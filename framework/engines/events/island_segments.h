@@ -10,7 +10,8 @@
 /// A step that cannot be taken (a law fails, a state is not a number) is kept, and stops nothing:
 /// it was computed ahead of what other processes do, and an impact with one of them may end the
 /// segment before it. The segment is known up to that step's start, where it stands; an engine
-/// raises the failure where it is the next event of all.
+/// raises the failure where it is the next event of all. Only a run that is out of time stops at
+/// once.
 ///
 /// Threads may share them if one thread at a time uses each segment and each set of members; data
 /// that segments share is locked.
