@@ -73,13 +73,18 @@ TEST(FailingStep, ThatAnImpactPreventsStopsNothing) {
   }
 }
 
-// With 60 frames a second, 30 of them lie before 0.5 s.
+// With 60 frames a second, 30 of them lie before 0.5 s, and one at 0.5 s: nothing is left to happen
+// at that instant but the step.
 TEST(FailingStep, ThatIsReachedStopsEveryEngineAtItsStart) {
   const scene::Scene scene = pushed_carts(1, 0.7, 1.0);
   const Trajectory reference = run_told({"ordered"}, scene);
   for (const char* word : {"at t = 0.500000 s", "cart0", "no way through"})
     EXPECT_NE(reference.stopped_by.find(word), std::string::npos) << reference.stopped_by;
-  EXPECT_EQ(reference.frames.size(), 30U);
+  EXPECT_EQ(reference.frames.size(), 31U);
+  EXPECT_EQ(reference.frames.back().time, kCartFails);
+  const Trajectory together = run_told({"rd"}, scene);
+  EXPECT_NE(together.stopped_by, "");
+  EXPECT_EQ(together.frames.size(), reference.frames.size());
   EXPECT_EQ(collision_times(reference).size(), 0U);
   expect_the_reference_everywhere(scene, reference);
 }

@@ -79,6 +79,7 @@ class AdvancementRun {
                                             (b >= 0 && flights_[b].version != bound.version_b)))
         continue;
       advance_all(bound.key.time);
+      if (bound.key.kind == StampKind::kFault) run_.commit_frame_at(bound.key, flight_of());
       if (bound.is_exact)
         work_at(bound.key);
       else
@@ -144,7 +145,7 @@ class AdvancementRun {
     if (key.kind == StampKind::kCollision)
       return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
     ++called_;
-    return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
+    return run_.call(key, flight_of());
   }
 
   void work_at(const EventStamp& key) {
@@ -213,8 +214,10 @@ class AdvancementRun {
   }
 
   void draw_before(double t) {
-    while (run_.next_frame() < t)
-      run_.commit_frame([this](int body) -> const Flight& { return flights_[body]; });
+    while (run_.next_frame() < t) run_.commit_frame(flight_of());
+  }
+  FlightOf flight_of() const {
+    return [this](int body) -> const Flight& { return flights_[body]; };
   }
 
   FlightRun run_;

@@ -243,6 +243,17 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
                         {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
+void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {
+  if (next_frame() > fault.time) return;
+  try {
+    commit_frame(flight_of);
+  } catch (const OutOfTime&) {
+    throw;
+  } catch (const StoppedRun&) {
+    // the run stops for the fault
+  }
+}
+
 void FlightRun::report_membership(double t, const FlightOf& flight_of) const {
   Membership membership{t, {}, {}};
   for (int i = 0; i < world_.size(); ++i) {

@@ -69,6 +69,10 @@ class FlightRun {
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
   /// @throws StoppedRun where energy has run away by then; the frame is recorded
   void commit_frame(const FlightOf& flight_of);
+  /// Commits the frame of a fault's own instant, if there is one: the fault comes after all else of
+  /// it. Where that frame cannot be drawn it is left out, because the fault says more.
+  /// @pre the fault is the next event of all, and every frame before its instant is committed
+  void commit_frame_at(const EventStamp& fault, const FlightOf& flight_of);
 
   /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty
   /// where all is well.

@@ -124,10 +124,15 @@ void IslandSegments::take_step(Segment& segment) {
     throw;  // whatever happens before it
   } catch (const std::exception&) {
     segment.failure = std::current_exception();
-    // In place of the step one without length, which gives the state at its start.
+    // In place of the step one without length, which gives the state at its start, with the forces
+    // that led there.
     const double now = segment.front->time;
-    taken.emplace(ProcessWorld::Outcome{
-        {segment.front->without_memory(), now, {}, {}}, std::move(*segment.front), {}});
+    std::vector<ContactPoint> forces;
+    if (!segment.steps.empty()) forces = segment.steps.back().forces;
+    taken.emplace(
+        ProcessWorld::Outcome{{segment.front->without_memory(), now, {}, std::move(forces)},
+                              std::move(*segment.front),
+                              {}});
   }
   ProcessWorld::Outcome& outcome = *taken;
   while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {

@@ -48,6 +48,7 @@ class OrderedRun {
         next = std::min(next, run_.callbacks()[called_]);
       if (!(next.time < end_) || next.time > run_.duration()) return;
       draw_before(next.time);
+      if (next.kind == StampKind::kFault) run_.commit_frame_at(next, flight_of());
       process(next);
     }
   }
@@ -84,7 +85,7 @@ class OrderedRun {
     if (key.kind == StampKind::kCollision)
       return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
     ++called_;
-    return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
+    return run_.call(key, flight_of());
   }
 
   EventStamp impact_of(int a, int b) {
@@ -101,8 +102,10 @@ class OrderedRun {
   }
 
   void draw_before(double t) {
-    while (run_.next_frame() < t)
-      run_.commit_frame([this](int body) -> const Flight& { return flights_[body]; });
+    while (run_.next_frame() < t) run_.commit_frame(flight_of());
+  }
+  FlightOf flight_of() const {
+    return [this](int body) -> const Flight& { return flights_[body]; };
   }
 
   FlightRun run_;

@@ -52,14 +52,14 @@ void Coordinator::commit_before(const EventStamp& key) {
   const auto in_order = [](const Executed& x, const Executed& y) { return x.key < y.key; };
   if (!std::is_sorted(executed.begin(), executed.end(), in_order))
     std::sort(executed.begin(), executed.end(), in_order);
+  const auto flights_at = [&](double time) {
+    return [this, time](int body) -> const Flight& {
+      return all_.world().can_move(body) ? all_.histories[body][all_.histories[body].at(time)]
+                                         : all_.immovable(body);
+    };
+  };
   const auto draw_before = [&](double until) {
-    while (all_.run.next_frame() < until) {
-      const double time = all_.run.next_frame();
-      all_.run.commit_frame([&](int body) -> const Flight& {
-        return all_.world().can_move(body) ? all_.histories[body][all_.histories[body].at(time)]
-                                           : all_.immovable(body);
-      });
-    }
+    while (all_.run.next_frame() < until) all_.run.commit_frame(flights_at(all_.run.next_frame()));
   };
   // Commits events that are not rolled back, and the frames between them.
   std::size_t done = 0;
@@ -78,6 +78,7 @@ void Coordinator::commit_before(const EventStamp& key) {
   // Commits the remaining frames, and releases what lies before the committed time.
   executed.erase(executed.begin(), executed.begin() + static_cast<std::ptrdiff_t>(done));
   draw_before(key.time);
+  if (key.kind == StampKind::kFault) all_.run.commit_frame_at(key, flights_at(key.time));
   note_kept();
   all_.committed = std::min(key.time, all_.run.duration());
   if (all_.world().processes()) all_.world().processes()->segments().forget_before(all_.committed);
