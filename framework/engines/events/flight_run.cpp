@@ -9,6 +9,7 @@
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/base/step_limits.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {}  // namespace
@@ -127,7 +128,7 @@ std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, dou
   if (flight.segment < 0 || world_.first_member(body, flight) != body) return std::nullopt;
   if (const auto failed =
           world_.processes()->segments().failed_by(flight.segment, std::min(to, duration_));
-      failed && *failed < duration_)
+      failed && *failed < duration_ - kNegligible * step_)
     return EventStamp{*failed, std::numeric_limits<std::uint32_t>::max(), StampKind::kFault, body,
                       -1};
   if (!world_.processes()->holds_contacts()) return std::nullopt;

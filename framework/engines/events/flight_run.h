@@ -42,7 +42,8 @@ class FlightRun {
   }
   /// The time at which a body's flight ends by itself or cannot go on (kFault), if that is at `to`
   /// or before; nothing otherwise, and nothing for members of a process other than the first. A
-  /// step beyond the end of the run is no part of it: its failure does not count.
+  /// step that begins at the end of the run, but for rounding, or beyond is no part of it: its
+  /// failure does not count.
   std::optional<EventStamp> own_end(int body, const Flight& flight, double to) const;
   /// The discontinuity at that time. The failure of a step is raised here: a caller executes kFault
   /// only where nothing before it is left to do, since any of that may end the flight.

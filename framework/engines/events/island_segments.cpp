@@ -176,7 +176,7 @@ void IslandSegments::raise(int segment) const {
 
 const ProcessStep& IslandSegments::step_at(int number, double t) {
   reach(number, t);
-  if (at(number).failure && t > at(number).front->time) raise(number);
+  if (at(number).failure && t > at(number).front->time + kNegligible * rules_.step) raise(number);
   const std::deque<ProcessStep>& steps = at(number).steps;
   std::size_t k = steps.size() - 1;
   while (k > 0 && steps[k].from.time > t) --k;

@@ -74,7 +74,8 @@ class IslandSegments {
   /// [s]
   double step_end(int segment, double t);
   /// The process state at an instant. @pre the segment has not ended before it
-  /// @throws what the failed step threw, for instants after its start; so do all that follow
+  /// @throws what the failed step threw, for instants after its start by more than rounding leaves
+  ///   of a step; so do all that follow
   ProcessState state_at(int segment, double t);
   RigidBodyState body_state(int segment, int body, double t);
   /// The states of all members for a picture, in their order: bodies in contact do not overlap
