@@ -1,6 +1,7 @@
 /// A process whose step fails from some time on, unless a ball has turned it back before.
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 
 #include "framework/effects/point_force/point_force.h"
@@ -49,6 +50,39 @@ inline scene::Scene pushed_carts(int carts, double met_at, double duration) {
   scene.name = "pushed carts";
   scene.step_s = kFailingStep;
   scene.duration_s = duration;
+  return scene;
+}
+
+/// `laws`, where an impact with an immovable body has no response. Contacts never last.
+inline Laws with_failing_responses(Laws laws) {
+  laws.ends_in_contact = [](double, double, double) { return false; };
+  laws.contact_forces = [](const MatrixXd&, const VectorXd& b) -> VectorXd {
+    return VectorXd::Zero(b.size());
+  };
+  laws.collision_impulse = [right = laws.collision_impulse](const Contact& contact, const Body& a,
+                                                            const Body& b, double restitution) {
+    if (a.inertia.inverse_mass == 0.0 || b.inertia.inverse_mass == 0.0)
+      throw std::runtime_error("no way back");
+    return right(contact, a, b, restitution);
+  };
+  return laws;
+}
+
+/// A cart as above that meets a post at `post_at`; where a pebble lies in its way, it meets that at
+/// `pebble_at` first and is thrown back. In a scene with persistent contacts the impact with the
+/// post is a matter of the cart's process alone.
+inline scene::Scene cart_and_post(double post_at, std::optional<double> pebble_at) {
+  const auto x = [](double t) { return t + t * t / 20.0; };
+  scene::Scene scene = pushed_carts(1, 5.0, 0.8);
+  scene.bodies.pop_back();
+  scene.bodies.push_back(ball("post", 0.1, 1.0, {x(post_at) + 0.2, 0.0, 0.0}, Vector3d::Zero()));
+  scene.bodies.back().mass_kg.reset();
+  scene.bodies.back().immovable = true;
+  if (pebble_at)
+    scene.bodies.push_back(
+        ball("pebble", 1e-3, 1e3, {x(*pebble_at) + 0.101, 0.0, 0.0}, Vector3d::Zero()));
+  scene.contact.emplace();
+  scene.name = "cart and post";
   return scene;
 }
 

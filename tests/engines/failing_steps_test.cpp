@@ -117,6 +117,40 @@ TEST(FailingStep, OfAWrongSizeIsLikeAnyOther) {
   }
 }
 
+// The step before the impact stands: frames within it are recorded, and the time is the impact's.
+TEST(FailingStep, AtItsImpactIsKnownUpToThere) {
+  const Laws laws = with_failing_responses(test_laws());
+  const scene::Scene scene = cart_and_post(0.5125, std::nullopt);  // 0.8 of the step from 0.5 s
+  const auto run_with_instants = [&](const std::string& engine) {
+    engines::RunOptions options;
+    options.engine = engine;
+    options.instants_s = {0.505, 0.51};
+    return run_as_told(std::move(options), scene, laws);
+  };
+  const Trajectory reference = run_with_instants("ordered"), together = run_with_instants("rd");
+  for (const char* word : {"at t = 0.512500 s", "cart0", "no way back"})
+    for (const Trajectory* run : {&reference, &together})
+      EXPECT_NE(run->stopped_by.find(word), std::string::npos) << run->stopped_by;
+  // 31 up to 0.5 s, and the two instants
+  EXPECT_EQ(reference.frames.size(), 33U);
+  EXPECT_EQ(together.frames.size(), reference.frames.size());
+  EXPECT_EQ(reference.frames.back().time, 0.51);
+  for (const char* engine : {"ca", "tw"})
+    EXPECT_EQ(difference(reference, run_with_instants(engine)), "") << engine;
+  expect_the_reference_everywhere(scene, run_told({"ordered"}, scene, laws), laws);
+}
+
+// At 0.3 of the same step the cart meets a pebble: it never comes to the post.
+TEST(FailingStep, WhoseImpactAnEarlierOneInTheStepPreventsStopsNothing) {
+  const Laws laws = with_failing_responses(test_laws());
+  const scene::Scene scene = cart_and_post(0.5125, 0.5046875);
+  const Trajectory reference = run_told({"ordered"}, scene, laws);
+  ASSERT_EQ(reference.stopped_by, "");
+  EXPECT_EQ(collision_times(reference).size(), 1U);
+  expect_the_reference_everywhere(scene, reference, laws);
+  EXPECT_EQ(run_told({"rd"}, scene, laws).stopped_by, "");
+}
+
 // A program that acts at the very instant turns the cart back before its step begins.
 TEST(FailingStep, ThatACallbackOfItsInstantPreventsStopsNothing) {
   const scene::Scene scene = pushed_carts(1, 5.0, 1.0);

@@ -126,13 +126,15 @@ Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Fli
 
 std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, double to) const {
   if (flight.segment < 0 || world_.first_member(body, flight) != body) return std::nullopt;
-  if (const auto failed =
-          world_.processes()->segments().failed_by(flight.segment, std::min(to, duration_));
-      failed && *failed < duration_ - kNegligible * step_)
+  IslandSegments& segments = world_.processes()->segments();
+  // impacts of the last instant are part of the run
+  if (const auto failed = segments.failed_by(flight.segment, std::min(to, duration_));
+      failed &&
+      (*failed < duration_ - kNegligible * step_ || segments.fails_to_respond(flight.segment)))
     return EventStamp{*failed, std::numeric_limits<std::uint32_t>::max(), StampKind::kFault, body,
                       -1};
   if (!world_.processes()->holds_contacts()) return std::nullopt;
-  const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, to);
+  const SegmentEnd* end = segments.end_by(flight.segment, to);
   if (!end) return std::nullopt;
   return EventStamp{end->time, end->time == flight.begin ? flight.microstep + 1 : 0,
                     StampKind::kProcess, body, -1};

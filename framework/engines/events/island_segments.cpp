@@ -11,6 +11,17 @@
 #include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
+namespace {
+
+ProcessState state_within(const ProcessStep& step, double t) {
+  ProcessState state(step.from);
+  if (t == step.from.time) return state;
+  state.time = t;
+  for (std::size_t k = 0; k < state.members.size(); ++k) state.states[k] = step.state_at(k, t);
+  return state;
+}
+
+}  // namespace
 
 IslandSegments::IslandSegments(const World& whole, ShapeOf shape_of, const Laws& laws,
                                ProcessRules rules)
@@ -116,6 +127,37 @@ ProcessWorld::Outcome IslandSegments::outcome_of_step(Segment& segment) const {
   return outcome;
 }
 
+// What cannot be taken stops nothing yet: the segment stands at `state`. In place of the step one
+// without length, which gives the state there, with the forces that led there.
+void IslandSegments::stand_at(Segment& segment, ProcessState state, std::exception_ptr failure) {
+  ProcessStep step{state.without_memory(), state.time, {}, {}};
+  if (!segment.steps.empty()) step.forces = segment.steps.back().forces;
+  keep(segment, std::move(step));
+  segment.front.emplace(std::move(state));
+  segment.failure = std::move(failure);
+}
+
+void IslandSegments::keep(Segment& segment, ProcessStep step) {
+  while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
+    segment.steps.pop_front();
+    --kept_;
+  }
+  segment.steps.push_back(std::move(step));
+  ++kept_;
+}
+
+// The failure with the time and the names before it.
+std::exception_ptr IslandSegments::named(const std::exception_ptr& failure, double t,
+                                         const Segment& segment) const {
+  try {
+    naming(fmt::format("at t = {:.6f} s, {}", t, names(segment.start->members)),
+           [&] { std::rethrow_exception(failure); });
+  } catch (...) {
+    return std::current_exception();
+  }
+  return failure;
+}
+
 void IslandSegments::take_step(Segment& segment) {
   std::optional<ProcessWorld::Outcome> taken;
   try {
@@ -123,26 +165,17 @@ void IslandSegments::take_step(Segment& segment) {
   } catch (const OutOfTime&) {
     throw;  // whatever happens before it
   } catch (const std::exception&) {
-    segment.failure = std::current_exception();
-    // In place of the step one without length, which gives the state at its start, with the forces
-    // that led there.
-    const double now = segment.front->time;
-    std::vector<ContactPoint> forces;
-    if (!segment.steps.empty()) forces = segment.steps.back().forces;
-    taken.emplace(
-        ProcessWorld::Outcome{{segment.front->without_memory(), now, {}, std::move(forces)},
-                              std::move(*segment.front),
-                              {}});
+    return stand_at(segment, std::move(*segment.front), std::current_exception());
   }
   ProcessWorld::Outcome& outcome = *taken;
-  while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
-    segment.steps.pop_front();
-    --kept_;
+  keep(segment, std::move(outcome.step));
+  if (outcome.failure) {
+    const ProcessStep& step = segment.steps.back();
+    segment.fails_to_respond = true;
+    return stand_at(segment, state_within(step, step.end),
+                    named(outcome.failure, step.end, segment));
   }
-  segment.steps.push_back(std::move(outcome.step));
-  ++kept_;
-  const bool is_one =
-      segment.failure || segment.start->near.empty() || !falls_apart_(outcome.after);
+  const bool is_one = segment.start->near.empty() || !falls_apart_(outcome.after);
   if (outcome.events.empty() && is_one)
     segment.front.emplace(std::move(outcome.after));
   else
@@ -168,6 +201,8 @@ std::optional<double> IslandSegments::failed_by(int number, double to) {
   if (!segment.failure || segment.front->time > to) return std::nullopt;
   return segment.front->time;
 }
+
+bool IslandSegments::fails_to_respond(int segment) const { return at(segment).fails_to_respond; }
 
 void IslandSegments::raise(int segment) const {
   require(at(segment).failure != nullptr, "a segment without failure has none to raise");
@@ -197,12 +232,7 @@ collision::MotionState IslandSegments::motion_at(int segment, int body, double t
 }
 
 ProcessState IslandSegments::state_at(int number, double t) {
-  const ProcessStep& step = step_at(number, t);
-  ProcessState state(step.from);
-  if (t == step.from.time) return state;
-  state.time = t;
-  for (std::size_t k = 0; k < state.members.size(); ++k) state.states[k] = step.state_at(k, t);
-  return state;
+  return state_within(step_at(number, t), t);
 }
 
 std::vector<RigidBodyState> IslandSegments::shown_at(int number, double t) {

@@ -10,8 +10,9 @@
 /// A step that cannot be taken (a law fails, a state is not a number) is kept, and stops nothing:
 /// it was computed ahead of what other processes do, and an impact with one of them may end the
 /// segment before it. The segment is known up to that step's start, where it stands; an engine
-/// raises the failure where it is the next event of all. Only a run that is out of time stops at
-/// once.
+/// raises the failure where it is the next event of all. Where the response to an impact within the
+/// process fails, the step up to the impact stands, and the segment is known up to there. Only a
+/// run that is out of time stops at once.
 ///
 /// Threads may share them if one thread at a time uses each segment and each set of members; data
 /// that segments share is locked.
@@ -66,8 +67,11 @@ class IslandSegments {
 
   /// The segment's end, if it ends by itself at `to` or before; else null.
   const SegmentEnd* end_by(int segment, double to);
-  /// The start of the step that could not be taken, if that is `to` or before. [s]
+  /// The start of the step that could not be taken, or the impact without a response, if that is
+  /// `to` or before. [s]
   std::optional<double> failed_by(int segment, double to);
+  /// Whether it is an impact that failed. @pre failed_by answered
+  bool fails_to_respond(int segment) const;
   /// Throws what that step threw. @pre failed_by answered
   [[noreturn]] void raise(int segment) const;
   /// The end of the step that contains t; t itself where the segment has ended or failed by then.
@@ -133,7 +137,9 @@ class IslandSegments {
     std::deque<ProcessStep> steps;
     std::optional<ProcessState> front;  // the state after the last step
     std::optional<SegmentEnd> end;
-    std::exception_ptr failure;  // of the step from `front`; null: none has failed
+    // of the step from `front`, or of the response to an impact there; null: none has failed
+    std::exception_ptr failure;
+    bool fails_to_respond = false;  // the latter
     CachedWorld* cached_world = nullptr;
     int holders = 0, idle = 0;
   };
@@ -143,6 +149,10 @@ class IslandSegments {
   CachedWorld& cached_world(const std::vector<int>& members, int still);
   void reach(int segment, double t);
   void take_step(Segment& segment);
+  void keep(Segment& segment, ProcessStep step);
+  void stand_at(Segment& segment, ProcessState state, std::exception_ptr failure);
+  std::exception_ptr named(const std::exception_ptr& failure, double t,
+                           const Segment& segment) const;
   ProcessWorld::Outcome outcome_of_step(Segment& segment) const;
   std::string names(const std::vector<int>& members) const;
 

@@ -1,5 +1,6 @@
 #include "framework/engines/events/process_world.h"
 
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
 
 #include <algorithm>
@@ -242,7 +243,15 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   save_controls(step.from);
   Stages stages(*this, &step);
   const WorldStep::Taken taken = world_step_.take(std::min({due, next_look, next_switch}), stages);
-  if (taken.impact) world_step_.respond(taken.around(), *taken.impact, true, stages);
+  if (taken.impact) {
+    try {
+      world_step_.respond(taken.around(), *taken.impact, true, stages);
+    } catch (const OutOfTime&) {
+      throw;
+    } catch (const std::exception&) {
+      return {std::move(step), {}, {}, std::current_exception()};
+    }
+  }
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
 }

@@ -5,6 +5,7 @@
 /// that state alone. So processes advance, are rolled back and start again in any order.
 #pragma once
 
+#include <exception>
 #include <map>
 #include <optional>
 #include <set>
@@ -94,11 +95,15 @@ class ProcessWorld {
     ProcessState after;
     // not empty: the process has a discontinuity of its own there
     std::vector<Event> events;
+    // the response to an impact at the step's end, which failed: the step stands, and nothing is
+    // known after it (`after` and `events` are empty); null: all is well
+    std::exception_ptr failure{};
   };
   /// One step, or less: to `due`, to a motor's next sample, to a switching force, or to the first
   /// discontinuity among the members.
   /// @param start  its contact memory is moved out, because a process continues only once from a
   ///   state
+  /// @throws where the step cannot be taken; an impact at its end that has no response is reported
   Outcome step(ProcessState& start, double due);
 
   /// The impact of a pair, of which one or both are members.
