@@ -30,7 +30,17 @@ inline Trajectory run_by(const std::string& engine, const scene::Scene& scene,
   return run_as_told(std::move(options), scene, laws);
 }
 
-/// Empty where two runs committed the same events and frames; else their first difference.
+/// What a run finds wrong with itself, a line each.
+inline std::string faults_of(const Trajectory& run) {
+  std::string faults;
+  for (const RunFault& fault : run.counters.faults)
+    faults += fault.kind + " of " + fault.subject + ", " + std::to_string(fault.count) +
+              " times, first at " + std::to_string(fault.first_s) + " s\n";
+  return faults;
+}
+
+/// Empty where two runs committed the same events and frames, and found the same faults; else their
+/// first difference.
 inline std::string difference(const Trajectory& reference, const Trajectory& run) {
   if (const auto parted = engines::compare_traces(reference, run)) return parted->story;
   if (reference.stopped_by != run.stopped_by)
@@ -45,6 +55,8 @@ inline std::string difference(const Trajectory& reference, const Trajectory& run
               run.frames[k].poses[i].world_from_body.coeffs())
         return "frame " + std::to_string(k) + ": body " + reference.bodies[i].name +
                " is elsewhere";
+  if (const std::string expected = faults_of(reference), found = faults_of(run); expected != found)
+    return "faults:\n" + expected + "and\n" + found;
   return "";
 }
 

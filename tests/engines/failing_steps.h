@@ -1,6 +1,7 @@
 /// A process whose step fails from some time on, unless a ball has turned it back before.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -32,6 +33,27 @@ Laws with_failing_steps(Laws laws) {
 /// The same, where such a step returns a vector of a wrong size.
 inline Laws with_steps_of_a_wrong_size(Laws laws) {
   return with_failing_steps<modules::WrongSize>(std::move(laws));
+}
+
+constexpr double kCartSpins = 0.5;     // s: for a cart that goes on to the right
+constexpr double kSpunFails = 0.5625;  // s: likewise; four steps later
+
+/// `laws`, where the step at kCartSpins sets a body that goes to the right spinning about x, by
+/// more than half a turn a step, and where it has no step from kSpunFails on.
+inline Laws with_spinning_steps(Laws laws) {
+  laws.integrate_step = [step = laws.integrate_step](const OdeFunction& f, double t,
+                                                     const VectorXd& y, double h) -> VectorXd {
+    constexpr int kMomentumX = 7, kAngularMomentumX = 10;
+    constexpr double kSpin = 1.7;  // kg m^2/s: 255 rad/s, 4 rad a step, of a cube of 0.2 m and 1 kg
+    const bool goes_right = y.size() == kStateSize && y[kMomentumX] > 0.0;
+    if (goes_right && t > kSpunFails - 0.25 * kFailingStep)
+      throw std::runtime_error("no way through");
+    VectorXd next = step(f, t, y, h);
+    if (goes_right && std::abs(t - kCartSpins) < 0.25 * kFailingStep)
+      next[kAngularMomentumX] = kSpin;
+    return next;
+  };
+  return laws;
 }
 
 /// Carts at y = 0, 2, ..., each a process since a force pushes it: x = t + t^2 / 20 [m, s]. A ball
@@ -83,6 +105,14 @@ inline scene::Scene cart_and_post(double post_at, std::optional<double> pebble_a
         ball("pebble", 1e-3, 1e3, {x(*pebble_at) + 0.101, 0.0, 0.0}, Vector3d::Zero()));
   scene.contact.emplace();
   scene.name = "cart and post";
+  return scene;
+}
+
+/// The first of such carts as a cube, whose face the ball meets.
+inline scene::Scene pushed_cube(double met_at, double duration) {
+  scene::Scene scene = pushed_carts(1, met_at, duration);
+  scene.bodies[0].shape = scene::BoxSpec{Vector3d::Constant(0.1)};
+  scene.name = "pushed cube";
   return scene;
 }
 

@@ -172,6 +172,48 @@ TEST(FailingStep, ThatACallbackOfItsInstantPreventsStopsNothing) {
         << told.engine << ", " << told.threads << " threads";
 }
 
+// ---- What steps that never count have noted ----------------------------------------------------
+
+TEST(Faults, OfStepsThatAnImpactPreventsAreNone) {
+  const Laws laws = with_spinning_steps(test_laws());
+  for (const double met_at : {0.39, 0.43, 0.47, 0.49}) {
+    SCOPED_TRACE(met_at);
+    const scene::Scene scene = pushed_cube(met_at, 1.0);
+    const Trajectory reference = run_told({"ordered"}, scene, laws);
+    ASSERT_EQ(reference.stopped_by, "");
+    ASSERT_EQ(collision_times(reference).size(), 1U);
+    EXPECT_EQ(faults_of(reference), "");
+    expect_the_reference_everywhere(scene, reference, laws);
+    EXPECT_EQ(faults_of(run_told({"rd"}, scene, laws)).find("turn"), std::string::npos);
+  }
+}
+
+// The steps at 33, 34 and 35 / 64 s turn too far; none is taken from 36 / 64 s.
+TEST(Faults, OfTheStepsUpToAFailureAllCount) {
+  const Laws laws = with_spinning_steps(test_laws());
+  const scene::Scene scene = pushed_cube(0.75, 1.0);
+  const Trajectory reference = run_told({"ordered"}, scene, laws);
+  EXPECT_EQ(reference.stopped_by.find("at t = 0.562500 s"), 0U) << reference.stopped_by;
+  ASSERT_EQ(reference.counters.faults.size(), 1U);
+  EXPECT_EQ(reference.counters.faults[0].kind, "turn_unresolved");
+  EXPECT_EQ(reference.counters.faults[0].count, 3U);
+  EXPECT_EQ(reference.counters.faults[0].first_s, 33.0 / 64.0);
+  expect_the_reference_everywhere(scene, reference, laws);
+}
+
+// The run ends where the first of them would begin; and within it, which counts.
+TEST(Faults, OfAStepBeyondTheEndOfTheRunAreNone) {
+  const Laws laws = with_spinning_steps(test_laws());
+  for (const auto& [duration, count] : {std::pair{33.0 / 64.0, 0U}, {33.5 / 64.0, 1U}}) {
+    SCOPED_TRACE(duration);
+    const scene::Scene scene = pushed_cube(0.75, duration);
+    const Trajectory reference = run_told({"ordered"}, scene, laws);
+    ASSERT_EQ(reference.stopped_by, "");
+    EXPECT_EQ(reference.counters.faults.size(), count) << faults_of(reference);
+    expect_the_reference_everywhere(scene, reference, laws);
+  }
+}
+
 // A multiple of the step may lie a rounding before the end: no engine takes a step from there.
 TEST(FailingStep, AtTheEndOfTheRunOrBeyondStopsNothing) {
   for (const double duration : {kCartFails, std::nextafter(kCartFails, 1.0), 0.505}) {

@@ -1,5 +1,6 @@
 // What a run must not keep to itself: links that come apart, energy from nothing, bodies that turn
 // too far; and that right runs are left in peace.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -136,6 +137,35 @@ TEST(RunWatch, WhatIsNoNumberIsWorst) {
   watch.note(RunWatch::Kind::kContactUnsolved, "'b'", {kUnset, 1e-3, 0.2, 0.01});
   watch.note(RunWatch::Kind::kContactUnsolved, "'c'", {2.0, 1e-3, 0.3, 0.01});
   EXPECT_TRUE(std::isnan(watch.faults().at(0).worst));
+}
+
+// Threads add theirs in any order. Of two that are as bad the earlier one is named.
+TEST(RunWatch, TheSumDoesNotDependOnItsOrder) {
+  std::vector<RunWatch> parts(4);
+  parts[0].note(RunWatch::Kind::kLinkOpen, "'b'", {2e-6, 1e-6, 0.2, 0.01});
+  parts[1].note(RunWatch::Kind::kLinkOpen, "'c'", {2e-6, 1e-6, 0.1, 0.02});
+  parts[2].note(RunWatch::Kind::kLinkOpen, "'a'", {2e-6, 1e-6, 0.2, 0.01});
+  parts[3].note(RunWatch::Kind::kLinkOpen, "'d'", {1.5e-6, 1e-6, 0.05, 0.01});
+  std::vector<std::size_t> order{0, 1, 2, 3};
+  do {
+    RunWatch sum;
+    for (const std::size_t k : order) sum.add(parts[k]);
+    const RunFault fault = sum.faults().at(0);
+    EXPECT_EQ(fault.subject, "'c' (and 3 more)");
+    EXPECT_EQ(fault.worst_s, 0.1);
+    EXPECT_EQ(fault.first_s, 0.05);
+    EXPECT_EQ(fault.count, 4u);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(RunWatch, DropsWhatIsNotedLater) {
+  RunWatch watch;
+  watch.note(RunWatch::Kind::kTurnUnresolved, "'a'", {4.0, 3.0, 0.1, 0.01});
+  watch.note(RunWatch::Kind::kLinkOpen, "'a'", {2e-6, 1e-6, 0.11, 0.01});
+  watch.drop_after(0.105);
+  const auto faults = watch.faults();
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].kind, "turn_unresolved");
 }
 
 TEST(RunWatch, AFaultIsACheckThatFailed) {

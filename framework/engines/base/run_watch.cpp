@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -82,11 +83,19 @@ void RunWatch::add(const RunWatch& other) {
     ours.count += theirs.count;
     ours.subjects.insert(theirs.subjects.begin(), theirs.subjects.end());
     if (theirs.first.time < ours.first.time) ours.first = theirs.first;
-    if (!is_worse(theirs.worst.found / theirs.worst.allowed, ours.worst.found / ours.worst.allowed))
-      continue;
+    // Of two that are as bad, the earlier one, and at one time the one whose name comes first.
+    const double candidate = theirs.worst.found / theirs.worst.allowed,
+                 known = ours.worst.found / ours.worst.allowed;
+    const bool comes_first = std::tie(theirs.worst.time, theirs.worst_subject) <
+                             std::tie(ours.worst.time, ours.worst_subject);
+    if (!is_worse(candidate, known) && (is_worse(known, candidate) || !comes_first)) continue;
     ours.worst = theirs.worst;
     ours.worst_subject = theirs.worst_subject;
   }
+}
+
+void RunWatch::drop_after(double t) {
+  std::erase_if(incidents_, [t](const auto& known) { return known.second.first.time > t; });
 }
 
 void RunWatch::name_step(double step) { named_step_ = step; }

@@ -65,8 +65,11 @@ class RunWatch {
 
   /// Keeps what is above what is allowed, or is not a number.
   void note(Kind kind, const std::string& subject, const Size& size);
-  /// Adds what another has noted: a thread, or a part of the world.
+  /// Adds what another has noted: a thread, or a part of the world. The sum does not depend on the
+  /// order of adding.
   void add(const RunWatch& other);
+  /// Drops the kinds that were first noted after t. [s]
+  void drop_after(double t);
   bool empty() const { return incidents_.empty(); }
   /// A step that a stability criterion names for the scene: the remedy then. [s]
   void name_step(double step);

@@ -49,10 +49,13 @@ class AdvancementRun {
     try {
       do step();
       while (!(end_ > run_.duration()));  // the last instant is part of the run
+      at_ = kInfinity;
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
     }
+    for (const int i : run_.world().movers())
+      run_.world().stand(flights_[i], run_.stands_until(stopped_by, at_));
     run_.end(stopped_by);
   }
 
@@ -61,6 +64,7 @@ class AdvancementRun {
   void step() {
     ++run_.counters.steps;
     if (run_.world().processes()) run_.world().processes()->segments().forget_before(time_);
+    at_ = time_;
     end_ = run_.impacts().window_end(time_);
     queue_ = {};
     boxes_.clear();
@@ -78,6 +82,7 @@ class AdvancementRun {
       if (bound.version_a != kAnyFlight && (flights_[a].version != bound.version_a ||
                                             (b >= 0 && flights_[b].version != bound.version_b)))
         continue;
+      at_ = bound.key.time;
       advance_all(bound.key.time);
       if (bound.key.kind == StampKind::kFault) run_.commit_frame_at(bound.key, flight_of());
       if (bound.is_exact)
@@ -85,7 +90,8 @@ class AdvancementRun {
       else
         look_ahead(a, b);
     }
-    advance_all(std::min(end_, run_.duration()));
+    at_ = std::min(end_, run_.duration());
+    advance_all(at_);
     if (end_ > run_.duration()) time_ = run_.duration();
   }
 
@@ -159,8 +165,10 @@ class AdvancementRun {
            {std::pair{a, &discontinuity.a}, std::pair{b, &discontinuity.b}})
         if (run_.world().can_move(body)) discontinuity.begun.push_back({body, *flight});
     } else {
-      for (const BegunFlight& begun : discontinuity.begun)
+      for (const BegunFlight& begun : discontinuity.begun) {
+        run_.world().stand(flights_[begun.body], key.time);
         run_.world().release(flights_[begun.body]);
+      }
     }
     for (BegunFlight& begun : discontinuity.begun) {
       begun.flight.version = ++version_;
@@ -226,6 +234,7 @@ class AdvancementRun {
   std::vector<collision::SweptBox> boxes_;   // by body, until the step's end
   std::priority_queue<Bound, std::vector<Bound>, Later> queue_;
   double time_ = 0.0, end_ = 0.0;  // [s]
+  double at_ = 0.0;                // nothing before it is left to do [s]
   std::uint32_t version_ = 0;
   std::size_t called_ = 0;  // callbacks
 };

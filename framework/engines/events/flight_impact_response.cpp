@@ -223,7 +223,7 @@ Discontinuity FlightImpactResponse::resolve_impact(const EventStamp& key, const 
   remove_overlaps(work);
   work.result.a = flight_of(work, a, f, work.a);
   work.result.b = flight_of(work, b, g, work.b);
-  return work.result;
+  return std::move(work.result);
 }
 
 }  // namespace tumble::engines

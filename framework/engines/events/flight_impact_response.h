@@ -12,9 +12,11 @@
 /// meeting without an impulse is an event of impulse 0.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "framework/dynamics/laws.h"
+#include "framework/engines/base/run_watch.h"
 #include "framework/engines/events/flight_world.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -32,6 +34,8 @@ struct Discontinuity {
   std::vector<Event> more;  // further impulses of flat contacts; transitions to rest
   // members of a process separate without contact: no event is recorded
   bool is_silent = false;
+  // of an impact of processes: what a run that commits it must not keep silent; null: nothing
+  std::unique_ptr<RunWatch> noted{};
 };
 
 struct FlightImpactRules {

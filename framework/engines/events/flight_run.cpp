@@ -117,11 +117,13 @@ Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Fli
                     : !world_.can_move(a)      ? a
                     : !world_.can_move(b)      ? b
                                                : -1;
-  const ProcessWorld::Change change =
+  ProcessWorld::Change change =
       naming(fmt::format("at t = {:.6f} s, bodies {} and {}", key.time, name(a), name(b)), [&] {
         return processes.segments().world_of(state.members, still).collide({a, b}, state);
       });
-  return finished(key, processes.sort(change.after), change.events);
+  Discontinuity discontinuity = finished(key, processes.sort(change.after), change.events);
+  discontinuity.noted = std::move(change.noted);
+  return discontinuity;
 }
 
 std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, double to) const {
@@ -193,6 +195,7 @@ void FlightRun::commit_switches(double until) {
 }
 
 void FlightRun::commit(const Discontinuity& discontinuity) {
+  count(discontinuity.noted.get());
   if (!discontinuity.is_silent)
     return commit(discontinuity.key, discontinuity.first, discontinuity.more);
   pass(discontinuity.key);
@@ -226,9 +229,14 @@ void FlightRun::require_progress(const EventStamp& key, const Event& event) {
   const double step = std::floor(key.time / step_);
   impacts_in_step_ = step == step_of_impacts_ ? impacts_in_step_ + 1 : 0;
   step_of_impacts_ = step;
-  if (impacts_in_step_ > most_impacts(world_.size()))
-    throw StoppedRun(endless_impacts_message(
-        key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
+  if (impacts_in_step_ <= most_impacts(world_.size())) return;
+  stopped_at_ = key.time;
+  throw StoppedRun(endless_impacts_message(
+      key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
+}
+
+void FlightRun::count(const RunWatch* noted) {
+  if (noted != nullptr) counters.watch.add(*noted);
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {
@@ -240,10 +248,12 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   if (on_membership_) report_membership(frame.time, flight_of);
   frame_times_.take();
   if (!callbacks_.empty()) return;  // callbacks may add energy
-  if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_, frame.contacts))
-    throw StoppedRun(
-        runaway_message(frame.time, world_.world(), *runaway,
-                        {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
+  const auto runaway = energy_watch_.look(frame.time, world_.world(), states_, frame.contacts);
+  if (!runaway) return;
+  stopped_at_ = frame.time;
+  throw StoppedRun(
+      runaway_message(frame.time, world_.world(), *runaway,
+                      {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
 void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {

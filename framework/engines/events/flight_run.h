@@ -2,6 +2,9 @@
 /// impacts, the response to an impact, and the only place that commits events and frames, in order.
 #pragma once
 
+#include <algorithm>
+
+#include "framework/core/numbers.h"
 #include "framework/engines/events/flight_frames.h"
 #include "framework/engines/events/flight_impact_detection.h"
 #include "framework/engines/events/link_measures.h"
@@ -63,6 +66,8 @@ class FlightRun {
   /// Commits an impact. @pre keys come in order
   void commit(const EventStamp& key, const Event& first, const std::vector<Event>& more);
   void commit(const Discontinuity& discontinuity);
+  /// What a committed event has noted counts; null: nothing.
+  void count(const RunWatch* noted);
   /// Commits a change of islands without an event. @pre keys come in order
   void pass(const EventStamp& key);
   /// The next frame that is not committed yet; infinite when there is none. [s]
@@ -75,8 +80,14 @@ class FlightRun {
   /// @pre the fault is the next event of all, and every frame before its instant is committed
   void commit_frame_at(const EventStamp& fault, const FlightOf& flight_of);
 
-  /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty
-  /// where all is well.
+  /// The time up to which what was computed is part of the run: its end; where it has stopped, the
+  /// event or the frame that stopped it as it was committed, or else `at`, where the engine is. [s]
+  double stands_until(const std::string& stopped_by, double at) const {
+    if (stopped_by.empty()) return duration_;
+    return std::min(duration_, stopped_at_ < kInfinity ? stopped_at_ : at);
+  }
+  /// Ends the run: frames that are left are pushed by the caller before, and flights that are still
+  /// held stand as far as stands_until. `stopped_by` is empty where all is well.
   void end(const std::string& stopped_by);
 
   CheckCost cost;
@@ -94,6 +105,7 @@ class FlightRun {
   const Laws laws_;  // guarded
   double step_, duration_;
   FrameTimes frame_times_;
+  double stopped_at_ = kInfinity;  // where something that is committed stops the run [s]
   double step_of_impacts_ = -1.0;  // of the grid: the one that the last impact fell into
   long impacts_in_step_ = 0;
   FlightWorld world_;

@@ -84,6 +84,11 @@ class FlightWorld {
   void release(const Flight& flight) const {
     if (flight.segment >= 0) processes_->segments().release(flight.segment);
   }
+  /// The flight is part of the run up to `until`, whatever happens (IslandSegments::stand). Called
+  /// before it is released, unless it is rolled back. [s]
+  void stand(const Flight& flight, double until) const {
+    if (flight.segment >= 0) processes_->segments().stand(flight.segment, until);
+  }
   /// The time from `low` up to which the flight's motion is smooth, at most `high`; `low` itself
   /// where the flight has ended by then, or cannot go on. [s]
   double smooth_until(const Flight& flight, double low, double high) const {

@@ -97,6 +97,30 @@ void IslandSegments::release(int number) {
   segments_.give_back(number);
 }
 
+// A step that begins within a rounding of that time is none of the run, and a note of a step's end
+// counts where the end was reached.
+void IslandSegments::stand(int number, double until) {
+  Segment& segment = at(number);
+  if (!segment.has_notes) return;
+  const double slack = kNegligible * rules_.step;
+  segment.has_notes = false;
+  for (ProcessStep& step : segment.steps) {
+    if (!step.noted) continue;
+    if (!(step.from.time < until - slack)) {
+      segment.has_notes = true;
+      continue;
+    }
+    step.noted->drop_after(until + slack);
+    count(std::move(step.noted));
+  }
+}
+
+// Threads count in any order: the sum is the same.
+void IslandSegments::count(std::unique_ptr<RunWatch> noted) {
+  const std::lock_guard lock(mutex_);
+  past_.watch.add(*noted);
+}
+
 void IslandSegments::forget_before(double t) { forgotten_ = t; }
 
 std::size_t IslandSegments::place(int segment, int body) const {
@@ -139,9 +163,12 @@ void IslandSegments::stand_at(Segment& segment, ProcessState state, std::excepti
 
 void IslandSegments::keep(Segment& segment, ProcessStep step) {
   while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
+    // no rollback comes back to it
+    if (segment.steps.front().noted) count(std::move(segment.steps.front().noted));
     segment.steps.pop_front();
     --kept_;
   }
+  segment.has_notes = segment.has_notes || step.noted;
   segment.steps.push_back(std::move(step));
   ++kept_;
 }

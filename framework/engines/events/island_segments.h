@@ -54,6 +54,10 @@ class IslandSegments {
   /// Begins a segment. Each member holds it once, until it releases it. @return its index
   int begin(const ProcessState& state);
   void release(int segment);
+  /// What is before `until` on the segment is part of the run, whatever happens: what its steps
+  /// before then have noted counts. Called before the flights on it are released; a rollback
+  /// releases them without it. [s]
+  void stand(int segment, double until);
   /// Times before this are not queried any more. [s]
   void forget_before(double t);
   /// true: several threads use segments from now on; false: one thread again. Called while one
@@ -140,6 +144,7 @@ class IslandSegments {
     // of the step from `front`, or of the response to an impact there; null: none has failed
     std::exception_ptr failure;
     bool fails_to_respond = false;  // the latter
+    bool has_notes = false;         // some step has
     CachedWorld* cached_world = nullptr;
     int holders = 0, idle = 0;
   };
@@ -150,6 +155,7 @@ class IslandSegments {
   void reach(int segment, double t);
   void take_step(Segment& segment);
   void keep(Segment& segment, ProcessStep step);
+  void count(std::unique_ptr<RunWatch> noted);
   void stand_at(Segment& segment, ProcessState state, std::exception_ptr failure);
   std::exception_ptr named(const std::exception_ptr& failure, double t,
                            const Segment& segment) const;
@@ -170,8 +176,8 @@ class IslandSegments {
   StableTable<std::unique_ptr<Segment>> segments_;
   // size of worlds_ at which unused worlds are deleted
   std::size_t clear_at_ = kMostCachedWorlds;
-  RunCounters past_;  // of deleted worlds
-  std::mutex mutex_;  // guards worlds_, segment indices, and holders
+  RunCounters past_;  // of deleted worlds; the notes of steps that stand
+  std::mutex mutex_;  // guards worlds_, past_, segment indices, and holders
   bool is_shared_ = false;
   double forgotten_ = 0.0;
   std::atomic<std::size_t> kept_ = 0;

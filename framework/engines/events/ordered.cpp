@@ -26,10 +26,13 @@ class OrderedRun {
     try {
       // the last instant is part of the run
       for (double begin = 0.0; begin <= run_.duration(); begin = end_) look_through_window(begin);
+      at_ = kInfinity;
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
     }
+    for (const int i : run_.world().movers())
+      run_.world().stand(flights_[i], run_.stands_until(stopped_by, at_));
     run_.end(stopped_by);
   }
 
@@ -38,7 +41,7 @@ class OrderedRun {
     if (run_.world().processes())
       run_.world().processes()->segments().forget_before(std::min(begin, run_.next_frame()));
     end_ = run_.impacts().window_end(begin);
-    begin_ = begin;
+    at_ = begin_ = begin;
     for (const int a : run_.world().movers()) first_of_[a] = first_among_all(a);
     for (;;) {
       EventStamp next = kNeverKey;
@@ -47,6 +50,7 @@ class OrderedRun {
       if (built::kCallback && called_ < run_.callbacks().size())
         next = std::min(next, run_.callbacks()[called_]);
       if (!(next.time < end_) || next.time > run_.duration()) return;
+      at_ = next.time;
       draw_before(next.time);
       if (next.kind == StampKind::kFault) run_.commit_frame_at(next, flight_of());
       process(next);
@@ -63,6 +67,7 @@ class OrderedRun {
       if (run_.world().can_move(key.body_b)) flights_[key.body_b] = discontinuity.b;
     }
     for (const BegunFlight& begun : discontinuity.begun) {
+      run_.world().stand(flights_[begun.body], key.time);
       run_.world().release(flights_[begun.body]);
       flights_[begun.body] = begun.flight;
       changed.push_back(begun.body);
@@ -113,6 +118,7 @@ class OrderedRun {
   std::vector<EventStamp> first_of_;  // by body: the first impact that involves it in this window
   std::size_t called_ = 0;            // callbacks
   double begin_ = 0.0, end_ = 0.0;    // the current window [s]
+  double at_ = 0.0;                   // nothing before it is left to do [s]
 };
 
 }  // namespace

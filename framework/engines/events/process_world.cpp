@@ -19,6 +19,27 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part,
   return shapes;
 }
 
+// What is noted while it lives; what was noted before is put back at its end. What a step that
+// throws has noted is dropped: there never was such a step.
+class NotesOfOne {
+ public:
+  explicit NotesOfOne(RunWatch& watch) : watch_(watch), before_(std::exchange(watch, {})) {}
+  ~NotesOfOne() { watch_ = std::move(before_); }
+  NotesOfOne(const NotesOfOne&) = delete;
+  NotesOfOne& operator=(const NotesOfOne&) = delete;
+
+  // Moves the notes so far.
+  void move_to(std::unique_ptr<RunWatch>& noted) {
+    if (watch_.empty()) return;
+    if (!noted) noted = std::make_unique<RunWatch>();
+    noted->add(std::exchange(watch_, {}));
+  }
+
+ private:
+  RunWatch& watch_;
+  RunWatch before_;
+};
+
 }  // namespace
 
 const RigidBodyState& ProcessState::state_of(int body) const {
@@ -237,12 +258,14 @@ struct ProcessWorld::Stages final : StepStages {
 };
 
 ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
+  NotesOfOne notes(counters_.watch);
   load(start, std::exchange(start.contacts, std::nullopt));
   const double next_look = moving_.look(), next_switch = load_forces(start);
   ProcessStep step{start.without_memory(), start.time, {}, {}};
   save_controls(step.from);
   Stages stages(*this, &step);
   const WorldStep::Taken taken = world_step_.take(std::min({due, next_look, next_switch}), stages);
+  notes.move_to(step.noted);
   if (taken.impact) {
     try {
       world_step_.respond(taken.around(), *taken.impact, true, stages);
@@ -251,6 +274,7 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
     } catch (const std::exception&) {
       return {std::move(step), {}, {}, std::current_exception()};
     }
+    notes.move_to(step.noted);
   }
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
@@ -296,6 +320,7 @@ ProcessWorld::Change ProcessWorld::begin_contacts(const ProcessState& state) {
 }
 
 ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& state) {
+  NotesOfOne notes(counters_.watch);
   load(state);
   load_forces(state);
   const BodyPair trigger = local(pair);
@@ -317,8 +342,9 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
                       0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0,
                       0.0, 0.0});
   }
-  ProcessState after = save();
-  return {std::move(after), take_events()};
+  Change change{save(), take_events()};
+  notes.move_to(change.noted);
+  return change;
 }
 
 }  // namespace tumble::engines

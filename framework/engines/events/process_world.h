@@ -2,11 +2,13 @@
 /// contacts. They move by the same stages as in a world of all bodies (contact/world_step.h).
 ///
 /// It has no time of its own: every query brings the state to start from, and the answer depends on
-/// that state alone. So processes advance, are rolled back and start again in any order.
+/// that state alone. So processes advance, are rolled back and start again in any order. For the
+/// same reason, what a step or an impact notes for the watch over a run is part of its result.
 #pragma once
 
 #include <exception>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -55,6 +57,8 @@ struct ProcessStep {
   double end;
   std::vector<SmoothPath> paths;     // by member; empty for a step without length
   std::vector<ContactPoint> forces;  // in persistent contacts
+  // what a run that takes it must not keep silent; null: nothing
+  std::unique_ptr<RunWatch> noted{};
 
   collision::MotionState motion_at(std::size_t member, double t, const Inertia& inertia) const;
   RigidBodyState state_at(std::size_t member, double t) const;
@@ -86,6 +90,7 @@ class ProcessWorld {
   struct Change {
     ProcessState after;
     std::vector<Event> events;
+    std::unique_ptr<RunWatch> noted{};  // as of a step
   };
   /// Begins persistent contacts where members touch each other or immovable bodies slowly.
   Change begin_contacts(const ProcessState& state);

@@ -75,14 +75,14 @@ class FlightHistories {
   /// Drops flights that ended before t (fossil collection): nothing before global virtual time is
   /// queried again.
   void purge(int body, double t) {
-    purge(body, t, [](const Flight&) {});
+    purge(body, t, [](const Flight&, const Flight&) {});
   }
-  /// Calls `purged(flight)` for each.
+  /// Calls `purged(flight, the next one)` for each.
   template <class Purged>
   void purge(int body, double t, const Purged& purged) {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
     while (history.count_ > 1 && history[1].begin < t) {
-      purged(history[0]);
+      purged(history[0], history[1]);
       history.first_ = (history.first_ + 1) & history.mask_;
       --history.count_;
     }

@@ -27,7 +27,7 @@ void TaughtTimewarp::collide(int id, const FoundImpact& found, const CheckDecisi
     for (const auto& [body, flight] :
          {std::pair{key.body_a, &discontinuity.a}, std::pair{key.body_b, &discontinuity.b}})
       if (world().can_move(body)) discontinuity.begun.push_back({body, *flight});
-  begin_flights(discontinuity, kUnset, kUnset);
+  begin_flights(std::move(discontinuity), kUnset, kUnset);
 }
 
 // Checks that a body has been rolled back to the time of an event: it must stand there, on the
@@ -44,8 +44,7 @@ void TaughtTimewarp::go_to(int body, double t, std::optional<std::uint32_t> vers
 }
 
 /// @param safe_time, time  of the checks of groups that begin; unset: their start time
-void TaughtTimewarp::begin_flights(const Discontinuity& discontinuity, double safe_time,
-                                   double time) {
+void TaughtTimewarp::begin_flights(Discontinuity discontinuity, double safe_time, double time) {
   Executed executed{{stamp_of(discontinuity.key), {}},
                     discontinuity.key,
                     discontinuity.first,
@@ -57,6 +56,7 @@ void TaughtTimewarp::begin_flights(const Discontinuity& discontinuity, double sa
     process(begin.body).begin(begin.flight, discontinuity.key);
     executed.effect.processes.push_back(begin.body);
   }
+  executed.noted = std::move(discontinuity.noted);
   executed_.push_back(std::move(executed));
   ask_for_groups(begun);
   keep_group_checks(safe_time, time);
@@ -133,12 +133,12 @@ void TaughtTimewarp::check_group(int id) {
   for (const int member : event.receivers)
     go_to(member, finding.end->time, member == body ? std::optional(flight.version) : std::nullopt,
           why);
-  const Discontinuity discontinuity = run_.end_of_segment(*finding.end, flight);
+  Discontinuity discontinuity = run_.end_of_segment(*finding.end, flight);
   if (const Groups expected = groups_of(discontinuity.begun); decision.groups != expected)
     throw StoppedRun(
         fmt::format("{}: on_group_check makes {} of it; the contacts that are still closed give {}",
                     why, in_words(world(), decision.groups), in_words(world(), expected)));
-  begin_flights(discontinuity, decision.next.safe_time, decision.next.stamp.time);
+  begin_flights(std::move(discontinuity), decision.next.safe_time, decision.next.stamp.time);
 }
 
 // ---- A callback --------------------------------------------------------------------------------

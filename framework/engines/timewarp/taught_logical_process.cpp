@@ -102,11 +102,21 @@ void TaughtLogicalProcess::drop_oldest(std::size_t count) {
   const auto end = states_.begin() + static_cast<std::ptrdiff_t>(count);
   for (auto state = states_.begin(); state != end; ++state) {
     swept_.remove(state->id);
-    if (std::next(state) == states_.end() ||
-        std::next(state)->flight.version != state->flight.version)
-      world_.release(state->flight);
+    const auto next = std::next(state);
+    if (next != states_.end() && next->flight.version == state->flight.version) continue;
+    if (next != states_.end()) world_.stand(state->flight, next->flight.begin);
+    world_.release(state->flight);
   }
   states_.erase(states_.begin(), end);
+}
+
+void TaughtLogicalProcess::stand(double until) const {
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const bool is_last = k + 1 == states_.size();
+    const Flight& flight = states_[k].flight;
+    if (!is_last && states_[k + 1].flight.version == flight.version) continue;
+    world_.stand(flight, is_last ? until : std::min(until, states_[k + 1].flight.begin));
+  }
 }
 
 void TaughtLogicalProcess::push(double time, const Flight& flight, const EventStamp& began,

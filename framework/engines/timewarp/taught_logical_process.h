@@ -80,6 +80,8 @@ class TaughtLogicalProcess {
   /// Drops the latest state, or the `count` oldest.
   void drop_latest();
   void drop_oldest(std::size_t count);
+  /// At the end of the run: its flights are part of it up to `until`. [s]
+  void stand(double until) const;
 
  private:
   void push(double time, const Flight& flight, const EventStamp& began, const Box& box);

@@ -151,8 +151,8 @@ void TaughtTimewarp::commit() {
 }
 
 void TaughtTimewarp::commit_event() {
-  const Executed executed = executed_.front();
-  const EventStamp& key = executed.key;
+  const Executed& executed = executed_.front();
+  const EventStamp key = executed.key;
   if (!executed.rolled_back.empty())
     throw StoppedRun(
         fmt::format("{} was about to be committed, but only some of its processes were rolled back "
@@ -167,6 +167,7 @@ void TaughtTimewarp::commit_event() {
                     "them wrongly, or it came too late because global virtual time or may_commit "
                     "accepted what was not certain",
                     name(key), committed_.time));
+  run_.count(executed.noted.get());
   if (executed.is_silent)
     run_.pass(key);
   else

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -31,8 +32,9 @@ struct Executed {
   EventStamp key;
   Event first;
   std::vector<Event> more;
-  bool is_silent;               // no event is recorded
-  std::set<int> rolled_back{};  // the processes that have rolled it back
+  bool is_silent;                     // no event is recorded
+  std::set<int> rolled_back{};        // the processes that have rolled it back
+  std::unique_ptr<RunWatch> noted{};  // of its discontinuity
 };
 
 class TaughtTimewarp {
@@ -71,7 +73,7 @@ class TaughtTimewarp {
   void check_group(int id);
   void call(int id);
   void go_to(int body, double t, std::optional<std::uint32_t> version, const std::string& why);
-  void begin_flights(const Discontinuity& discontinuity, double safe_time, double time);
+  void begin_flights(Discontinuity discontinuity, double safe_time, double time);
   void ask_for_groups(const std::vector<BegunFlight>& begun);
   void keep_group_checks(double safe_time = kUnset, double time = kUnset);
   void expect_callback(const EventStamp& key);
@@ -100,6 +102,7 @@ class TaughtTimewarp {
   void roll_back_one(const Rollback& rollback, const std::string& why);
 
   void look_at_gvt(bool is_over);
+  void stand(double until);
   void check_nothing_leaked();
   void commit();
   void commit_event();

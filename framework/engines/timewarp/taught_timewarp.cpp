@@ -66,10 +66,14 @@ void TaughtTimewarp::run() {
   try {
     loop();
     stopped_by = watch_.missing();
-    if (stopped_by.empty()) check_nothing_leaked();
+    if (stopped_by.empty()) {
+      stand(run_.duration());
+      check_nothing_leaked();
+    }
   } catch (const StoppedRun& stop) {
     stopped_by = stop.what();
   }
+  if (!stopped_by.empty()) stand(run_.stands_until(stopped_by, committed_.time));
   if (stopped_by.empty() && !watch_.stop_of_reference().empty())
     stopped_by = "the ordered reference stopped: " + watch_.stop_of_reference();
   sink_.virtual_times(times_);
@@ -78,6 +82,10 @@ void TaughtTimewarp::run() {
         fmt::format("committed trace: {} events, each the ordered reference's to the last bit",
                     watch_.events()));
   run_.end(stopped_by);
+}
+
+void TaughtTimewarp::stand(double until) {
+  for (const int body : world().movers()) process(body).stand(until);
 }
 
 // ---- The loop ----------------------------------------------------------------------------------

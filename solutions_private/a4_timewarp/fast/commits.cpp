@@ -70,6 +70,7 @@ void Coordinator::commit_before(const EventStamp& key) {
       continue;
     }
     draw_before(event.key.time);
+    all_.run.count(event.noted.get());
     if (event.is_silent)
       all_.run.pass(event.key);
     else
@@ -82,6 +83,16 @@ void Coordinator::commit_before(const EventStamp& key) {
   note_kept();
   all_.committed = std::min(key.time, all_.run.duration());
   if (all_.world().processes()) all_.world().processes()->segments().forget_before(all_.committed);
+}
+
+// At the end of the run: the flights that are still held, each as far as it was flown.
+void Coordinator::stand(double until) {
+  for (const int body : all_.world().movers()) {
+    const FlightHistory& flights = all_.histories[body];
+    for (std::size_t k = 0; k < flights.size(); ++k)
+      all_.world().stand(flights[k],
+                         k + 1 < flights.size() ? std::min(until, flights[k + 1].begin) : until);
+  }
 }
 
 void Coordinator::note_kept() {

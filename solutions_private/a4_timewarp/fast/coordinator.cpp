@@ -94,6 +94,7 @@ void Coordinator::run() {
     else
       run_alone();
     commit_before(kInfinity);
+    stand(all_.run.duration());
     check_nothing_leaked();
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
@@ -103,6 +104,8 @@ void Coordinator::run() {
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
   }
+  if (!stopped_by.empty())
+    stand(all_.run.stands_until(stopped_by, working_at_ ? working_at_->time : all_.committed));
   end(stopped_by);
 }
 

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "framework/core/numbers.h"
@@ -65,8 +66,9 @@ struct Executed {
   std::uint32_t version_a, version_b;  // of the flights that began with it
   Event first;
   std::vector<Event> more;
-  bool is_silent = false;     // no event is recorded
-  std::size_t processes = 0;  // on which flights began with it
+  bool is_silent = false;                      // no event is recorded
+  std::size_t processes = 0;                   // on which flights began with it
+  std::unique_ptr<engines::RunWatch> noted{};  // of its discontinuity
 };
 
 /// One region with its queue, or the boundary.

@@ -92,7 +92,8 @@ void Worker::collide(const Due& due) {
   const auto processes = static_cast<std::size_t>(std::count_if(
       std::begin(bodies), std::end(bodies), [&](int body) { return world().can_move(body); }));
   executed.push_back({due.key, version_a, version_b, discontinuity.first,
-                      std::move(discontinuity.more), false, processes});
+                      std::move(discontinuity.more), false, processes,
+                      std::move(discontinuity.noted)});
   for (const int body : bodies)
     if (world().can_move(body)) advance_or_defer(body);
 }
@@ -142,7 +143,7 @@ void Worker::begin_flights(const Due& due, engines::Discontinuity discontinuity)
   }
   executed.push_back({due.key, versions[0], versions[1], discontinuity.first,
                       std::move(discontinuity.more), discontinuity.is_silent,
-                      discontinuity.begun.size()});
+                      discontinuity.begun.size(), std::move(discontinuity.noted)});
   for (const engines::BegunFlight& begun : discontinuity.begun)
     if (all_.first_member(begun.body) == begun.body) advance_or_defer(begun.body);
 }
@@ -158,7 +159,8 @@ void Worker::begin_flight(int body, Flight flight, std::uint32_t version) {
 }
 
 void Worker::purge(int body) {
-  all_.histories.purge(body, all_.committed, [&](const Flight& purged) {
+  all_.histories.purge(body, all_.committed, [&](const Flight& purged, const Flight& next) {
+    world().stand(purged, next.begin);
     forget(purged);
     --kept;
   });
