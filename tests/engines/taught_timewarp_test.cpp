@@ -65,6 +65,35 @@ TEST(TaughtTimewarp, GoesOnWhereAnImpactPreventsAFailingStep) {
   }
 }
 
+// Checks may be due as late as a scheduler likes: that of the ball comes after the callback here,
+// which cannot act on a cart whose step has failed.
+TEST(TaughtTimewarp, ACallbackAfterAFailingStepWaitsForTheImpactThatPreventsIt) {
+  Laws laws = with_failing_steps(taught_laws());
+  laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check](
+                                           const ScheduledEvent& event, const CheckFinding& finding,
+                                           double step) {
+    CheckDecision decision = right(event, finding, step);
+    if (!decision.collides) decision.next.stamp.time += 0.1;
+    return decision;
+  };
+  for (const double met_at : {0.45, 0.485, 0.495})
+    for (const double called_at : {0.5, 0.51, 0.53, 0.56, 0.6}) {
+      SCOPED_TRACE(std::to_string(met_at) + " s, callback at " + std::to_string(called_at) + " s");
+      const scene::Scene scene = pushed_carts(1, met_at, 0.8);
+      const std::vector<engines::Callback> kick{
+          {called_at, {0}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.1; }}};
+      const Trajectory reference = run_taught(scene, laws, kick, "ordered");
+      ASSERT_EQ(reference.stopped_by, "");
+      EXPECT_EQ(difference(reference, run_taught(scene, laws, kick)), "");
+    }
+  // nothing prevents it
+  const Trajectory run =
+      run_taught(pushed_carts(1, 5.0, 0.8), laws,
+                 {{0.6, {0}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.1; }}});
+  EXPECT_NE(run.stopped_by.find("at t = 0.500000 s, body 'cart0'"), std::string::npos)
+      << run.stopped_by;
+}
+
 // Towers fuse, are hit and come apart; dominoes fall; an arm throws its block; rocks roll.
 TEST(TaughtTimewarp, CommitsTheReferencesTraceOfGroupsInContact) {
   const Trajectory tower = run_taught(tower_and_projectile(5.0), taught_reference_laws());

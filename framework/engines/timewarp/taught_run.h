@@ -64,6 +64,8 @@ class TaughtTimewarp {
   }
 
   void loop();
+  std::optional<int> next_due();
+  bool has_to_wait(int id);
   std::size_t most_events_at_one_gvt() const;
   void work_at(int id);
   void redraw(int id);

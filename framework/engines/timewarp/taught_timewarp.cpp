@@ -94,11 +94,7 @@ void TaughtTimewarp::loop() {
   keep_group_checks();
   for (const EventStamp& callback : run_.callbacks()) expect_callback(callback);
   queue_.add({{0.0, kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
-  while (const std::optional<int> id = queue_.pop()) {
-    if (queue_.event(*id).stamp.time > run_.duration()) {
-      queue_.park(*id);  // a rollback may restore it
-      continue;
-    }
+  while (const std::optional<int> id = next_due()) {
     work_at(*id);
     if (++since_gvt_ > most_events_at_one_gvt())
       throw StoppedRun(
@@ -110,6 +106,38 @@ void TaughtTimewarp::loop() {
       look_at_gvt(false);
   }
   look_at_gvt(true);
+}
+
+// The front of the queue within the run. Callbacks that have to wait stay behind all that need not;
+// where nothing else is due, they wait no longer.
+std::optional<int> TaughtTimewarp::next_due() {
+  std::vector<int> waiting;
+  std::optional<int> next = queue_.pop();
+  for (; next; next = queue_.pop()) {
+    if (queue_.event(*next).stamp.time > run_.duration())
+      queue_.park(*next);  // a rollback may restore it
+    else if (has_to_wait(*next))
+      waiting.push_back(*next);
+    else
+      break;
+  }
+  for (const int callback : waiting) queue_.put(callback, queue_.event(callback));
+  return next || waiting.empty() ? next : std::optional(waiting.front());
+}
+
+// A callback on a body whose next step fails before the callback's time: an impact that no check
+// has found yet may end that segment before the step. Once global virtual time is past the step,
+// none can, and the callback raises the failure.
+bool TaughtTimewarp::has_to_wait(int id) {
+  const ScheduledEvent& event = queue_.event(id);
+  if (event.stamp.kind != WorkKind::kCallback) return false;
+  return std::any_of(event.receivers.begin(), event.receivers.end(), [&](int body) {
+    const KeptState* state = process(body).at(event.stamp.time);
+    if (state == nullptr || state->flight.segment < 0) return false;
+    const auto failed =
+        world().processes()->segments().failed_by(state->flight.segment, event.stamp.time);
+    return failed && *failed < event.stamp.time && gvt_ <= *failed;
+  });
 }
 
 std::size_t TaughtTimewarp::most_events_at_one_gvt() const {
