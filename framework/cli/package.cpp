@@ -57,9 +57,9 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 
 // The proof of a release, for the tree of the package and for its other files, and a search of its
 // programs for names.
-std::vector<grading::Finding> private_parts(const Context& context, const fs::path& unpacked) {
+std::vector<grading::ReleaseFault> private_parts(const Context& context, const fs::path& unpacked) {
   const auto secrets = private_files(context, {});
-  std::vector<grading::Finding> found = grading::leaks(unpacked / "usr/share/tumble", secrets);
+  std::vector<grading::ReleaseFault> found = grading::leaks(unpacked / "usr/share/tumble", secrets);
   for (const char* part : {"usr/bin", "usr/lib", "usr/share/doc", "usr/share/bash-completion"})
     for (const auto& finding : grading::leaks(unpacked / part, secrets)) found.push_back(finding);
   for (const modules::ModuleKind* kind : context.registry.all()) {

@@ -94,7 +94,7 @@ void publish_solution(const Context& context, const std::string& id, const fs::p
   fs::copy_file(solution, release / "assignments" / file, fs::copy_options::overwrite_existing);
 }
 
-void refuse(const std::vector<grading::Finding>& findings, const std::string& remedy) {
+void refuse(const std::vector<grading::ReleaseFault>& findings, const std::string& remedy) {
   if (findings.empty()) return;
   std::string more;
   for (std::size_t i = 1; i < findings.size(); ++i)
@@ -119,7 +119,7 @@ void refuse_untracked_parts(const std::vector<fs::path>& untracked) {
       R"((assignments/a[0-9]+_\w+|framework/effects/\w+)/CMakeLists\.txt)"
       R"(|tests/(a[0-9]+_\w+|effects)/\w+_(test|fixtures)\.cpp)"
       R"(|handouts/drawings/draw_a[0-9]+\.cpp)");
-  std::vector<grading::Finding> findings;
+  std::vector<grading::ReleaseFault> findings;
   for (const fs::path& file : untracked)
     if (std::regex_match(file.string(), found_by_build))
       findings.push_back({file.string(), "is part of this build and not tracked by git"});
@@ -128,7 +128,7 @@ void refuse_untracked_parts(const std::vector<fs::path>& untracked) {
 
 // A new assignment is no student's before its author has written it.
 void refuse_unwritten(const Context& context) {
-  std::vector<grading::Finding> findings;
+  std::vector<grading::ReleaseFault> findings;
   for (const modules::ModuleKind* kind : context.registry.all())
     for (const extend::Unwritten& one : extend::unwritten_of(context.root, kind->folder))
       findings.push_back({one.place, one.what});

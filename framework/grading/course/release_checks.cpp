@@ -143,18 +143,18 @@ void forget_headers(const fs::path& folder, const std::vector<fs::path>& shipped
 }
 
 /// The first place of a file with a secret.
-std::optional<Finding> first_leak(const std::string& name, const std::string& text,
-                                  const Secrets& secrets) {
+std::optional<ReleaseFault> first_leak(const std::string& name, const std::string& text,
+                                       const Secrets& secrets) {
   if (const auto whole = secrets.files.find(std::hash<std::string>{}(text));
       whole != secrets.files.end() && !text.empty())
-    return Finding{name, "is a copy of " + whole->second};
+    return ReleaseFault{name, "is a copy of " + whole->second};
   if (!is_text(text)) return std::nullopt;
-  std::optional<Finding> found;
+  std::optional<ReleaseFault> found;
   const auto match = [&](const Origins& origins, std::uint64_t hash, int line,
                          const std::string& what) {
     if (found) return;
     if (const auto it = origins.find(hash); it != origins.end())
-      found = Finding{at_line(name, line), "holds " + what + " of " + it->second};
+      found = ReleaseFault{at_line(name, line), "holds " + what + " of " + it->second};
   };
   each_passage(text, [&](std::uint64_t hash, int line) {
     match(secrets.passages, hash, line, "three lines");
@@ -189,15 +189,15 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 
 }  // namespace
 
-std::vector<Finding> missing_files(const fs::path& root, const std::vector<fs::path>& shipped,
-                                   const std::vector<fs::path>& left_out) {
+std::vector<ReleaseFault> missing_files(const fs::path& root, const std::vector<fs::path>& shipped,
+                                        const std::vector<fs::path>& left_out) {
   // names that any text may contain
   constexpr std::array kEverywhere = {"README.md", "CMakeLists.txt", "index.html"};
   std::vector<std::pair<std::string, std::string>> texts;
   for (const fs::path& file : shipped)
     if (std::string text = text_of(root / file); is_text(text))
       texts.emplace_back(file.string(), std::move(text));
-  std::vector<Finding> found;
+  std::vector<ReleaseFault> found;
   for (const fs::path& file : left_out) {
     const std::string name = file.filename().string();
     if (std::find(kEverywhere.begin(), kEverywhere.end(), name) != kEverywhere.end()) continue;
@@ -213,9 +213,9 @@ std::vector<Finding> missing_files(const fs::path& root, const std::vector<fs::p
   return found;
 }
 
-std::vector<Finding> what_is_no_stub(const std::string& name, const std::string& text,
-                                     const std::vector<std::string>& functions) {
-  std::vector<Finding> found;
+std::vector<ReleaseFault> what_is_no_stub(const std::string& name, const std::string& text,
+                                          const std::vector<std::string>& functions) {
+  std::vector<ReleaseFault> found;
   std::string code = code_of(text);
   const auto blank = [](std::string& where, const std::smatch& match) {  // places stay
     for (auto at = static_cast<std::size_t>(match.position(0)),
@@ -254,11 +254,12 @@ std::vector<Finding> what_is_no_stub(const std::string& name, const std::string&
   return found;
 }
 
-std::vector<Finding> leaks(const fs::path& folder, const std::vector<PrivateFile>& private_files) {
+std::vector<ReleaseFault> leaks(const fs::path& folder,
+                                const std::vector<PrivateFile>& private_files) {
   const std::vector<fs::path> shipped = files_below(folder);
   Secrets secrets = collect(private_files);
   forget_headers(folder, shipped, secrets);
-  std::vector<Finding> found;
+  std::vector<ReleaseFault> found;
   for (const fs::path& file : shipped)
     if (auto leak = first_leak(file.string(), text_of(folder / file), secrets))
       found.push_back(*leak);

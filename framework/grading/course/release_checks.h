@@ -9,7 +9,7 @@
 namespace tumble::grading {
 
 /// A problem that prevents a release.
-struct Finding {
+struct ReleaseFault {
   std::string where;  // "file:line", from the root of the tree
   std::string problem;
 };
@@ -17,15 +17,15 @@ struct Finding {
 /// Shipped files that need a file that is not shipped, found by its name (an #include, a list of
 /// sources, a scene's model).
 /// @param shipped, left_out  from `root`
-std::vector<Finding> missing_files(const std::filesystem::path& root,
-                                   const std::vector<std::filesystem::path>& shipped,
-                                   const std::vector<std::filesystem::path>& left_out);
+std::vector<ReleaseFault> missing_files(const std::filesystem::path& root,
+                                        const std::vector<std::filesystem::path>& shipped,
+                                        const std::vector<std::filesystem::path>& left_out);
 
 /// A stub's file may have, beside includes, namespaces and comments, only one definition of each
 /// function, whose body is one line that throws NotImplemented with its name.
 /// @param name  of the file, for messages
-std::vector<Finding> what_is_no_stub(const std::string& name, const std::string& text,
-                                     const std::vector<std::string>& functions);
+std::vector<ReleaseFault> what_is_no_stub(const std::string& name, const std::string& text,
+                                          const std::vector<std::string>& functions);
 
 /// A private file.
 struct PrivateFile {
@@ -41,7 +41,7 @@ struct PrivateFile {
 /// of a module's header is not secret. Renamed variables hide a passage: this finds copies, not
 /// rewritten code.
 /// @param folder  the tree that is to be released
-std::vector<Finding> leaks(const std::filesystem::path& folder,
-                           const std::vector<PrivateFile>& secrets);
+std::vector<ReleaseFault> leaks(const std::filesystem::path& folder,
+                                const std::vector<PrivateFile>& secrets);
 
 }  // namespace tumble::grading
