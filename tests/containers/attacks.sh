@@ -19,6 +19,7 @@ make_image() {
   debootstrap --variant=minbase --include="$packages" bookworm "$folder" "${TUMBLE_DEBIAN_MIRROR:-http://deb.debian.org/debian}" >"$1.log" 2>&1 ||
     { tail -n 20 "$1.log" >&2; exit 1; }
   rm -f "$folder"/var/cache/apt/archives/*.deb
+  chmod 755 "$folder"   # mktemp's 700 would be that of the image's root: a run's user id could enter nothing
   tar --one-file-system -C "$folder" -cf "$1" .
 }
 
