@@ -152,6 +152,8 @@ void grade(Context& context, const GradeWords& words) {
   refuse_contradictions(words);
   const fs::path out =
       words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
+  // before anything in it is read: a list of results among submissions is a student's
+  if (fs::is_directory(words.folder)) grading::place_of_results(out, words.folder);
   refuse_to_drop_policy(words, out);
   GradingRequest request{words.id, words.folder, out, words.sandbox, words.policy, {}};
   request.options.jobs = words.jobs > 0 ? words.jobs : default_jobs();

@@ -157,30 +157,36 @@ RunSettings settings_of(const fs::path& out) {
   }
 }
 
-OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id,
-                           const RunSettings& settings, BrokenList broken)
-    : id_(id), settings_(settings), broken_(broken) {
+fs::path place_of_results(const fs::path& out, const fs::path& submissions) {
   std::error_code failed;
-  path_ = fs::weakly_canonical(fs::absolute(out), failed);
+  const fs::path place = fs::weakly_canonical(fs::absolute(out), failed);
   if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
-  if (is_there(path_) && !fs::is_directory(path_))
+  if (is_there(place) && !fs::is_directory(place))
     throw UserError(shown(out), "is not a folder", kElsewhere);
   const fs::path graded = fs::canonical(submissions);
   const char* const kOverlaps =
       "Results must not be written among submissions, nor submissions read among results. Give "
       "--out a folder elsewhere.";
-  if (lies_in(path_, graded))
+  if (lies_in(place, graded))
     throw UserError(shown(out),
-                    lies_in(graded, path_)
+                    lies_in(graded, place)
                         ? "is the folder of the submissions itself"
                         : "lies in the folder of the submissions, " + shown(submissions),
                     kOverlaps);
-  if (lies_in(graded, path_))
+  if (lies_in(graded, place))
     throw UserError(shown(out), "holds the folder of the submissions, " + shown(submissions),
                     kOverlaps);
+  return place;
+}
+
+OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id,
+                           const RunSettings& settings, BrokenList broken)
+    : id_(id), settings_(settings), broken_(broken) {
+  path_ = place_of_results(out, submissions);
   read_manifest();
   // otherwise the lock comes first: a grading that runs there creates and renames files
   if (!is_there(path_ / kLock)) refuse_foreign_files();
+  std::error_code failed;
   fs::create_directories(path_, failed);
   if (failed)
     throw UserError(shown(out), "cannot be created: " + failed.message(),

@@ -31,6 +31,11 @@ bool has_manifest(const std::filesystem::path& out);
 /// @throws UserError when the folder has no manifest of this grader, or one that cannot be read
 RunSettings settings_of(const std::filesystem::path& out);
 
+/// Where results may be written: `out` as it is named without links.
+/// @throws UserError where it is no folder, or one of the two folders holds the other
+std::filesystem::path place_of_results(const std::filesystem::path& out,
+                                       const std::filesystem::path& submissions);
+
 /// What is done with a manifest that is half-written, edited or of another version.
 enum class BrokenList {
   kRefuse,
