@@ -34,7 +34,8 @@ struct Discontinuity {
   std::vector<Event> more;  // further impulses of flat contacts; transitions to rest
   // members of a process separate without contact: no event is recorded
   bool is_silent = false;
-  // of an impact of processes: what a run that commits it must not keep silent; null: nothing
+  // of an impact of processes, or of the end of a segment: what a run that commits it must not keep
+  // silent; null: nothing
   std::unique_ptr<RunWatch> noted{};
 };
 

@@ -150,7 +150,10 @@ Discontinuity FlightRun::end_of_segment(const EventStamp& key, const Flight& fli
                     key.time, name(key.body_a)));
   const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, key.time);
   require(end != nullptr, "a segment ends where own_end said");
-  return finished(key, world_.processes()->sort(end->after), end->events);
+  Discontinuity discontinuity = finished(key, world_.processes()->sort(end->after), end->events);
+  // a copy: an engine with rollback may come to this end again
+  if (end->noted) discontinuity.noted = std::make_unique<RunWatch>(*end->noted);
+  return discontinuity;
 }
 
 Discontinuity FlightRun::call(const EventStamp& key, const FlightOf& flight_of) try {

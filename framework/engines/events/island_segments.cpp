@@ -21,6 +21,15 @@ ProcessState state_within(const ProcessStep& step, double t) {
   return state;
 }
 
+// The notes of a segment's end, of its last step. All that a step without length has noted is the
+// end's: it lies in no stretch of time.
+std::unique_ptr<RunWatch> notes_of_end(ProcessStep& step, double slack) {
+  std::unique_ptr<RunWatch> noted = std::move(step.noted_at_end);
+  if (!step.noted || step.from.time < step.end - slack) return noted;
+  if (noted) step.noted->add(*noted);
+  return std::move(step.noted);
+}
+
 }  // namespace
 
 IslandSegments::IslandSegments(const World& whole, ShapeOf shape_of, const Laws& laws,
@@ -98,20 +107,20 @@ void IslandSegments::release(int number) {
 }
 
 // A step that begins within a rounding of that time is none of the run, and a note of a step's end
-// counts where the end was reached.
+// counts where the end was reached: the response there, too, which was no event, since the segment
+// has gone on.
 void IslandSegments::stand(int number, double until) {
   Segment& segment = at(number);
   if (!segment.has_notes) return;
   const double slack = kNegligible * rules_.step;
   segment.has_notes = false;
   for (ProcessStep& step : segment.steps) {
-    if (!step.noted) continue;
-    if (!(step.from.time < until - slack)) {
-      segment.has_notes = true;
-      continue;
+    if (step.noted && step.from.time < until - slack) {
+      step.noted->drop_after(until + slack);
+      count(std::move(step.noted));
     }
-    step.noted->drop_after(until + slack);
-    count(std::move(step.noted));
+    if (step.noted_at_end && step.end <= until + slack) count(std::move(step.noted_at_end));
+    segment.has_notes = segment.has_notes || step.noted || step.noted_at_end;
   }
 }
 
@@ -164,11 +173,13 @@ void IslandSegments::stand_at(Segment& segment, ProcessState state, std::excepti
 void IslandSegments::keep(Segment& segment, ProcessStep step) {
   while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
     // no rollback comes back to it
-    if (segment.steps.front().noted) count(std::move(segment.steps.front().noted));
+    ProcessStep& first = segment.steps.front();
+    if (first.noted) count(std::move(first.noted));
+    if (first.noted_at_end) count(std::move(first.noted_at_end));
     segment.steps.pop_front();
     --kept_;
   }
-  segment.has_notes = segment.has_notes || step.noted;
+  segment.has_notes = segment.has_notes || step.noted || step.noted_at_end;
   segment.steps.push_back(std::move(step));
   ++kept_;
 }
@@ -203,11 +214,13 @@ void IslandSegments::take_step(Segment& segment) {
                     named(outcome.failure, step.end, segment));
   }
   const bool is_one = segment.start->near.empty() || !falls_apart_(outcome.after);
-  if (outcome.events.empty() && is_one)
+  if (outcome.events.empty() && is_one) {
     segment.front.emplace(std::move(outcome.after));
-  else
-    segment.end.emplace(
-        SegmentEnd{segment.steps.back().end, std::move(outcome.after), std::move(outcome.events)});
+  } else {
+    ProcessStep& last = segment.steps.back();
+    segment.end.emplace(SegmentEnd{last.end, std::move(outcome.after), std::move(outcome.events),
+                                   notes_of_end(last, kNegligible * rules_.step)});
+  }
 }
 
 // Computes steps until one ends after t: the state at the end of a step is the start of the next.

@@ -39,6 +39,8 @@ struct SegmentEnd {
   ProcessState after;
   // empty where members have only moved too far apart to be one process
   std::vector<Event> events;
+  // what a run in which it comes to that must not keep silent; null: nothing
+  std::unique_ptr<RunWatch> noted{};
 };
 
 class IslandSegments {
@@ -55,8 +57,8 @@ class IslandSegments {
   int begin(const ProcessState& state);
   void release(int segment);
   /// What is before `until` on the segment is part of the run, whatever happens: what its steps
-  /// before then have noted counts. Called before the flights on it are released; a rollback
-  /// releases them without it. [s]
+  /// before then have noted counts. What its end has noted goes with the event there (SegmentEnd).
+  /// Called before the flights on it are released; a rollback releases them without it. [s]
   void stand(int segment, double until);
   /// Times before this are not queried any more. [s]
   void forget_before(double t);

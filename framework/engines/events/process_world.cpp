@@ -274,7 +274,7 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
     } catch (const std::exception&) {
       return {std::move(step), {}, {}, std::current_exception()};
     }
-    notes.move_to(step.noted);
+    notes.move_to(step.noted_at_end);
   }
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};

@@ -59,6 +59,8 @@ struct ProcessStep {
   std::vector<ContactPoint> forces;  // in persistent contacts
   // what a run that takes it must not keep silent; null: nothing
   std::unique_ptr<RunWatch> noted{};
+  // likewise, of the response to an impact at its end: what happens before may prevent that
+  std::unique_ptr<RunWatch> noted_at_end{};
 
   collision::MotionState motion_at(std::size_t member, double t, const Inertia& inertia) const;
   RigidBodyState state_at(std::size_t member, double t) const;
