@@ -243,6 +243,18 @@ void FlightRun::count(const RunWatch* noted) {
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {
+  const double t = next_frame();
+  try {
+    draw_frame(flight_of);
+  } catch (const OutOfTime&) {
+    throw;
+  } catch (const StoppedRun&) {
+    stopped_at_ = t;
+    throw;
+  }
+}
+
+void FlightRun::draw_frame(const FlightOf& flight_of) {
   const StageTimer timer(counters.record_seconds);
   commit_switches(next_frame());
   Frame frame = frame_of(world_, next_frame(), flight_of, states_);
@@ -253,7 +265,6 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   if (!callbacks_.empty()) return;  // callbacks may add energy
   const auto runaway = energy_watch_.look(frame.time, world_.world(), states_, frame.contacts);
   if (!runaway) return;
-  stopped_at_ = frame.time;
   throw StoppedRun(
       runaway_message(frame.time, world_.world(), *runaway,
                       {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));

@@ -73,7 +73,8 @@ class FlightRun {
   /// The next frame that is not committed yet; infinite when there is none. [s]
   double next_frame() const { return frame_times_.next(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
-  /// @throws StoppedRun where energy has run away by then; the frame is recorded
+  /// @throws StoppedRun where it cannot be drawn, because a law fails; and where energy has run
+  ///   away by then: the frame is recorded
   void commit_frame(const FlightOf& flight_of);
   /// Commits the frame of a fault's own instant, if there is one: the fault comes after all else of
   /// it. Where that frame cannot be drawn it is left out, because the fault says more.
@@ -98,6 +99,7 @@ class FlightRun {
                                        RunCounters& counters) const;
   void require_progress(const EventStamp& key, const Event& event);
   void commit_switches(double until);
+  void draw_frame(const FlightOf& flight_of);
   std::string name(int body) const {
     return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'";
   }
