@@ -277,7 +277,7 @@ void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_
   } catch (const OutOfTime&) {
     throw;
   } catch (const StoppedRun&) {
-    // the run stops for the fault
+    stopped_at_ = kInfinity;  // the run stops for the fault
   }
 }
 

@@ -325,14 +325,22 @@ Due Coordinator::first_before(const Due& due) {
   return first;
 }
 
+// A step that failed on a flight that has ended before it: it was never taken.
+bool Coordinator::is_stale_fault(const Due& due) {
+  return due.key.kind == StampKind::kFault && !alone().is_to_come(due);
+}
+
 // A body at its limit of states waits until global virtual time has passed some of them. The first
 // event of all need not wait.
 void Coordinator::work_alone_at(Due due) {
   // A step that failed was computed ahead: it counts where nothing before it is left to do.
   if (due.key.kind == StampKind::kFault) due = first_before(due);
+  if (is_stale_fault(due)) return;
   if (all_.most_states > 0 && !alone().has_room(due)) {
     ++alone().counters.held_back;
     due = first_before(due);
+    // what is committed as before a fault ends with the frame of its instant
+    if (is_stale_fault(due)) return;
     commit_before(due.key);
     alone().purge(due);
   }

@@ -42,6 +42,7 @@ class Coordinator {
   void work_alone_before(double end);
   void work_alone_at(Due due);
   Due first_before(const Due& due);
+  bool is_stale_fault(const Due& due);
   void collect_deferred();
   void collect_moves(Worker& worker);
   Domain* next_domain();
