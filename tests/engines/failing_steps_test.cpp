@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/engines/base/tolerances.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/failing_steps.h"
 
@@ -216,8 +217,14 @@ TEST(Faults, OfAStepBeyondTheEndOfTheRunAreNone) {
 
 // A multiple of the step may lie a rounding before the end: no engine takes a step from there.
 TEST(FailingStep, AtTheEndOfTheRunOrBeyondStopsNothing) {
-  for (const double duration : {kCartFails, std::nextafter(kCartFails, 1.0), 0.505}) {
+  // in half the step, so that what counts as a rounding is subtracted again without one: the step
+  // that fails begins at the first instant that counts as the end
+  const double half_a_step = 0.5 * kFailingStep, rounding = engines::kNegligible * half_a_step;
+  ASSERT_EQ(kCartFails + rounding - rounding, kCartFails);
+  for (const double duration :
+       {kCartFails, std::nextafter(kCartFails, 1.0), kCartFails + rounding, 0.505}) {
     scene::Scene scene = pushed_carts(1, 5.0, duration);
+    if (duration == kCartFails + rounding) scene.step_s = half_a_step;
     if (duration > 0.501) scene.step_s = duration - 1e-12;  // one step, and 1e-12 s
     for (const Told& told :
          {Told{"rd"}, Told{"ordered"}, Told{"ca"}, Told{"tw", 1}, Told{"tw", 2}}) {

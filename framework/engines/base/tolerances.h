@@ -64,5 +64,8 @@ inline constexpr double kCreep = 1e-4;
 /// rad in one search for impacts, which looks at each of them: beyond, a run would take hours and
 /// look like a hang. Larger: it does. Smaller: fast tops are refused.
 inline constexpr double kMostTurning = 1e5;
+/// Whether t is the end of what lasts until `end`, but for rounding: a step from there is none of
+/// it. [s]
+inline bool is_at_end(double t, double end, double step) { return t >= end - kNegligible * step; }
 
 }  // namespace tumble::engines

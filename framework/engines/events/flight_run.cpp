@@ -131,8 +131,7 @@ std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, dou
   IslandSegments& segments = world_.processes()->segments();
   // impacts of the last instant are part of the run
   if (const auto failed = segments.failed_by(flight.segment, std::min(to, duration_));
-      failed &&
-      (*failed < duration_ - kNegligible * step_ || segments.fails_to_respond(flight.segment)))
+      failed && (!is_at_end(*failed) || segments.fails_to_respond(flight.segment)))
     return EventStamp{*failed, std::numeric_limits<std::uint32_t>::max(), StampKind::kFault, body,
                       -1};
   if (!world_.processes()->holds_contacts()) return std::nullopt;

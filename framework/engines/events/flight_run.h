@@ -12,6 +12,7 @@
 #include "framework/engines/base/frame_times.h"
 #include "framework/engines/base/run_options.h"
 #include "framework/engines/base/run_counters.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
@@ -32,6 +33,8 @@ class FlightRun {
   /// The engine's largest step: the largest lookahead of a scheduler that has no other reason for
   /// one. [s]
   double step() const { return step_; }
+  /// Whether t is the end of the run, but for rounding.
+  bool is_at_end(double t) const { return engines::is_at_end(t, duration_, step_); }
 
   /// The response to the impact of two flights. Stops the run (StoppedRun, with time and names)
   /// where the laws fail.

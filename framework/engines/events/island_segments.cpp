@@ -23,9 +23,9 @@ ProcessState state_within(const ProcessStep& step, double t) {
 
 // The notes of a segment's end, of its last step. All that a step without length has noted is the
 // end's: it lies in no stretch of time.
-std::unique_ptr<RunWatch> notes_of_end(ProcessStep& step, double slack) {
+std::unique_ptr<RunWatch> notes_of_end(ProcessStep& step, double longest) {
   std::unique_ptr<RunWatch> noted = std::move(step.noted_at_end);
-  if (!step.noted || step.from.time < step.end - slack) return noted;
+  if (!step.noted || !is_at_end(step.from.time, step.end, longest)) return noted;
   if (noted) step.noted->add(*noted);
   return std::move(step.noted);
 }
@@ -115,7 +115,7 @@ void IslandSegments::stand(int number, double until) {
   const double slack = kNegligible * rules_.step;
   segment.has_notes = false;
   for (ProcessStep& step : segment.steps) {
-    if (step.noted && step.from.time < until - slack) {
+    if (step.noted && !is_at_end(step.from.time, until, rules_.step)) {
       step.noted->drop_after(until + slack);
       count(std::move(step.noted));
     }
@@ -219,7 +219,7 @@ void IslandSegments::take_step(Segment& segment) {
   } else {
     ProcessStep& last = segment.steps.back();
     segment.end.emplace(SegmentEnd{last.end, std::move(outcome.after), std::move(outcome.events),
-                                   notes_of_end(last, kNegligible * rules_.step)});
+                                   notes_of_end(last, rules_.step)});
   }
 }
 
@@ -251,7 +251,7 @@ void IslandSegments::raise(int segment) const {
 
 const ProcessStep& IslandSegments::step_at(int number, double t) {
   reach(number, t);
-  if (at(number).failure && t > at(number).front->time + kNegligible * rules_.step) raise(number);
+  if (at(number).failure && !is_at_end(at(number).front->time, t, rules_.step)) raise(number);
   const std::deque<ProcessStep>& steps = at(number).steps;
   std::size_t k = steps.size() - 1;
   while (k > 0 && steps[k].from.time > t) --k;

@@ -115,7 +115,7 @@ class RetroactiveRun : private StepStages {
 double RetroactiveRun::next_target() const {
   double target = static_cast<double>(grid_index_ + 1) * step_;
   // no step of a rounding's length at the end
-  if (target > duration_ - kNegligible * step_) target = duration_;
+  if (is_at_end(target, duration_, step_)) target = duration_;
   target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);

@@ -43,8 +43,7 @@ double Worker::horizon_after(int body, const Flight& flight, double t) const {
       to = next;
     }
     // a step that fails at the end of the run, but for rounding, holds nothing up
-    if (!(to > t) && t > all_.run.duration() - engines::kNegligible * all_.run.step())
-      return all_.run.duration();
+    if (!(to > t) && all_.run.is_at_end(t)) return all_.run.duration();
     return std::min(all_.run.duration(), to);
   }
   if (flight.is_resting || !world.collides(body)) return all_.run.duration();
