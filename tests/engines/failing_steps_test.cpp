@@ -1,5 +1,6 @@
 // A step that fails ahead of global virtual time stops nothing, unless it is reached: then every
 // engine stops there, with the same words.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -212,6 +213,30 @@ TEST(Faults, OfAStepBeyondTheEndOfTheRunAreNone) {
     ASSERT_EQ(reference.stopped_by, "");
     EXPECT_EQ(reference.counters.faults.size(), count) << faults_of(reference);
     expect_the_reference_everywhere(scene, reference, laws);
+  }
+}
+
+std::size_t notices_of_turning(const Trajectory& run) {
+  const std::vector<std::string>& notices = run.counters.notices;
+  return static_cast<std::size_t>(std::count_if(
+      notices.begin(), notices.end(),
+      [](const std::string& notice) { return notice.find("half a turn") != std::string::npos; }));
+}
+
+// A cart that is a ball looks the same however it turns: that is a notice and no fault, and counts
+// where its steps do.
+TEST(Notices, OfStepsThatAnImpactPreventsAreNone) {
+  const Laws laws = with_spinning_steps(test_laws());
+  for (const auto& [met_at, count] : {std::pair{0.43, 0U}, {0.47, 0U}, {0.49, 0U}, {0.75, 1U}}) {
+    SCOPED_TRACE(met_at);
+    const scene::Scene scene = pushed_carts(1, met_at, 1.0);
+    for (const Told& told : {Told{"ordered"}, Told{"ca"}, Told{"tw", 1}, Told{"tw", 2},
+                             Told{"tw", 1, by_lot(1)}, Told{"tw", 1, by_lot(2)}}) {
+      const Trajectory run = run_told(told, scene, laws);
+      EXPECT_EQ(notices_of_turning(run), count)
+          << told.engine << ", " << told.threads << " threads, seed " << told.faults.seed;
+      EXPECT_EQ(faults_of(run), "");
+    }
   }
 }
 

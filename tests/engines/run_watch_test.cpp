@@ -168,6 +168,38 @@ TEST(RunWatch, DropsWhatIsNotedLater) {
   EXPECT_EQ(faults[0].kind, "turn_unresolved");
 }
 
+// Of each subject what was said first, in any order of adding; none of it is a fault.
+TEST(RunWatch, SaysOnceWhatIsNoFault) {
+  RunWatch early, late;
+  early.say("'a'", 0.2, "a at 0.2 s");
+  early.say("'a'", 0.3, "a at 0.3 s");
+  late.say("'a'", 0.4, "a at 0.4 s");
+  late.say("'b'", 0.1, "b at 0.1 s");
+  const std::vector<std::string> expected{"b at 0.1 s", "a at 0.2 s"};
+  for (const bool is_late_first : {false, true}) {
+    RunWatch sum = is_late_first ? late : early;
+    EXPECT_FALSE(sum.empty());
+    sum.add(is_late_first ? early : late);
+    EXPECT_EQ(sum.notices(), expected);
+    EXPECT_TRUE(sum.faults().empty());
+    sum.drop_after(0.15);
+    EXPECT_EQ(sum.notices(), std::vector<std::string>{"b at 0.1 s"});
+  }
+}
+
+TEST(RunWatch, KnowsOfLargeIslandsOnlyWhereTheirStepsStand) {
+  RunWatch watch, other;
+  other.note_large_island(0.2);
+  EXPECT_FALSE(other.empty());
+  watch.add(other);
+  EXPECT_TRUE(watch.has_large_islands());
+  watch.drop_after(0.2);
+  EXPECT_TRUE(watch.has_large_islands());
+  watch.drop_after(0.1);
+  EXPECT_FALSE(watch.has_large_islands());
+  EXPECT_TRUE(watch.empty());
+}
+
 TEST(RunWatch, AFaultIsACheckThatFailed) {
   scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, Vector3d::Zero(), Vector3d::Zero())}, 0.1);
   Trajectory run = run_by("rd", scene);

@@ -119,6 +119,7 @@ Counters RunCounters::named() const {
   if (together_seconds > 0.0) named.stage_seconds["threads_together"] = together_seconds;
   if (alone_seconds > 0.0) named.stage_seconds["thread_alone"] = alone_seconds;
   named.notices = notices;
+  for (const std::string& notice : watch.notices()) named.notices.push_back(notice);
   named.faults = watch.faults();
   return named;
 }

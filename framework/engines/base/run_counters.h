@@ -41,8 +41,8 @@ struct RunCounters {
   // of threads; events that had to wait for global virtual time; of one body at any time
   std::uint64_t rounds = 0, held_back = 0, most_states = 0;
   collision::ImpactCost collision;
-  std::vector<std::string> notices;  // once each
-  RunWatch watch;                    // what is not to be trusted
+  std::vector<std::string> notices;  // once each, before the run begins; later ones: the watch's
+  RunWatch watch;                    // what is not to be trusted, or a reader is to know
   double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0,
          record_seconds = 0.0;
   double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0,

@@ -74,8 +74,18 @@ void RunWatch::note(Kind kind, const std::string& subject, const Size& size) {
   incident.worst_subject = subject;
 }
 
+void RunWatch::say(const std::string& subject, double time, const std::string& words) {
+  const auto [known, is_new] = notices_.try_emplace(subject, time, words);
+  if (!is_new && time < known->second.first) known->second = {time, words};
+}
+
 void RunWatch::add(const RunWatch& other) {
   if (std::isnan(named_step_)) named_step_ = other.named_step_;
+  large_island_at_ = std::min(large_island_at_, other.large_island_at_);
+  for (const auto& [subject, notice] : other.notices_) {
+    const auto [known, is_new] = notices_.try_emplace(subject, notice);
+    if (!is_new) known->second = std::min(known->second, notice);
+  }
   for (const auto& [kind, theirs] : other.incidents_) {
     const auto [found, is_new] = incidents_.try_emplace(kind, theirs);
     if (is_new) continue;
@@ -96,6 +106,8 @@ void RunWatch::add(const RunWatch& other) {
 
 void RunWatch::drop_after(double t) {
   std::erase_if(incidents_, [t](const auto& known) { return known.second.first.time > t; });
+  std::erase_if(notices_, [t](const auto& known) { return known.second.first > t; });
+  if (large_island_at_ > t) large_island_at_ = kInfinity;
 }
 
 void RunWatch::name_step(double step) { named_step_ = step; }
@@ -137,6 +149,15 @@ std::vector<RunFault> RunWatch::faults() const {
     faults.push_back(std::move(fault));
   }
   return faults;
+}
+
+std::vector<std::string> RunWatch::notices() const {
+  std::vector<std::pair<double, std::string>> in_order;
+  for (const auto& [subject, notice] : notices_) in_order.push_back(notice);
+  std::sort(in_order.begin(), in_order.end());
+  std::vector<std::string> words;
+  for (const auto& [time, said] : in_order) words.push_back(said);
+  return words;
 }
 
 std::string names_of(const World& world, const std::vector<int>& bodies) {

@@ -9,13 +9,16 @@
 /// rounding leave, and a reader would see.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "framework/core/numbers.h"
 #include "framework/dynamics/world.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -65,16 +68,23 @@ class RunWatch {
 
   /// Keeps what is above what is allowed, or is not a number.
   void note(Kind kind, const std::string& subject, const Size& size);
+  /// What a reader is to know, and is no fault: of each subject what was said of it first.
+  void say(const std::string& subject, double time, const std::string& words);
+  /// An island has been solved in steps, not at instants (contact/large_islands.cpp).
+  void note_large_island(double time) { large_island_at_ = std::min(large_island_at_, time); }
+  bool has_large_islands() const { return large_island_at_ < kInfinity; }
   /// Adds what another has noted: a thread, or a part of the world. The sum does not depend on the
   /// order of adding.
   void add(const RunWatch& other);
-  /// Drops the kinds that were first noted after t. [s]
+  /// Drops the kinds, and what was said of subjects, that were first noted after t. [s]
   void drop_after(double t);
-  bool empty() const { return incidents_.empty(); }
+  bool empty() const { return incidents_.empty() && notices_.empty() && !has_large_islands(); }
   /// A step that a stability criterion names for the scene: the remedy then. [s]
   void name_step(double step);
   /// One a kind, in the order of kinds.
   std::vector<RunFault> faults() const;
+  /// What was said, in the order of time.
+  std::vector<std::string> notices() const;
 
  private:
   struct Incident {
@@ -84,8 +94,12 @@ class RunWatch {
     std::uint64_t count = 0;
   };
 
+  using Notice = std::pair<double, std::string>;  // when it was said first [s], and the words
+
   std::map<Kind, Incident> incidents_;
-  double named_step_ = kUnset;  // [s]
+  std::map<std::string, Notice> notices_;  // by subject
+  double large_island_at_ = kInfinity;     // the first [s]
+  double named_step_ = kUnset;             // [s]
 };
 
 /// "'a', 'b' and 3 more". @param bodies  of the world

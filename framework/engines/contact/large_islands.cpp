@@ -38,9 +38,7 @@ void PersistentContacts::report_large_islands() {
       "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every impact at its instant, and "
       "takes longer",
       kContact.few_bodies, kContact.most_located_impacts);
-  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) ==
-      counters_.notices.end())
-    counters_.notices.push_back(words);
+  counters_.watch.say("large islands", moving_.time(), words);
 }
 
 // An impact is about to cut the step for this island. Too many of them, and it is solved in steps
@@ -121,6 +119,7 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
     options.largest_direct = 0;
   }
   ++counters_.large_island_steps;
+  counters_.watch.note_large_island(moving_.time());
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
   const ContactSolution solution = laws_.friction_impulses

@@ -47,7 +47,6 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
       rests_(world_.bodies.size()),
       asleep_(world_.bodies.size(), 0),
       paths_(world_.bodies.size()),
-      reported_shortening_(world_.bodies.size(), false),
       principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
   if (shapes_.empty()) {

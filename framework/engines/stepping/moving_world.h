@@ -239,8 +239,7 @@ class MovingWorld {
   std::vector<Path> paths_;
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
-  std::vector<int> group_of_;              // by body: place in linked_, -1
-  std::vector<bool> reported_shortening_;  // by body
+  std::vector<int> group_of_;  // by body: place in linked_, -1
   double time_ = 0.0, target_ = 0.0;
   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0
   // for Euler

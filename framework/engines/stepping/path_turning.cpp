@@ -141,13 +141,11 @@ void MovingWorld::watch_turning(int body, double duration) {
   if (!is_alone || !shapes_[body]->is_ball())
     return counters_.watch.note(RunWatch::Kind::kTurnUnresolved, names_of(world_, {body}),
                                 {turning, kTurnResolved, time_, duration});
-  const std::string words = fmt::format(
-      "ball '{}' turns more than half a turn in a step: its orientation is not to be trusted, how "
-      "it moves is",
-      world_.bodies[body].name);
-  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) ==
-      counters_.notices.end())
-    counters_.notices.push_back(words);
+  const std::string ball = fmt::format("ball '{}'", world_.bodies[body].name);
+  counters_.watch.say(ball, time_,
+                      ball +
+                          " turns more than half a turn in a step: its orientation is not to be "
+                          "trusted, how it moves is");
 }
 
 bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs,
@@ -184,13 +182,11 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs,
   if (fastest < 0) return false;
   const std::string turns = turning_of(fastest, asked);
   if (asked > kMostTurning * duration) throw StoppedRun(turns + kTooFar);
-  if (!reported_shortening_[fastest]) {
-    reported_shortening_[fastest] = true;
-    counters_.notices.push_back(
-        fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, "
-                    "so that no collision is missed",
-                    turns, duration));
-  }
+  counters_.watch.say(
+      fmt::format("steps of '{}'", world_.bodies[fastest].name), time_,
+      fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, "
+                  "so that no collision is missed",
+                  turns, duration));
   ++counters_.shortened_steps;
   begin_step_again(time_ + duration);
   return true;

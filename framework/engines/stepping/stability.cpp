@@ -413,7 +413,7 @@ bool EnergyWatch::is_at_contact(int body, const World& world) const {
 void EnergyWatch::tell(const World& world, RunCounters& counters) const {
   const double whole =
       available() +
-      (unseen(counters.large_island_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) /
+      (unseen(counters.watch.has_large_islands() ? kLiftedInLargeIslands : kLifted) + rounding_) /
           kEnergyRises;
   for (const Rise& rise : rises_)
     counters.watch.note(RunWatch::Kind::kEnergyRises,
