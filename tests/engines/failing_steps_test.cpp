@@ -93,6 +93,25 @@ TEST(FailingStep, ThatIsReachedStopsEveryEngineAtItsStart) {
   expect_the_reference_everywhere(scene, reference);
 }
 
+// Seven frames a second, and one that is asked for a rounding after the step fails.
+TEST(FailingStep, HasTheFrameOfItsInstantHoweverThatIsRounded) {
+  const scene::Scene scene = pushed_carts(1, 0.7, 1.0);
+  const auto run_with_instant = [&](const Told& told) {
+    engines::RunOptions options;
+    options.engine = told.engine;
+    options.threads = told.threads;
+    options.frame_rate_hz = 7.0;
+    options.instants_s = {kCartFails + 1e-12};
+    return run_as_told(std::move(options), scene, with_failing_steps(test_laws()));
+  };
+  for (const Told& told : {Told{"rd"}, Told{"ordered"}, Told{"ca"}, Told{"tw", 1}, Told{"tw", 2}}) {
+    SCOPED_TRACE(told.engine + ", " + std::to_string(told.threads) + " threads");
+    const Trajectory run = run_with_instant(told);
+    ASSERT_EQ(run.frames.size(), 5U);  // at 0, 1/7, 2/7, 3/7 and 1/2 s
+    EXPECT_NEAR(run.frames.back().time, kCartFails, 2e-12);
+  }
+}
+
 // The first cart would fail at 0.5 s, the second at 0.75 s, the third at 1 s.
 TEST(FailingStep, OfSeveralTheFirstThatNothingPreventsCounts) {
   for (const auto& [met_at, fault] : {std::pair{0.46, "at t = 0.750000 s, body 'cart1'"},

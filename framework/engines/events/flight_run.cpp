@@ -270,7 +270,8 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
 }
 
 void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {
-  if (next_frame() > fault.time) return;
+  // as far as rounding parts the two, and a segment that has failed still gives a state
+  if (next_frame() > fault.time + std::min(frame_times_.slack(), kNegligible * step_)) return;
   try {
     commit_frame(flight_of);
   } catch (const OutOfTime&) {

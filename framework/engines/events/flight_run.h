@@ -79,8 +79,9 @@ class FlightRun {
   /// @throws StoppedRun where it cannot be drawn, because a law fails; and where energy has run
   ///   away by then: the frame is recorded
   void commit_frame(const FlightOf& flight_of);
-  /// Commits the frame of a fault's own instant, if there is one: the fault comes after all else of
-  /// it. Where that frame cannot be drawn it is left out, because the fault says more.
+  /// Commits the frame of a fault's own instant, but for rounding, if there is one: the fault comes
+  /// after all else of it. Where that frame cannot be drawn it is left out, because the fault says
+  /// more.
   /// @pre the fault is the next event of all, and every frame before its instant is committed
   void commit_frame_at(const EventStamp& fault, const FlightOf& flight_of);
 
