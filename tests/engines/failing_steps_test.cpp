@@ -161,6 +161,26 @@ TEST(FailingStep, AtItsImpactIsKnownUpToThere) {
   expect_the_reference_everywhere(scene, run_told({"ordered"}, scene, laws), laws);
 }
 
+// A frame at the very instant of the impact would show what is after it, and nothing is.
+TEST(FailingStep, AtItsImpactHasNoFrameThere) {
+  const Laws failing = with_failing_responses(test_laws());
+  Laws responding = failing;
+  responding.collision_impulse = test_laws().collision_impulse;
+  const scene::Scene scene = cart_and_post(0.5125, std::nullopt);
+  for (const Told& told : {Told{"rd"}, Told{"ordered"}, Told{"ca"}, Told{"tw", 1}, Told{"tw", 2}}) {
+    SCOPED_TRACE(told.engine + ", " + std::to_string(told.threads) + " threads");
+    const std::vector<double> met_at = collision_times(run_told(told, scene, responding));
+    ASSERT_GE(met_at.size(), 1U);
+    engines::RunOptions options;
+    options.engine = told.engine;
+    options.threads = told.threads;
+    options.instants_s = {met_at.front()};
+    const Trajectory run = run_as_told(std::move(options), scene, failing);
+    EXPECT_NE(run.stopped_by.find("no way back"), std::string::npos) << run.stopped_by;
+    EXPECT_EQ(run.frames.size(), 31U);  // up to 0.5 s
+  }
+}
+
 // At 0.3 of the same step the cart meets a pebble: it never comes to the post.
 TEST(FailingStep, WhoseImpactAnEarlierOneInTheStepPreventsStopsNothing) {
   const Laws laws = with_failing_responses(test_laws());

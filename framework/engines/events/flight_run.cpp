@@ -272,6 +272,8 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
 void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {
   // as far as rounding parts the two, and a segment that has failed still gives a state
   if (next_frame() > fault.time + std::min(frame_times_.slack(), kNegligible * step_)) return;
+  const int segment = flight_of(fault.body_a).segment;
+  if (segment >= 0 && world_.processes()->segments().fails_to_respond(segment)) return;
   try {
     commit_frame(flight_of);
   } catch (const OutOfTime&) {

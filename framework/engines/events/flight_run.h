@@ -81,7 +81,7 @@ class FlightRun {
   void commit_frame(const FlightOf& flight_of);
   /// Commits the frame of a fault's own instant, but for rounding, if there is one: the fault comes
   /// after all else of it. Where that frame cannot be drawn it is left out, because the fault says
-  /// more.
+  /// more. Where a response fails there is none: nothing is known after the impact.
   /// @pre the fault is the next event of all, and every frame before its instant is committed
   void commit_frame_at(const EventStamp& fault, const FlightOf& flight_of);
 
