@@ -94,6 +94,19 @@ TEST(TaughtTimewarp, ACallbackAfterAFailingStepWaitsForTheImpactThatPreventsIt) 
       << run.stopped_by;
 }
 
+// The first cart has no step from 0.5 s on, the second none from 0.75 s. With a scheduler to which
+// nothing is ever certain both callbacks wait until nothing else is left.
+TEST(TaughtTimewarp, OfCallbacksThatWaitTheOneWhoseStepFailsFirstStopsTheRun) {
+  Laws laws = with_failing_steps(taught_laws());
+  laws.scheduling.global_virtual_time = [](const std::vector<LocalTime>&,
+                                           const std::vector<ScheduledEvent>&) { return 0.0; };
+  const auto kick = [](int, RigidBodyState& state) { state.momentum_world.z() += 0.1; };
+  const Trajectory run =
+      run_taught(pushed_carts(2, 5.0, 1.0), laws, {{0.8, {1}, kick}, {0.85, {0}, kick}});
+  EXPECT_NE(run.stopped_by.find("at t = 0.500000 s, body 'cart0'"), std::string::npos)
+      << run.stopped_by;
+}
+
 // Towers fuse, are hit and come apart; dominoes fall; an arm throws its block; rocks roll.
 TEST(TaughtTimewarp, CommitsTheReferencesTraceOfGroupsInContact) {
   const Trajectory tower = run_taught(tower_and_projectile(5.0), taught_reference_laws());

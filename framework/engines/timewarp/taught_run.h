@@ -65,7 +65,7 @@ class TaughtTimewarp {
 
   void loop();
   std::optional<int> next_due();
-  bool has_to_wait(int id);
+  std::optional<double> waits_for(int id);
   std::size_t most_events_at_one_gvt() const;
   void work_at(int id);
   void redraw(int id);

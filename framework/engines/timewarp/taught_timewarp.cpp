@@ -109,35 +109,41 @@ void TaughtTimewarp::loop() {
 }
 
 // The front of the queue within the run. Callbacks that have to wait stay behind all that need not;
-// where nothing else is due, they wait no longer.
+// where nothing else is due, the one whose step fails first waits no longer.
 std::optional<int> TaughtTimewarp::next_due() {
-  std::vector<int> waiting;
+  std::vector<std::pair<double, int>> waiting;
   std::optional<int> next = queue_.pop();
   for (; next; next = queue_.pop()) {
     if (queue_.event(*next).stamp.time > run_.duration())
       queue_.park(*next);  // a rollback may restore it
-    else if (has_to_wait(*next))
-      waiting.push_back(*next);
+    else if (const auto failure = waits_for(*next))
+      waiting.emplace_back(*failure, *next);
     else
       break;
   }
-  for (const int callback : waiting) queue_.put(callback, queue_.event(callback));
-  return next || waiting.empty() ? next : std::optional(waiting.front());
+  for (const auto& [failure, callback] : waiting) queue_.put(callback, queue_.event(callback));
+  if (next || waiting.empty()) return next;
+  const auto fails_first = [](const auto& x, const auto& y) { return x.first < y.first; };
+  return std::min_element(waiting.begin(), waiting.end(), fails_first)->second;
 }
 
 // A callback on a body whose next step fails before the callback's time: an impact that no check
 // has found yet may end that segment before the step. Once global virtual time is past the step,
 // none can, and the callback raises the failure.
-bool TaughtTimewarp::has_to_wait(int id) {
+// @return the start of the first such step; nothing where the event need not wait [s]
+std::optional<double> TaughtTimewarp::waits_for(int id) {
   const ScheduledEvent& event = queue_.event(id);
-  if (event.stamp.kind != WorkKind::kCallback) return false;
-  return std::any_of(event.receivers.begin(), event.receivers.end(), [&](int body) {
+  if (event.stamp.kind != WorkKind::kCallback) return std::nullopt;
+  std::optional<double> first;
+  for (const int body : event.receivers) {
     const KeptState* state = process(body).at(event.stamp.time);
-    if (state == nullptr || state->flight.segment < 0) return false;
+    if (state == nullptr || state->flight.segment < 0) continue;
     const auto failed =
         world().processes()->segments().failed_by(state->flight.segment, event.stamp.time);
-    return failed && *failed < event.stamp.time && gvt_ <= *failed;
-  });
+    if (failed && *failed < event.stamp.time && gvt_ <= *failed && !(first && *first <= *failed))
+      first = failed;
+  }
+  return first;
 }
 
 std::size_t TaughtTimewarp::most_events_at_one_gvt() const {
