@@ -93,11 +93,15 @@ void RunWatch::add(const RunWatch& other) {
     ours.count += theirs.count;
     ours.subjects.insert(theirs.subjects.begin(), theirs.subjects.end());
     if (theirs.first.time < ours.first.time) ours.first = theirs.first;
-    // Of two that are as bad, the earlier one, and at one time the one whose name comes first.
+    // Of two that are as bad, the earlier one, at one time the one whose name comes first, and of
+    // one body the one of the shorter step or the lower order.
     const double candidate = theirs.worst.found / theirs.worst.allowed,
                  known = ours.worst.found / ours.worst.allowed;
-    const bool comes_first = std::tie(theirs.worst.time, theirs.worst_subject) <
-                             std::tie(ours.worst.time, ours.worst_subject);
+    const auto place = [](const Incident& incident) {
+      return std::tie(incident.worst.time, incident.worst_subject, incident.worst.step,
+                      incident.worst.order, incident.worst.allowed);
+    };
+    const bool comes_first = place(theirs) < place(ours);
     if (!is_worse(candidate, known) && (is_worse(known, candidate) || !comes_first)) continue;
     ours.worst = theirs.worst;
     ours.worst_subject = theirs.worst_subject;
