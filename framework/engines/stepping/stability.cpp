@@ -463,7 +463,8 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
     scale_ = std::max(scale_, energy_at_work(world, states, sums));
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
-  touching_before_ = std::exchange(touching_, {});
+  std::swap(touching_before_, touching_);
+  touching_.clear();
   for (const ContactPoint& contact : contacts)
     for (const int body : {contact.body_a, contact.body_b})
       if (!world.bodies[static_cast<std::size_t>(body)].immovable()) touching_.push_back(body);
