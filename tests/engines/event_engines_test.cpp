@@ -2,12 +2,14 @@
 // instant, elastic gas.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
 #include "framework/engines/base/run_counters.h"
+#include "framework/engines/events/flight_run.h"
 #include "tests/engines/event_scenes.h"
 
 namespace tumble::testing {
@@ -28,6 +30,32 @@ scene::Scene lattice(int nx, int ny, int nz, double duration) {
         bodies.back().name += std::to_string(bodies.size());
       }
   return scene_of(std::move(bodies), duration);
+}
+
+// What a discontinuity has noted counts as it is committed, as often as there are such events.
+TEST(Commit, CountsWhatADiscontinuityHasNoted) {
+  const scene::Scene scene = lattice(2, 1, 1, 1.0);
+  const Laws laws = test_laws();
+  engines::RunOptions options;
+  options.engine = "ordered";
+  TrajectoryRecorder recorder;
+  engines::FlightRun run(scene, laws, options, recorder);
+  for (const double time : {0.25, 0.5, 0.75}) {
+    engines::Discontinuity discontinuity;
+    discontinuity.key = {time, 0, engines::StampKind::kProcess, 0, -1};
+    discontinuity.is_silent = true;
+    if (time > 0.3) {
+      discontinuity.noted = std::make_unique<engines::RunWatch>();
+      discontinuity.noted->note(engines::RunWatch::Kind::kContactUnsolved, "'ball1'",
+                                {1.0, engines::kContactSolved, time, 0.0});
+    }
+    run.commit(discontinuity);
+  }
+  const std::vector<RunFault> faults = run.counters.watch.faults();
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].kind, "contact_unsolved");
+  EXPECT_EQ(faults[0].count, 2U);
+  EXPECT_EQ(faults[0].first_s, 0.5);
 }
 
 TEST(Ties, OfALatticeThatCollidesAtOnceEndTheSameInEveryOrder) {

@@ -2,6 +2,7 @@
 /// of a trace from the reference.
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 #include "framework/engines/events/trace.h"
@@ -30,12 +31,18 @@ inline Trajectory run_by(const std::string& engine, const scene::Scene& scene,
   return run_as_told(std::move(options), scene, laws);
 }
 
-/// What a run finds wrong with itself, a line each.
+/// What a run finds wrong with itself, a line each; numbers to the last digit.
 inline std::string faults_of(const Trajectory& run) {
+  const auto exact = [](double number) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.17g", number);
+    return std::string(digits);
+  };
   std::string faults;
   for (const RunFault& fault : run.counters.faults)
     faults += fault.kind + " of " + fault.subject + ", " + std::to_string(fault.count) +
-              " times, first at " + std::to_string(fault.first_s) + " s\n";
+              " times, first at " + exact(fault.first_s) + " s, at worst " + exact(fault.worst) +
+              " at " + exact(fault.worst_s) + " s; " + fault.remedy + "\n";
   return faults;
 }
 

@@ -16,6 +16,7 @@ struct Told {
   std::string engine = "tw";
   int threads = 1;
   engines::FaultInjection faults{};
+  int most_states = 0;
 };
 
 Trajectory run_told(const Told& told, const scene::Scene& scene,
@@ -24,6 +25,7 @@ Trajectory run_told(const Told& told, const scene::Scene& scene,
   options.engine = told.engine;
   options.threads = told.threads;
   options.faults = told.faults;
+  options.most_states = told.most_states;
   return run_as_told(std::move(options), scene, laws);
 }
 
@@ -51,6 +53,8 @@ void expect_the_reference_everywhere(const scene::Scene& scene, const Trajectory
   engines::FaultInjection cut;
   cut.regions = 3;
   EXPECT_EQ(difference_of({"tw", 1, cut}), "") << "three regions";
+  for (const int threads : {1, 2})
+    EXPECT_EQ(difference_of({"tw", threads, {}, 8}), "") << "eight states, " << threads;
 }
 
 // Timewarp takes up to eight steps of an island at once, and every engine one step beyond where it
@@ -240,6 +244,20 @@ TEST(Faults, OfTheStepsUpToAFailureAllCount) {
   EXPECT_EQ(reference.counters.faults[0].count, 3U);
   EXPECT_EQ(reference.counters.faults[0].first_s, 33.0 / 64.0);
   expect_the_reference_everywhere(scene, reference, laws);
+}
+
+// A cube that turns 4 rad in each of 64 steps, most of which are dropped before the run ends: their
+// notes count as they are.
+TEST(Faults, OfStepsThatAreNoLongerKeptAllCount) {
+  scene::Scene scene = pushed_cube(5.0, 1.0);
+  scene.bodies[0].omega_world_rad_s = {255.0, 0.0, 0.0};
+  const Trajectory reference = run_told({"ordered"}, scene, test_laws());
+  ASSERT_EQ(reference.stopped_by, "");
+  ASSERT_EQ(reference.counters.faults.size(), 1U) << faults_of(reference);
+  EXPECT_EQ(reference.counters.faults[0].kind, "turn_unresolved");
+  EXPECT_EQ(reference.counters.faults[0].count, 64U);
+  EXPECT_EQ(reference.counters.faults[0].first_s, 0.0);
+  expect_the_reference_everywhere(scene, reference, test_laws());
 }
 
 // The run ends where the first of them would begin; and within it, which counts.

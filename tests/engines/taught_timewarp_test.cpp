@@ -65,6 +65,27 @@ TEST(TaughtTimewarp, GoesOnWhereAnImpactPreventsAFailingStep) {
   }
 }
 
+// What steps have noted counts where they stand: not of those that an impact prevents, and of all
+// those in which a cube turns 4 rad, 32 of them.
+TEST(TaughtTimewarp, CountsTheFaultsOfStepsThatStand) {
+  const Laws laws = with_spinning_steps(taught_laws());
+  for (const double met_at : {0.45, 0.485, 0.495}) {
+    const scene::Scene scene = pushed_cube(met_at, 0.8);
+    const Trajectory reference = run_taught(scene, laws, {}, "ordered"),
+                     run = run_taught(scene, laws);
+    ASSERT_EQ(reference.stopped_by, "") << met_at;
+    ASSERT_EQ(faults_of(reference), "") << met_at;
+    EXPECT_EQ(difference(reference, run), "") << met_at;
+  }
+  scene::Scene scene = pushed_cube(5.0, 0.5);
+  scene.bodies[0].omega_world_rad_s = {255.0, 0.0, 0.0};
+  const Trajectory reference = run_taught(scene, taught_laws(), {}, "ordered"),
+                   run = run_taught(scene, taught_laws());
+  ASSERT_EQ(reference.counters.faults.size(), 1U) << faults_of(reference);
+  EXPECT_EQ(reference.counters.faults[0].count, 32U);
+  EXPECT_EQ(difference(reference, run), "");
+}
+
 // Checks may be due as late as a scheduler likes: that of the ball comes after the callback here,
 // which cannot act on a cart whose step has failed.
 TEST(TaughtTimewarp, ACallbackAfterAFailingStepWaitsForTheImpactThatPreventsIt) {
