@@ -18,6 +18,7 @@
 #include "framework/effects/spring/spring.h"
 #include "framework/engines/base/run_watch.h"
 #include "framework/engines/contact/impact_detection.h"
+#include "framework/engines/events/process_world.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -699,6 +700,35 @@ TEST(RunWatch, ABallBetweenPlanesNearerThanItsDiameterIsAnOverlapLeft) {
   EXPECT_NEAR(faults[0].worst, 0.5, 1e-9);  // spacings of a coordinate, a few a round
   EXPECT_TRUE(told_under_a_lid(0.2001, 0.3).empty());
   EXPECT_TRUE(told_under_a_lid(0.2001, 0.05).empty());  // it has room to be moved to
+}
+
+// The same ball as a process that meets the floor: a run counts the note where it commits that.
+TEST(RunWatch, WhatAnImpactOfAProcessNotesIsPartOfItsResult) {
+  scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ()),
+                                 plane("lid", {0, 0, 0.15}, -Vector3d::UnitZ()),
+                                 ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero())},
+                                1.0);
+  scene.contact.emplace();
+  const World world = build_world(scene);
+  std::vector<collision::CollisionShape> shapes;
+  for (const WorldBody& body : world.bodies) shapes.emplace_back(body.shape);
+  const Laws laws = reference_laws();
+  const engines::EntriesByBody entries(world);
+  engines::RunCounters counters;
+  constexpr int kFloor = 0, kLid = 1, kBall = 2;
+  engines::ProcessWorld process(
+      world, entries, [&](int body) { return &shapes[static_cast<std::size_t>(body)]; }, laws,
+      {scene.step_s, scene.rest_speed_m_s}, counters, {kBall}, {kFloor, kLid});
+  engines::ProcessState state;
+  state.members = {kBall};
+  state.states = {world.bodies[kBall].state};
+  for (int again = 0; again < 2; ++again) {  // as after a rollback
+    const engines::ProcessWorld::Change change = process.collide({kFloor, kBall}, state);
+    ASSERT_TRUE(change.noted);
+    EXPECT_EQ(change.noted->faults().at(0).kind, "overlap_left");
+    EXPECT_EQ(change.noted->faults().at(0).count, 1u);
+  }
+  EXPECT_TRUE(counters.watch.empty());
 }
 
 TEST(RunWatch, AnOverlapThatNoPictureShowsIsNotNoted) {
