@@ -96,7 +96,8 @@ std::vector<Row> rows_of_handout(const fs::path& file, const std::string& folder
         row.found = match.str();
       }
     }
-    rows.push_back(row);
+    // a level without points may go without a row
+    if (row.at != std::string::npos || shown + kept > 0.0) rows.push_back(row);
   }
   return rows;
 }
@@ -179,7 +180,7 @@ class Check {
     const fs::path file = fs::path("handouts") / (folder_ + ".md");
     for (const Row& row : rows_of_handout(root_ / file, folder_, open_, hidden_))
       if (row.at == std::string::npos)
-        say(place_of(file, 1),
+        say(row.level.empty() ? place_of(file, 1) : place_of(root_, file, head_of_table(folder_)),
             row.level.empty()
                 ? "has no table of points. It begins with a line  " + head_of_table(folder_)
                 : "the table has no row of level " + row.level + ". It ends with  " + row.right);

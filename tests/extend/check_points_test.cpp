@@ -43,6 +43,24 @@ TEST(CheckPoints, PointsMovedWithinALevelNeedNoOtherChange) {
   EXPECT_EQ(extend::check_points(tree.root(), "a5_trial"), std::vector<std::string>{});
 }
 
+TEST(CheckPoints, ALevelWithoutPointsNeedsNoRow) {
+  const NewTree tree;
+  tree.make_a5();
+  const auto remove_row = [&](const std::string& level) {
+    std::string text = text_of(tree.root() / "handouts/a5_trial.md");
+    const std::size_t begin = text.find("\n| " + level + " |");
+    ASSERT_NE(begin, std::string::npos) << level;
+    text.erase(begin, text.find('\n', begin + 1) - begin);
+    write_whole(tree.root() / "handouts/a5_trial.md", text);
+  };
+  remove_row("advanced");
+  EXPECT_EQ(extend::check_points(tree.root(), "a5_trial"), std::vector<std::string>{});
+  remove_row("basic");
+  const auto faults = extend::check_points(tree.root(), "a5_trial");
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_NE(faults[0].find("the table has no row of level basic"), std::string::npos) << faults[0];
+}
+
 // Points are changed in one place: the handout follows.
 TEST(CheckPoints, TheHandoutIsWrittenAfterTheRubrics) {
   const NewTree tree;

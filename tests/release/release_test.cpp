@@ -159,6 +159,12 @@ std::string put_in(const std::string& slip) {
   return text;
 }
 
+// A declaration of a module's header is what its solution begins with, too.
+bool is_signature(const std::string& passage, const std::string& released_file) {
+  return released_file.starts_with("assignments/") && released_file.ends_with(".h") &&
+         passage.find(';') == std::string::npos;
+}
+
 TEST_F(Release, HoldsNoPassageOfASolution) {
   std::map<std::string, std::string> released;  // passage, file
   for (const fs::path& file : files_below(folder_))
@@ -179,7 +185,7 @@ TEST_F(Release, HoldsNoPassageOfASolution) {
          passages(is_slip ? put_in(contents_of(file)) : contents_of(file))) {
       ++searched;
       const auto it = released.find(passage);
-      if (it != released.end())
+      if (it != released.end() && !is_signature(passage, it->second))
         ADD_FAILURE() << it->second << " holds, from " << file.lexically_relative(kRoot) << ":\n"
                       << passage;
     }
