@@ -147,20 +147,6 @@ TEST_F(OneScene, ARunWithoutPicturesLeavesThePageToBeMadeWholeAgain) {
   EXPECT_NE(text_of(root / "out/carl/index.html").find("id=\"try\""), std::string::npos);
 }
 
-// Begins a grading whose words go to no terminal.
-pid_t start_words(const std::vector<std::string>& words) {
-  const pid_t child = ::fork();
-  if (child != 0) return child;
-  std::vector<char*> argv;
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  const int nothing = ::open("/dev/null", O_RDWR);
-  ::dup2(nothing, 1);
-  ::dup2(nothing, 2);
-  ::execv(argv[0], argv.data());
-  ::_exit(127);
-}
-
 void kill_children_of(pid_t parent) {
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const std::string name = entry.path().filename();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -42,6 +43,20 @@ inline std::string stub_that(const std::string& does) {
 
 inline bool says(const ProgramOutcome& outcome, const std::string& words) {
   return outcome.printed.find(words) != std::string::npos;
+}
+
+/// Begins a program whose words go to no terminal.
+inline pid_t start_words(const std::vector<std::string>& words) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(nothing, 1);
+  ::dup2(nothing, 2);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
 }
 
 /// Submissions in, in/NAME/..., and results in out. The test has a machine key of its own.
