@@ -244,7 +244,7 @@ BenchCase stack(int n, bool quick) {
           "every contact point anew and solves to rounding whatever is asked.",
       .scene = empty_scene("S5", quick ? 2.0 : 10.0, 1e-3),
       .sample_times = times(1.0, quick ? 2 : 10),
-      .steps = halvings(1.0 / 60, quick ? 2 : 6)};
+      .steps = halvings(1.0 / 30, quick ? 2 : 7)};
   effects::set_gravity(bench.scene, kDown);
   bench.scene.contact.emplace();
   bench.goals = {{.words = "1e-6 m at 1/60 s", .error = 1e-6, .step = 1.0 / 60}};
