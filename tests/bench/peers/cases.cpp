@@ -239,9 +239,9 @@ BenchCase stack(int n, bool quick) {
       .note =
           "ODE's direct stepper drops the stack at most steps (its solver reports internal "
           "errors). MuJoCo's default contacts give by 1 cm; harder ones hold the stack at some "
-          "steps and let it fall at others, which a curve of the best does not show. MuJoCo's "
-          "price at 1e-3 is lower: it stops its iterations where its softness allows, Tumble finds "
-          "every contact point anew and solves to rounding whatever is asked.",
+          "steps (1/60 s) and let it fall at others (1/30, 1/120 s), which a curve of the best "
+          "does "
+          "not show. Tumble finds every contact point anew and solves to rounding at every step.",
       .scene = empty_scene("S5", quick ? 2.0 : 10.0, 1e-3),
       .sample_times = times(1.0, quick ? 2 : 10),
       .steps = halvings(1.0 / 30, quick ? 2 : 7)};

@@ -31,7 +31,6 @@ const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince",
                   kFehlberg = "Fehlberg 7(8)", kRungeKuttaInJoints = "RK4, joint coordinates",
                   kFehlbergInJoints = "Fehlberg 7(8), joint coordinates",
                   kGaussInJoints = "Gauss 6, joint coordinates",
-                  kMidpointInJoints = "midpoint, joint coordinates",
                   kSymplecticInJoints = "symplectic Euler, joint coordinates",
                   kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
@@ -81,8 +80,6 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
     laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
   if (setting.method == kGaussInJoints)
     laws.integrate_step = step_of(method_named("gauss6"), kUnset);
-  if (setting.method == kMidpointInJoints)
-    laws.integrate_step = step_of(method_named("midpoint"), kUnset);
   if (setting.method == kSymplecticInJoints)
     laws.integrate_step = step_of(method_named("symplectic"), kUnset);
   laws.steps_in_units = setting.method == kDormandPrince || setting.method == kFehlberg ||
@@ -132,11 +129,9 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
     for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12})
       all.back().push_back({kFehlbergInJoints, bench.sample_times.front(), tolerance});
   }
-  if (scene == "S2") {  // where little accuracy is enough: few evaluations a step
-    for (const std::string& method : {kMidpointInJoints, kSymplecticInJoints}) {
-      all.emplace_back();
-      for (const double step : bench.steps) all.back().push_back({method, step});
-    }
+  if (scene == "S2") {  // where little accuracy is enough
+    all.emplace_back();
+    for (const double step : bench.steps) all.back().push_back({kSymplecticInJoints, step});
   }
   if (scene == "S6") {
     // parts of the time between samples: its steps need not follow the links' swings
