@@ -1,7 +1,7 @@
 // The panels of handouts in a browser. Usage: node explore_test.mjs FOLDER, with the pages that `tumble handouts` built.
 // Exit 0: right; 1: wrong; 77: skipped, with the reason. Needs chromium.
 import { execFileSync } from 'node:child_process';
-import { existsSync } from 'node:fs';
+import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { Browser } from '../live/browser.mjs';
 
@@ -43,6 +43,35 @@ test('every panel is drawn and says something, at 1400 and 400 pixels, light and
         if (pictures) await tab.picture(join(pictures, `explore_${panel}_${width}_${dark ? 'dark' : 'light'}.png`));
       }
       expect(tab.errors.length === 0, `${name}: errors of the page: ${tab.errors}`);
+    }
+});
+
+// Of the words of a page that stand on one colour: those whose luminances are less than 4.5 : 1
+// apart (Web Content Accessibility Guidelines 2.2, 1.4.3), one of each kind.
+const kFaintWords = `(() => {
+  const numbers = css => { const n = /rgba?\\(([^)]+)\\)/.exec(css)[1].split(',').map(Number); return n.length > 3 ? n : [...n, 1]; };
+  const luminance = rgb => [0.2126, 0.7152, 0.0722].reduce((sum, part, i) => { const v = rgb[i] / 255; return sum + part * (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); }, 0);
+  const faint = new Map(), walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const element = walker.currentNode.parentElement;
+    if (!walker.currentNode.textContent.trim() || element.closest('svg, script, style') || !element.checkVisibility()) continue;
+    let under = element;
+    while (under && numbers(getComputedStyle(under).backgroundColor)[3] < 0.99) under = under.parentElement;
+    if (!under) continue;
+    const [one, other] = [luminance(numbers(getComputedStyle(element).color)), luminance(numbers(getComputedStyle(under).backgroundColor))].sort((a, b) => a - b), ratio = (other + 0.05) / (one + 0.05);
+    if (ratio < 4.5) faint.set(element.tagName + element.className, walker.currentNode.textContent.trim().slice(0, 30) + ' ' + ratio.toFixed(1) + ' : 1');
+  }
+  return [...faint.values()].join('; ');
+})()`;
+
+test('every handout fits 400 pixels, and its words are seen on their ground, light and dark', async () => {
+  for (const file of readdirSync(folder).filter(name => name.endsWith('.html')))
+    for (const [width, dark] of [[400, false], [1400, true]]) {
+      const tab = await browser.open(`file://${join(folder, file)}`, { width, height: 900, dark });
+      await tab.until("document.readyState === 'complete'", file, 30);
+      expect(await tab.value('document.documentElement.scrollWidth') <= width, `${file} at ${width} pixels scrolls sideways`);
+      const faint = await tab.value(kFaintWords);
+      expect(faint === '', `${file}, ${dark ? 'dark' : 'light'}, hard to read: ${faint}`);
     }
 });
 
