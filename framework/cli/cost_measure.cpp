@@ -300,6 +300,17 @@ bool allows_something(const scene::Scene& scene) {
                      [](const scene::CheckSpec& check) { return check.tolerance > 0.0; });
 }
 
+/// Whether no method and no step errs by more than the least of the marks: a scene at rest.
+bool is_right_at_every_step(const report::CostPage& page) {
+  bool any = false;
+  for (const report::CostCurve& curve : page.curves)
+    for (const report::CostPoint& point : curve.points) {
+      if (!(point.error <= page.marks.back())) return false;
+      any = true;
+    }
+  return any;
+}
+
 report::CostPage page_of(const Context& context, const std::vector<Refinement>& refinements,
                          const CostReference& reference, const CostSubject& subject) {
   report::CostPage page;
@@ -321,6 +332,12 @@ report::CostPage page_of(const Context& context, const std::vector<Refinement>& 
   page.readings = verdicts(page);
   if (const std::string compared = coordinates_compared(page); !compared.empty())
     page.readings.push_back(compared);
+  if (!reference.by_numbers && is_right_at_every_step(page))
+    page.readings.insert(
+        page.readings.begin(),
+        fmt::format("Every method is right to {} at every step here: the page shows what a step "
+                    "costs, not what accuracy costs. That takes a scene that moves more.",
+                    report::mark_in_words(page, page.marks.back())));
   if (reference.by_numbers && !allows_something(subject.scene))
     page.readings.push_back(
         "All tolerances of the scene's numbers are 0, so a run keeps to them or does not: the page "

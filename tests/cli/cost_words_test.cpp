@@ -81,6 +81,19 @@ TEST_F(CommandLine, CostWorksOnScenesOfEveryKind) {
   }
 }
 
+// A chain that hangs at rest is right by every method; one that falls is not at 1/120 s, where a
+// method of second order errs by some 1e-2 of the way.
+TEST_F(CommandLine, CostSaysWhereNothingPartsTheMethods) {
+  const std::string words =
+      " --modules reference --methods midpoint --engines none --steps 1/60,1/120 --budget-s 3 "
+      "--duration-s 0.1";
+  const Said at_rest = type("cost chain_100" + words), falling = type("cost chain_8" + words);
+  EXPECT_EQ(at_rest.code, 0) << at_rest.err;
+  EXPECT_TRUE(holds(at_rest.out, "Every method is right to 1e-9 m at every step here"))
+      << at_rest.out;
+  EXPECT_FALSE(holds(falling.out, "Every method is right")) << falling.out;
+}
+
 TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
   const Said said = type(
       "cost double_pendulum --modules reference --methods none --solvers gradients --duration-s "
