@@ -1,5 +1,6 @@
 #include "assignments/a3_constraints/a3_binding.h"
 
+#include "framework/effects/rod/rod.h"
 #include "framework/engines/cost/showcase.h"
 #include "framework/live/showcase.h"
 
@@ -8,7 +9,7 @@ namespace tumble::a3 {
 // anchor_position and anchor_velocity have no law: engines compute anchors themselves.
 void bind(const Module& module, Laws& laws) {
   laws.spring_force = module.spring_force;
-  laws.rod_row = module.rod_row;
+  laws.set<effects::RodRow>(module.rod_row);
   laws.baumgarte_acceleration = module.baumgarte_acceleration;
   laws.constraint_multipliers = module.constraint_multipliers;
   laws.constraint_correction = module.constraint_correction;

@@ -4,6 +4,8 @@
 /// Each assignment fills the laws it is about (its `bind`); what no module fills stays empty, and
 /// an engine that needs an empty law says which assignment provides it. `library_laws()` fills
 /// integration from a library, so that scenes run before a student has written an integrator.
+/// What stands here is asked by engines, or by more than one room; a law that one effect alone asks
+/// stands in the effect's folder and is listed by its type (law_list.h).
 #pragma once
 
 #include <functional>
@@ -13,12 +15,13 @@
 #include "framework/dynamics/body.h"
 #include "framework/dynamics/constraint.h"
 #include "framework/dynamics/contact_problem.h"
+#include "framework/dynamics/law_list.h"
 #include "framework/dynamics/ode.h"
 #include "framework/dynamics/scheduling.h"
 
 namespace tumble {
 
-struct Laws {
+struct Laws : LawList {
   // Impulses and point forces (assignment a1).
   std::function<double(const Contact&, const Body& a, const Body& b)> relative_normal_velocity;
   std::function<double(const Contact&, const Body& a, const Body& b, double restitution)>
@@ -46,13 +49,9 @@ struct Laws {
                            double t_high, double tolerance)>
       find_impact_time;
 
-  // Springs, rods, resting contact (assignment a3).
+  // Springs, rods and joints, resting contact (assignment a3).
   /// Force of a spring on the body at its end A; on B acts the opposite. World frame. [N]
   std::function<Vector3d(const Spring&, const AnchorState& a, const AnchorState& b)> spring_force;
-  /// The distance constraint between a point of A and a point of B (body frames).
-  std::function<ConstraintRow(const Body& a, const Vector3d& point_a_body, const Body& b,
-                              const Vector3d& point_b_body, double length)>
-      rod_row;
   /// The C'' that brings a constraint back (Baumgarte). [m/s^2]
   std::function<double(double value, double rate, double time_constant_s)> baumgarte_acceleration;
   /// lambda (m) at which every C'' is what is wanted, (m).
@@ -86,8 +85,8 @@ struct Laws {
   std::string constraint_source = "none";
   std::string scheduling_source = "none";  // which module provides the scheduler
   // what stands in the place of the module's own solvers of links and of contacts
-  // (iterative_solvers.h); empty: nothing, they are constraint_source's. Springs, and the rows of
-  // rods, are constraint_source's in any case.
+  // (iterative_solvers.h); empty: nothing, they are constraint_source's. Springs are
+  // constraint_source's in any case, and so are the rows of rods, which are listed (RodRow).
   std::string link_solver{}, contact_solver{};
 
   /// Where multipliers and corrections of links, and where contact_forces, come from.

@@ -202,7 +202,15 @@ struct NeededLaw {
   bool is_there;
   std::string what;        // "the force of a spring"
   std::string assignment;  // "a3"
+  // of a listed law: which module provides it
+  std::string source = LawList::kNoSource;
 };
+
+/// A law that is listed by its type (dynamics/law_list.h).
+template <class Law>
+NeededLaw needed_law(const Laws& laws) {
+  return {laws.has<Law>(), Law::kWords.what, Law::kWords.assignment, laws.source_of<Law>()};
+}
 
 using scene::Traits;
 

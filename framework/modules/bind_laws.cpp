@@ -7,6 +7,7 @@ void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::strin
   kind.bind(module, laws);
   Laws alone;  // has only the laws that this module implements
   kind.bind(module, alone);
+  laws.take_listed(alone, source);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;
   if (alone.constraint_multipliers) {

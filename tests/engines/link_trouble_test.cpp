@@ -79,13 +79,13 @@ TEST(LinkTrouble, ARodsRowThatIsNotANumberIsNamed) {
   for (double ConstraintRow::*part :
        {&ConstraintRow::value, &ConstraintRow::rate, &ConstraintRow::velocity_product}) {
     Clock clock;
-    clock.laws.rod_row = [&, part, right = clock.laws.rod_row](
-                             const Body& a, const Vector3d& point_a, const Body& b,
-                             const Vector3d& point_b, double length) {
+    clock.laws.set<effects::RodRow>([&, part, right = clock.laws.of<effects::RodRow>()](
+                                        const Body& a, const Vector3d& point_a, const Body& b,
+                                        const Vector3d& point_b, double length) {
       ConstraintRow row = right(a, point_a, b, point_b, length);
       if (clock.is_late()) row.*part = kNaN;
       return row;
-    };
+    });
     expect_stopped(run(swinging("rod"), clock.laws),
                    {"t = 0.5", "'bob'", "rod 'wire'", "rod_row", "not a number"}, 0.45, 0.55);
   }
@@ -93,11 +93,11 @@ TEST(LinkTrouble, ARodsRowThatIsNotANumberIsNamed) {
 
 TEST(LinkTrouble, ARodThatIsNeverANumberIsNamedAtTheStart) {
   Laws laws = reference_laws();
-  laws.rod_row = [](const Body&, const Vector3d&, const Body&, const Vector3d&, double) {
+  laws.set<effects::RodRow>([](const Body&, const Vector3d&, const Body&, const Vector3d&, double) {
     ConstraintRow row{};
     row.value = kNaN;
     return row;
-  };
+  });
   const Trajectory result = run(swinging("rod"), laws);
   for (const char* word : {"t = 0.000000", "'bob'", "rod 'wire'", "rod_row"})
     EXPECT_NE(result.stopped_by.find(word), std::string::npos) << result.stopped_by;

@@ -5,6 +5,7 @@
 
 #include "tests/support/places.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
@@ -226,12 +227,13 @@ TEST(DemoScenes, AForgottenRestLengthIsJudgedWrong) {
 // A rod with a force on one of its two bodies only: the common centre of mass leaves its parabola.
 TEST(DemoScenes, ARodThatPullsOneEndOnlyIsJudgedWrong) {
   Laws laws = right_laws();
-  laws.rod_row = [right = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b,
-                                        const Vector3d& point_b, double length) {
-    ConstraintRow row = right(a, point_a, b, point_b, length);
-    row.jacobian_b *= 0.5;
-    return row;
-  };
+  laws.set<effects::RodRow>(
+      [right = laws.of<effects::RodRow>()](const Body& a, const Vector3d& point_a, const Body& b,
+                                           const Vector3d& point_b, double length) {
+        ConstraintRow row = right(a, point_a, b, point_b, length);
+        row.jacobian_b *= 0.5;
+        return row;
+      });
   const Trajectory result = run(demo_scene("joined_by_rods"), laws);
   const auto wrong = failures(demo_scene("joined_by_rods"), result);
   EXPECT_TRUE(!result.stopped_by.empty() ||
@@ -240,12 +242,13 @@ TEST(DemoScenes, ARodThatPullsOneEndOnlyIsJudgedWrong) {
 
 TEST(DemoScenes, ARodWithoutItsVelocityProductIsJudgedWrong) {
   Laws laws = right_laws();
-  laws.rod_row = [right = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b,
-                                        const Vector3d& point_b, double length) {
-    ConstraintRow row = right(a, point_a, b, point_b, length);
-    row.velocity_product = 0.0;
-    return row;
-  };
+  laws.set<effects::RodRow>(
+      [right = laws.of<effects::RodRow>()](const Body& a, const Vector3d& point_a, const Body& b,
+                                           const Vector3d& point_b, double length) {
+        ConstraintRow row = right(a, point_a, b, point_b, length);
+        row.velocity_product = 0.0;
+        return row;
+      });
   for (const std::string name :
        {"hung_by_rod", "double_pendulum", "chain_8", "newtons_cradle_2", "joined_by_rods"})
     EXPECT_TRUE(fails(demo_scene(name), laws)) << name;

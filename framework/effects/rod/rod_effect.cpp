@@ -31,7 +31,7 @@ std::string digits(double value) {
 class RodTerms final : public GroupTerms {
  public:
   RodTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places)
-      : laws_(acting.laws),
+      : row_(acting.laws.of<RodRow>()),
         calls_(acting.calls),
         all_(acting.world.effects.of<RodLink>()),
         rods_(placed_links(all_, entries, places)) {}
@@ -42,8 +42,8 @@ class RodTerms final : public GroupTerms {
       ++calls_;
       const RodLink& rod = of(link);
       rows.push_back({link.a.place, link.b.place, naming_link("rod", rod.name, [&] {
-                        return laws_.rod_row(bodies[link.a.place], link.a.point_body,
-                                             bodies[link.b.place], link.b.point_body, rod.length);
+                        return row_(bodies[link.a.place], link.a.point_body, bodies[link.b.place],
+                                    link.b.point_body, rod.length);
                       })});
     }
   }
@@ -85,7 +85,7 @@ class RodTerms final : public GroupTerms {
     return all_[static_cast<std::size_t>(link.entry)];
   }
 
-  const Laws& laws_;
+  const LawFunction<RodRow>& row_;
   std::uint64_t& calls_;
   const std::vector<RodLink>& all_;
   std::vector<PlacedLink> rods_;
@@ -131,8 +131,7 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
     return std::make_unique<RodTerms>(acting, entries, places);
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
-    std::vector<NeededLaw> needed{
-        {static_cast<bool>(laws.rod_row), "the constraint of a rod", "a3"}};
+    std::vector<NeededLaw> needed{needed_law<RodRow>(laws)};
     append_laws_of_rows(scene, laws, needed);
     return needed;
   }
@@ -159,7 +158,7 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
       pulls.push_back(
           {rod.a.body, rod.b.body, std::abs(measured[k]),
            fmt::format("rod '{}' (rod_row{}, constraint_multipliers, constraint_correction of {})",
-                       rod.name, laws.link_solver.empty() ? "" : " of " + laws.constraint_source,
+                       rod.name, laws.link_solver.empty() ? "" : " of " + laws.source_of<RodRow>(),
                        laws.source_of_links())});
     }
   }
