@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/engine_rows.h"
@@ -81,9 +82,7 @@ void run_engines(Context& context, const EnginesWords& words) {
                          {"sizes", std::move(sizes)},
                          {"page", page.string()}});
   } else {
-    const std::string constraints = constraints_line(scene, chosen.laws);
-    fmt::print("{}\n  impulses by {} · motion by {}{}{}\n", scene.title, chosen.laws.impulse_source,
-               chosen.laws.integrator_source, constraints.empty() ? "" : " · ", constraints);
+    fmt::print("{}\n  {}\n", scene.title, fmt::join(authors_of_laws(scene, chosen.laws), " · "));
     print_rows(rows);
     fmt::print("{}\n", page.string());
   }

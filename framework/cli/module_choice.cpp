@@ -297,6 +297,8 @@ void add_module(const Context& context, const scene::Scene& scene, const ModuleK
     if (step.integrate_step) result.laws.integrate_step = step.integrate_step;
     if (derivative.renormalize) result.laws.renormalize = derivative.renormalize;
     if (derivative.state_derivative) result.laws.state_derivative = derivative.state_derivative;
+    // Effects ask their laws within a step.
+    if (step.integrate_step) result.laws.take_listed(derivative, kind.id + " " + word);
     for (const auto& depth : {sandboxed.search, sandboxed.step, sandboxed.derivative})
       result.connections.push_back(depth.connection);
     return;
@@ -421,11 +423,16 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   return result;
 }
 
-std::string constraints_line(const scene::Scene& scene, const Laws& laws) {
-  if (!scene.contact && !effects::asks_laws_of("a3", scene)) return "";
-  return fmt::format(
-      "springs, rods and contact by {}{}", laws.constraint_source,
-      scene.contact ? ", where it rubs, is linked or is one of many by the framework" : "");
+std::vector<std::string> authors_of_laws(const scene::Scene& scene, const Laws& laws) {
+  std::vector<std::string> authors{"impulses by " + laws.impulse_source,
+                                   "motion by " + laws.integrator_source};
+  if (scene.contact || effects::asks_laws_of("a3", scene))
+    authors.push_back(fmt::format(
+        "springs, rods and contact by {}{}", laws.constraint_source,
+        scene.contact ? ", where it rubs, is linked or is one of many by the framework" : ""));
+  for (std::string& author : effects::authors_of_listed_laws(scene, laws))
+    authors.push_back(std::move(author));
+  return authors;
 }
 
 void refuse_library(const ModuleKind& kind, const std::string& functions, const std::string& more) {

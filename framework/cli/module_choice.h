@@ -61,9 +61,10 @@ void expect_module_files(const Context& context, const ModuleWords& words);
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
                        const std::string& engine = "");
 
-/// "springs, rods and contact by a3 student, where it rubs, is linked or is one of many by the
-/// framework"; empty for a scene that has none of them.
-std::string constraints_line(const scene::Scene& scene, const Laws& laws);
+/// Whose each law is: "impulses by a1 student", "motion by Boost.Odeint"; and, of a scene that asks
+/// them, "springs, rods and contact by a3 student, where it rubs, is linked or is one of many by
+/// the framework", "the drag of a plate by a6 student".
+std::vector<std::string> authors_of_laws(const scene::Scene& scene, const Laws& laws);
 
 /// Refuses the word library where a module's own functions are asked for, which the library lacks.
 /// @param functions  "functions of a Markov chain"  @param more  a remedy besides, a sentence

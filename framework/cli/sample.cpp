@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/find_scene.h"
@@ -190,10 +191,8 @@ void sample(const Context& context, const SampleWords& words, const fs::path& fo
 
 void print(const Sampled& sampled) {
   const Answers& answers = sampled.growing.back();
-  const std::string constraints = constraints_line(sampled.worlds.scene, sampled.chosen.laws);
-  fmt::print("{}\n  chains by {} · impulses by {} · motion by {}{}{}\n", sampled.worlds.scene.title,
-             sampled.source, sampled.chosen.laws.impulse_source,
-             sampled.chosen.laws.integrator_source, constraints.empty() ? "" : " · ", constraints);
+  fmt::print("{}\n  chains by {} · {}\n", sampled.worlds.scene.title, sampled.source,
+             fmt::join(authors_of_laws(sampled.worlds.scene, sampled.chosen.laws), " · "));
   fmt::print(
       "  {} of {} samples do what is asked; {:.0f} % of proposals accepted; largest R-hat {:.3f}\n",
       answers.done, answers.samples, 100 * answers.acceptance, answers.worst_r_hat);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/json_output.h"
@@ -38,11 +39,9 @@ namespace fs = std::filesystem;
 using engines::CheckResult;
 
 std::string modules_line(const scene::Scene& scene, const Laws& laws) {
-  const std::string constraints = constraints_line(scene, laws),
-                    line = fmt::format("impulses by {} · motion by {}{}{}", laws.impulse_source,
-                                       laws.integrator_source, constraints.empty() ? "" : " · ",
-                                       constraints);
-  return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
+  std::vector<std::string> authors = authors_of_laws(scene, laws);
+  if (laws.scheduling) authors.push_back("scheduled by " + laws.scheduling_source);
+  return fmt::format("{}", fmt::join(authors, " · "));
 }
 
 const char* name_of(EventKind kind) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/find_scene.h"
@@ -145,10 +146,8 @@ void run_sweep(Context& context, const SweepWords& words) {
   const std::string engines = engines_of(words, swept.varied);
   const ChosenLaws chosen = choose_laws(context, swept.scene, module_words, engines);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
-  const std::string constraints = constraints_line(swept.scene, chosen.laws);
-  swept.laws =
-      fmt::format("Impulses by {}, motion by {}{}{}", chosen.laws.impulse_source,
-                  chosen.laws.integrator_source, constraints.empty() ? "" : ", ", constraints);
+  swept.laws = fmt::format("{}", fmt::join(authors_of_laws(swept.scene, chosen.laws), ", "));
+  swept.laws[0] = 'I';  // of "impulses"
   // Words that contradict each other are refused before the first run, by a plan of each.
   std::set<std::pair<std::string, bool>> planned;
   for (const GridPoint& point : swept.points) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "framework/effects/effect.h"
@@ -16,6 +17,11 @@ inline constexpr std::size_t kMost = 32;  // counts stand in arrays of this size
 
 /// Everything that the scene asks effects to draw.
 Drawables drawn(const scene::Scene& scene);
+
+/// Whose the listed laws are that the scene's effects ask: "the drag of a plate by a6 student",
+/// each once. Left out are laws of modules that provide impulses, motion or constraints, too: they
+/// are named for these.
+std::vector<std::string> authors_of_listed_laws(const scene::Scene& scene, const Laws& laws);
 
 /// Whether an effect that the scene asks for asks a law of this assignment, such as "a3".
 bool asks_laws_of(const std::string& assignment, const scene::Scene& scene);

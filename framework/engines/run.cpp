@@ -29,12 +29,7 @@ namespace {
 
 template <class Law>
 void need(const Law& law, const scene::Scene& scene, const char* what, const char* assignment) {
-  if (law) return;
-  throw UserError(
-      scene.name, std::string("needs ") + what + ", and no module provides it",
-      std::string("assignment ") + assignment +
-          " provides it: fill in that assignment first, or name a file that has it: --modules " +
-          assignment + "=PATH");
+  if (!law) refuse_without_law(scene.name, what, assignment);
 }
 
 bool may_meet(const scene::Scene& scene) {
@@ -237,6 +232,8 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   if (!laws.link_solver.empty()) info.constraint_source += ", links by " + laws.link_solver;
   if (!laws.contact_solver.empty())
     info.constraint_source += ", contacts by " + laws.contact_solver;
+  for (const std::string& author : effects::authors_of_listed_laws(scene, laws))
+    info.constraint_source += ", " + author;
   info.step_s = step;
   info.frame_rate_hz = options.frame_rate_hz;
   std::vector<TrajectoryBody> bodies;

@@ -117,8 +117,8 @@ struct TrajectoryInfo {
   double step_s = 0.0;
   double frame_rate_hz = 0.0;
   std::vector<std::uint64_t> seeds;  // of random numbers
-  // module that provides springs, rods and contact forces, and what solves for links and contacts
-  // in its place; "none" where the scene needs none
+  // module that provides springs, rods and contact forces, what solves for links and contacts in
+  // its place, and whose the listed laws of other effects are; "none" where the scene needs none
   std::string constraint_source{};
 };
 
