@@ -58,7 +58,7 @@ const std::vector<Kind>& kinds() {
        next_of_assignment},
       {"effect", "effect low_wind", 1,
        [](const Command& command, const NewWords& words) {
-         return extend::new_effect(command.root, words.first);
+         return extend::new_effect(command.root, words.first, words.function);
        },
        [](const Command&, const NewWords& words) {
          return fmt::format(
@@ -151,7 +151,9 @@ void add_new(CLI::App& app, Command& command) {
   verb.option("--functions", words->functions,
               "Of an assignment: a list of C++ declarations, a line of comment above each")
       .type_name("FILE");
-  verb.option("--function", words->function, "Of a slip: the function that it is in")
+  verb.option("--function", words->function,
+              "Of a slip: the function that it is in; of an effect: one of an assignment that it "
+              "asks, a5.energy_of")
       .type_name("NAME");
   verb.flag("--hidden", words->hidden, "Of a test: students do not see it");
   verb.footer(

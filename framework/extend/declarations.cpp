@@ -193,4 +193,15 @@ Declarations read_declarations(const std::string& text, const std::string& file)
   return Reader(text, file).read();
 }
 
+Function read_function(const std::string& header, const std::string& name,
+                       const std::string& file) {
+  const std::regex declaration("\n([A-Za-z][\\w:<>, ]* +" + name + "\\([^;]*;)");
+  std::smatch declared;
+  if (!std::regex_search(header, declared, declaration))
+    throw UserError(file, "declares no function " + name,
+                    "TUMBLE_MODULE lists what the header declares.");
+  return read_declarations("// Read from the header.\n" + declared[1].str() + "\n", file)
+      .functions.front();
+}
+
 }  // namespace tumble::extend

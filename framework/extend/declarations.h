@@ -42,4 +42,8 @@ struct Declarations {
 ///   function
 Declarations read_declarations(const std::string& text, const std::string& file);
 
+/// One function as an assignment's header declares it, without its comment.
+/// @throws UserError where the header declares none of this name
+Function read_function(const std::string& header, const std::string& name, const std::string& file);
+
 }  // namespace tumble::extend

@@ -59,12 +59,17 @@ std::string zero_of(const std::string& returns) {
   return "{}";
 }
 
-std::string first_test(const Function& function, const FirstTest& test) {
+std::string first_arguments(const Function& function) {
   std::string arguments;
   for (const Parameter& parameter : function.parameters)
     arguments += (arguments.empty() ? "" : ", ") + first_value(plain_type(parameter.type));
+  return arguments;
+}
+
+std::string first_test(const Function& function, const FirstTest& test) {
   const std::string type = plain_type(function.returns),
-                    call = test.module + "." + function.name + "(" + arguments + ")",
+                    call =
+                        test.module + "." + function.name + "(" + first_arguments(function) + ")",
                     story = "{.scene = \"(to be written: " + test.scene +
                             ")\",\n.slip = \"(to be written: the mistake that gives such an answer "
                             "most often)\",\n.handout = " +

@@ -20,6 +20,9 @@ struct FirstTest {
 /// The body of the test, one statement or two.
 std::string first_test(const Function& function, const FirstTest& test);
 
+/// Arguments to begin with: "1.0, Vector3d(1, 2, 3)".
+std::string first_arguments(const Function& function);
+
 /// An answer that is nothing, for slips: "0", "Vector3d::Zero()", "{}".
 std::string zero_of(const std::string& type);
 

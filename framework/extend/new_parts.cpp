@@ -23,6 +23,16 @@ void refuse_name(const std::string& name, const std::string& what) {
                     "Names are lower case words with _ between them: low_wind.");
 }
 
+void refuse_function(const fs::path& root, const std::string& folder, const std::string& function,
+                     const std::string& why, const std::string& remedy) {
+  const std::vector<std::string> functions = functions_of_header(root, folder);
+  if (std::find(functions.begin(), functions.end(), function) == functions.end())
+    throw UserError(function.empty() ? "--function" : function,
+                    "is no function of " + folder + ".h" + (function.empty() ? why : "") + "." +
+                        did_you_mean(function, functions),
+                    remedy);
+}
+
 fs::path templates_of(const fs::path& root, const std::string& what) {
   return root / "framework/extend/templates" / what;
 }
@@ -52,6 +62,10 @@ std::string with_entry(const std::string& rubric, const std::string& entry,
   return last.prefix().str() + last.str() + ",\n" + last[1].str() + entry + last.suffix().str();
 }
 
+fs::path header_of(const std::string& folder) {
+  return fs::path("assignments") / folder / (folder + ".h");
+}
+
 // The function that a suite is about, as the header declares it: the one of its name, else the
 // first.
 Function function_of_suite(const fs::path& root, const std::string& folder, std::string suite) {
@@ -60,16 +74,9 @@ Function function_of_suite(const fs::path& root, const std::string& folder, std:
   const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
     return pascal_case(name) == suite;
   });
-  const std::string name = found == names.end() ? names.at(0) : *found;
-  const fs::path file = fs::path("assignments") / folder / (folder + ".h");
-  const std::string header = text_of(root / file);
-  const std::regex declaration("\n([A-Za-z][\\w:<>, ]* +" + name + "\\([^;]*;)");
-  std::smatch declared;
-  if (!std::regex_search(header, declared, declaration))
-    throw UserError(file.string(), "declares no function " + name,
-                    "TUMBLE_MODULE lists what the header declares.");
-  return read_declarations("// Read from the header.\n" + declared[1].str() + "\n", file.string())
-      .functions.front();
+  const fs::path file = header_of(folder);
+  return read_function(text_of(root / file), found == names.end() ? names.at(0) : *found,
+                       file.string());
 }
 
 // "SeparatingBodiesGetNone" -> "Separating bodies get none".
@@ -85,16 +92,113 @@ std::string as_words(const std::string& name) {
   return words;
 }
 
+/// A function of an assignment that a new effect asks: its law, and what is written of it where.
+struct AskedFunction {
+  std::string id, folder;
+  Function function;
+  std::string law;  // of the effect: "LowLiftLaw"
+};
+
+/// @param words  "a6.plate_drag"
+AskedFunction asked_function(const fs::path& root, const std::string& effect,
+                             const std::string& words) {
+  const std::size_t dot = words.find('.');
+  if (dot == std::string::npos)
+    throw UserError("--function " + words, "names no assignment",
+                    "It is written  --function a6.plate_drag");
+  AskedFunction asked;
+  asked.id = words.substr(0, dot);
+  asked.folder = folder_of_assignment(root, asked.id);
+  const std::string name = words.substr(dot + 1);
+  refuse_function(root, asked.folder, name, "", "Name one that the effect asks.");
+  const fs::path header = header_of(asked.folder);
+  asked.function = read_function(text_of(root / header), name, header.string());
+  asked.law = pascal_case(effect) + "Law";
+  return asked;
+}
+
+// The headers of types that the framework hands to the functions of an assignment.
+std::string includes_of_types(const fs::path& root, const std::string& folder) {
+  std::string includes;
+  for (const std::string& line : lines_of(text_of(root / header_of(folder))))
+    if (line.starts_with("#include \"framework/dynamics/")) includes += line + "\n";
+  return includes;
+}
+
+// What a first force makes of an answer.
+std::string first_ask(const Function& function) {
+  const std::string call = function.name + "_(" + first_arguments(function) + ")";
+  if (function.returns == "Vector3d") return "wrenches[place].force_world += " + call + ";";
+  if (function.returns == "double")
+    return "wrenches[place].force_world -= " + call + " * bodies[place].velocity_world;";
+  return "[[maybe_unused]] const auto answer = " + call + ";";
+}
+
+Marks marks_of(const fs::path& root, const AskedFunction& asked, const std::string& effect) {
+  const Function& function = asked.function;
+  std::string parameters;
+  for (const Parameter& parameter : function.parameters)
+    parameters += (parameters.empty() ? "" : ", ") + parameter.type + " " + parameter.name;
+  std::string words = effect;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return {{"id", asked.id},
+          {"function", function.name},
+          {"Law", asked.law},
+          {"signature", function.returns + "(" + parameters + ")"},
+          {"includes", includes_of_types(root, asked.folder)},
+          {"effect_in_words", words},
+          {"ask", first_ask(function)},
+          {"returns", function.returns},
+          {"zero", function.returns == "Wrench" ? "{Vector3d::Zero(), Vector3d::Zero()}"
+                                                : zero_of(function.returns)}};
+}
+
+/// The binding of an assignment that sets the law, too.
+NewFile with_law_set(const fs::path& root, const AskedFunction& asked, const std::string& effect) {
+  static const std::regex head(R"(void bind\(const Module&( module)?, Laws&( laws)?\) \{(\})?)");
+  const fs::path file = fs::path("assignments") / asked.folder / (asked.id + "_binding.cpp");
+  const std::string own =
+      "#include \"assignments/" + asked.folder + "/" + asked.id + "_binding.h\"\n\n";
+  const std::string law = "#include \"framework/effects/" + effect + "/" + effect + ".h\"\n";
+  const std::string set =
+      "laws.set<effects::" + asked.law + ">(module." + asked.function.name + ");";
+  std::string text = text_of(root / file);
+  std::smatch bind;
+  if (!text.starts_with(own) || !std::regex_search(text, bind, head))
+    throw UserError(file.string(), "does not begin with its own header, or has no function bind",
+                    "Without --function the effect asks nothing. Then bind() sets its law: " + set);
+  text = bind.prefix().str() + "void bind(const Module& module, Laws& laws) {\n  " + set +
+         (bind[3].matched ? "\n}" : "") + bind.suffix().str();
+  text.insert(own.size(), text.substr(own.size()).starts_with("#include") ? law : law + "\n");
+  return {file, text};
+}
+
 }  // namespace
 
-std::vector<NewFile> new_effect(const fs::path& root, const std::string& name) {
+std::vector<NewFile> new_effect(const fs::path& root, const std::string& name,
+                                const std::string& function) {
   refuse_name(name, "an effect");
   if (fs::exists(root / "framework/effects" / name))
     throw UserError(name, "is an effect already: framework/effects/" + name, "Take another name.");
-  const std::vector<NewFile> files =
-      files_from(templates_of(root, "effect"),
-                 {{"name", name}, {"Name", pascal_case(name)}, {"words", as_title(name)}});
+  Marks marks = {{"name", name},
+                 {"Name", pascal_case(name)},
+                 {"words", as_title(name)},
+                 {"asked", ""},
+                 {"laws", ""}};
+  if (function.empty()) {
+    const std::vector<NewFile> files = files_from(templates_of(root, "effect"), marks);
+    put_in_place(root, files);
+    return files;
+  }
+  const AskedFunction asked = asked_function(root, name, function);
+  marks["asked"] = asked.function.name + "_(acting.laws.of<" + asked.law + ">()), ";
+  marks["laws"] = ", laws_with_" + name + "()";
+  std::vector<NewFile> files =
+      files_from(templates_of(root, "effect"), marks, {marks_of(root, asked, name)});
+  const NewFile binding = with_law_set(root, asked, name);
   put_in_place(root, files);
+  write_whole(root / binding.file, binding.text);
+  files.push_back(binding);
   return files;
 }
 
@@ -117,13 +221,7 @@ std::vector<NewFile> new_slip(const fs::path& root, const std::string& id, const
                               const std::string& function) {
   const std::string folder = folder_of_assignment(root, id);
   refuse_name(name, "a slip");
-  const std::vector<std::string> functions = functions_of_header(root, folder);
-  if (std::find(functions.begin(), functions.end(), function) == functions.end())
-    throw UserError(function.empty() ? "--function" : function,
-                    "is no function of " + folder + ".h" +
-                        (function.empty() ? " to be wrong" : "") + "." +
-                        did_you_mean(function, functions),
-                    "Name the one that the slip is in.");
+  refuse_function(root, folder, function, " to be wrong", "Name the one that the slip is in.");
   const fs::path reference = fs::path("solutions_private") / folder / (folder + ".cpp");
   const std::string line = line_to_change(lines_of(text_of(root / reference)), function);
   if (line.empty())

@@ -9,9 +9,13 @@
 
 namespace tumble::extend {
 
-/// An effect with its words in a scene, its physics, a test and a scene.
+/// An effect with its words in a scene, its physics and a test.
+/// @param function  of an assignment that it asks: "a6.plate_drag". The effect has its law then,
+///   which the assignment's binding sets. Empty: none
+/// @return what was written; of an effect with a function the binding, too
 /// @throws UserError for a name that is taken or cannot be one; so do all below
-std::vector<NewFile> new_effect(const std::filesystem::path& root, const std::string& name);
+std::vector<NewFile> new_effect(const std::filesystem::path& root, const std::string& name,
+                                const std::string& function = "");
 
 /// A scene of an assignment.
 std::vector<NewFile> new_scene(const std::filesystem::path& root, const std::string& id,

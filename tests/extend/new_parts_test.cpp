@@ -92,5 +92,52 @@ TEST(NewEffect, IsAFolderAndATest) {
       std::string::npos);
 }
 
+// The effect's folder has its law, and the assignment's binding sets it: no other old file.
+TEST(NewEffect, ThatAsksAFunctionHasItsLawAndIsBound) {
+  const NewTree tree;
+  tree.make_a5();
+  const auto before = tree.files();
+  extend::new_effect(tree.root(), "low_wind", "a5.larger_part");
+  const auto files = tree.files();
+  const std::string& header = files.at("framework/effects/low_wind/low_wind.h");
+  EXPECT_NE(header.find("using Function = Vector3d(const Vector3d& arm_world);"), std::string::npos)
+      << header;
+  EXPECT_NE(header.find(".assignment = \"a5\""), std::string::npos) << header;
+  EXPECT_NE(files.at("framework/effects/low_wind/low_wind_effect.cpp")
+                .find("larger_part_(acting.laws.of<LowWindLaw>())"),
+            std::string::npos);
+  const std::string& binding = files.at("assignments/a5_trial/a5_binding.cpp");
+  for (const char* words : {"\n#include \"framework/effects/low_wind/low_wind.h\"\n",
+                            "void bind(const Module& module, Laws& laws) {\n"
+                            "  laws.set<effects::LowWindLaw>(module.larger_part);\n}\n"})
+    EXPECT_NE(binding.find(words), std::string::npos) << binding;
+  for (const auto& [name, text] : before) {
+    if (name == "assignments/a5_trial/a5_binding.cpp") continue;
+    EXPECT_EQ(files.at(name), text) << name;
+  }
+  // A second one stands beside it.
+  extend::new_effect(tree.root(), "high_wind", "a5.mean_of");
+  const std::string both = tree.files().at("assignments/a5_trial/a5_binding.cpp");
+  for (const char* words : {"laws.set<effects::HighWindLaw>(module.mean_of);",
+                            "laws.set<effects::LowWindLaw>(module.larger_part);"})
+    EXPECT_NE(both.find(words), std::string::npos) << both;
+}
+
+TEST(NewEffect, ThatAsksAFunctionWhichIsNotThereLeavesNothing) {
+  const NewTree tree;
+  tree.make_a5();
+  tree.functions();
+  const auto before = tree.files();
+  for (const auto& [function, words] : std::vector<std::pair<std::string, std::string>>{
+           {"a5.larger_parts", "Did you mean 'larger_part'?"},
+           {"a7.mean_of", "there is no assignment of this name"},
+           {"mean_of", "names no assignment"}}) {
+    const std::string said =
+        refusal_of([&, &f = function] { extend::new_effect(tree.root(), "low_wind", f); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  }
+  EXPECT_EQ(tree.files(), before);
+}
+
 }  // namespace
 }  // namespace tumble::testing
