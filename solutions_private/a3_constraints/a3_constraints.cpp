@@ -130,7 +130,7 @@ class Envelope {
     for (Eigen::Index i = 0; i < size(); ++i)
       x[i] -= product(row(i) + first(i), x + first(i), i - first(i));
     for (Eigen::Index i = 0; i < size(); ++i) x[i] *= inverse_pivots_[static_cast<std::size_t>(i)];
-    for (Eigen::Index i = size(); i-- > 0;) {
+    for (Eigen::Index i = size(); i-- != 0;) {
       const double* const of_i = row(i);
       const double x_i = x[i];
       for (Eigen::Index k = first(i); k < i; ++k) x[k] -= of_i[k] * x_i;
@@ -161,62 +161,13 @@ class RowSystem {
  public:
   RowSystem(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies)
       : rows_(rows), bodies_(bodies) {
-    if (!rows_.empty()) factorise();
+    factorise();
   }
 
-  /// M^-1 J^T lambda, (6n).
-  VectorXd response(const VectorXd& lambda) const {
-    VectorXd change(6 * static_cast<Eigen::Index>(bodies_.size()));
-    respond(lambda, change);
-    return change;
-  }
-
-  /// lambda with A lambda = wanted, by a factorisation and refinement: what is left over is
-  /// computed by way of the bodies, in which light and heavy ones do not swallow each other's
-  /// digits as they do in A.
-  /// @param least_rounds  2 refine once at least: lambda keeps its digits where masses differ. 1
-  ///                      does where only A lambda is to be right
-  VectorXd solve(const VectorXd& wanted, int least_rounds) const {
-    constexpr int kMostRounds = 8;
-    // What the forces' own rounding leaves, A having a unit diagonal: more rounds would only stir
-    // it.
-    constexpr double kRoundOff = 2 * std::numeric_limits<double>::epsilon();
-    VectorXd lambda = VectorXd::Zero(wanted.size()), scaled = lambda,
-             left = scale_.cwiseProduct(wanted);
-    VectorXd next(wanted.size()), next_left(wanted.size()),
-        change(6 * static_cast<Eigen::Index>(bodies_.size()));
-    double size_left = left.norm();
-    for (int round = 0; round < kMostRounds && size_left > 0; ++round) {
-      next = left;
-      solve_once(next);
-      scaled += next;
-      next = scale_.cwiseProduct(scaled);
-      respond(next, change);
-      leave(wanted, change, next_left);
-      const double size_next = next_left.norm();
-      if (!(size_next < size_left)) break;
-      const bool is_done = size_next > 0.5 * size_left ||
-                           (round + 1 >= least_rounds && size_next <= kRoundOff * scaled.norm());
-      lambda.swap(next);
-      left.swap(next_left);
-      size_left = size_next;
-      if (is_done) break;
-    }
-    return lambda;
-  }
-
- private:
-  static Vector6d accelerated(const ConstrainedBody& body, const Vector6d& force) {
-    Vector6d u;
-    u.head<3>() = body.inverse_mass * force.head<3>();
-    u.tail<3>().noalias() = body.inverse_inertia_world * force.tail<3>();
-    return u;
-  }
-
-  /// change = M^-1 J^T lambda. Forces are summed before they are divided by masses: neighbours'
+  /// M^-1 J^T lambda, (6n). Forces are summed before they are divided by masses: neighbours'
   /// tensions cancel where they should.
-  void respond(const VectorXd& lambda, VectorXd& change) const {
-    change.setZero();
+  VectorXd response(const VectorXd& lambda) const {
+    VectorXd change = VectorXd::Zero(6 * static_cast<Eigen::Index>(bodies_.size()));
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const double force = lambda[static_cast<Eigen::Index>(i)];
       double* const on_a = change.data() + 6 * rows_[i].body_a;
@@ -228,16 +179,39 @@ class RowSystem {
       Eigen::Map<Vector6d> six(change.data() + 6 * i);
       six = accelerated(bodies_[i], six);
     }
+    return change;
   }
 
-  /// left = what u does not give of the wanted J u, scaled.
-  void leave(const VectorXd& wanted, const VectorXd& u, VectorXd& left) const {
+  /// lambda with A lambda = wanted, by a factorisation, refined once: what is left over is computed
+  /// by way of the bodies, in which light and heavy ones do not swallow each other's digits as they
+  /// do in A.
+  VectorXd solve(const VectorXd& wanted) const {
+    VectorXd scaled = scale_.cwiseProduct(wanted);
+    solve_once(scaled);
+    const VectorXd lambda = scale_.cwiseProduct(scaled);
+    VectorXd left = left_over(wanted, response(lambda));
+    solve_once(left);
+    return lambda + scale_.cwiseProduct(left);
+  }
+
+ private:
+  static Vector6d accelerated(const ConstrainedBody& body, const Vector6d& force) {
+    Vector6d u;
+    u.head<3>() = body.inverse_mass * force.head<3>();
+    u.tail<3>().noalias() = body.inverse_inertia_world * force.tail<3>();
+    return u;
+  }
+
+  /// What u does not give of the wanted J u, scaled.
+  VectorXd left_over(const VectorXd& wanted, const VectorXd& u) const {
+    VectorXd left(wanted.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       left[at] = scale_[at] *
                  (wanted[at] - (product(rows_[i].row.jacobian_a, u.data() + 6 * rows_[i].body_a) +
                                 product(rows_[i].row.jacobian_b, u.data() + 6 * rows_[i].body_b)));
     }
+    return left;
   }
 
   static double product(const Vector6d& jacobian, const double* u) {
@@ -253,9 +227,10 @@ class RowSystem {
   };
   Touching rows_touching() const {
     Touching touching;
-    std::vector<char> moves(bodies_.size());
-    for (std::size_t k = 0; k < bodies_.size(); ++k)
-      moves[k] = bodies_[k].inverse_mass != 0 || !bodies_[k].inverse_inertia_world.isZero(0);
+    std::vector<char> moves;
+    moves.reserve(bodies_.size());
+    for (const ConstrainedBody& body : bodies_)
+      moves.push_back(body.inverse_mass != 0 || !body.inverse_inertia_world.isZero(0));
     const auto for_each_end = [&](const auto& what) {
       for (std::size_t i = 0; i < rows_.size(); ++i)
         for (const int body : {rows_[i].body_a, rows_[i].body_b})
@@ -391,13 +366,13 @@ VectorXd constraint_multipliers(const std::vector<Constraint>& rows,
                         row.jacobian_b.dot(bodies[static_cast<std::size_t>(b)].free_acceleration);
     right_hand_side[static_cast<Eigen::Index>(i)] -= free + row.velocity_product;
   }
-  return RowSystem(rows, bodies).solve(right_hand_side, 2);
+  return RowSystem(rows, bodies).solve(right_hand_side);
 }
 
 VectorXd constraint_correction(const std::vector<Constraint>& rows,
                                const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
   const RowSystem system(rows, bodies);
-  return -system.response(system.solve(error, 1));
+  return -system.response(system.solve(error));
 }
 
 // ---- Resting contact ----------------------------------------------------------------------------
@@ -405,7 +380,7 @@ VectorXd constraint_correction(const std::vector<Constraint>& rows,
 namespace {
 
 /// Rows and columns of A that carry force now, with their Cholesky factor, which grows and shrinks
-/// with them.
+/// with them. A has a unit diagonal.
 class Carriers {
  public:
   explicit Carriers(const MatrixXd& A) : A_(A), L_(A.rows(), A.cols()) {}
@@ -420,8 +395,8 @@ class Carriers {
     VectorXd column = gathered(A_.col(j));
     L_.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(column);
     const double pivot = A_(j, j) - column.squaredNorm();
-    if (!(pivot > kDependent * A_(j, j))) return false;
-    L_.row(n).head(n) = column.transpose();
+    if (!(pivot > kDependent)) return false;
+    L_.row(n).head(n) = column;
     L_(n, n) = std::sqrt(pivot);
     carrying_.push_back(j);
     return true;
@@ -433,25 +408,17 @@ class Carriers {
     for (const Eigen::Index j : after) append(j);
   }
 
-  /// x with A_PP x = b_P, refined once. @param b  (m), of which the carrying entries count
+  /// x with A_PP x = b_P. @param b  (m), of which the carrying entries count
   VectorXd solve(const VectorXd& b) const {
-    const VectorXd right = gathered(b);
-    VectorXd x = solve_once(right);
-    VectorXd left = right;
-    for (Eigen::Index k = 0; k < size(); ++k)
-      left -= x[k] * gathered(A_.col(carrying_[static_cast<std::size_t>(k)]));
-    return x + solve_once(left);
-  }
-
- private:
-  Eigen::Index size() const { return static_cast<Eigen::Index>(carrying_.size()); }
-
-  VectorXd solve_once(VectorXd x) const {
+    VectorXd x = gathered(b);
     const auto L = L_.topLeftCorner(size(), size());
     L.triangularView<Eigen::Lower>().solveInPlace(x);
     L.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
     return x;
   }
+
+ private:
+  Eigen::Index size() const { return static_cast<Eigen::Index>(carrying_.size()); }
 
   VectorXd gathered(const VectorXd& all) const {
     VectorXd some(size());
@@ -497,10 +464,11 @@ class PushingForces {
         8 * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(b_.size()));
     const VectorXd a = A_ * f_ + b_, size = A_.cwiseAbs() * f_ + b_.cwiseAbs();
     Eigen::Index worst = -1;
+    double least = 0.0;
     for (Eigen::Index i = 0; i < a.size(); ++i) {
       const bool is_violated =
           a[i] < -round_off * size[i] && f_[i] == 0 && !refused_[static_cast<std::size_t>(i)];
-      if (is_violated && (worst < 0 || a[i] < a[worst])) worst = i;
+      if (is_violated && a[i] < least) least = a[i], worst = i;
     }
     return worst;
   }
@@ -508,25 +476,25 @@ class PushingForces {
   bool let_carry(Eigen::Index j) {
     while (!carriers_.append(j))
       if (!exchange(j)) return false;
-    return relax() && f_[j] > 0;
+    relax();
+    return f_[j] > 0;
   }
 
-  /// j's column is a mix of the carriers': force moves from them to j, changing no acceleration but
-  /// that which is violated, until one of them is free of it. @return false where none ever is: no
-  /// forces hold this contact
+  /// j's column is a mix of the carriers': force moves from them to j, changing no acceleration,
+  /// until one of them is free of it. @return false where none ever is: no forces hold this contact
   bool exchange(Eigen::Index j) {
-    const VectorXd per_force = -carriers_.solve(A_.col(j));
+    const VectorXd mix = carriers_.solve(A_.col(j));
     const auto& carrying = carriers_.indices();
     double step = std::numeric_limits<double>::infinity();
     Eigen::Index first = -1;
-    for (Eigen::Index k = 0; k < per_force.size(); ++k) {
-      const double at = per_force[k] < 0 ? f_[carrying[static_cast<std::size_t>(k)]] / -per_force[k]
-                                         : std::numeric_limits<double>::infinity();
+    for (Eigen::Index k = 0; k < mix.size(); ++k) {
+      if (!(mix[k] > 0)) continue;
+      const double at = f_[carrying[static_cast<std::size_t>(k)]] / mix[k];
       if (at < step) step = at, first = k;
     }
     if (first < 0) return false;
-    for (Eigen::Index k = 0; k < per_force.size(); ++k)
-      f_[carrying[static_cast<std::size_t>(k)]] += step * per_force[k];
+    for (Eigen::Index k = 0; k < mix.size(); ++k)
+      f_[carrying[static_cast<std::size_t>(k)]] -= step * mix[k];
     f_[j] += step;
     f_[carrying[static_cast<std::size_t>(first)]] = 0;
     carriers_.remove(first);
@@ -534,27 +502,26 @@ class PushingForces {
   }
 
   /// Goes to the forces at which no carrier accelerates; on the way, who reaches 0 lets go.
-  bool relax() {
+  void relax() {
     while (!carriers_.indices().empty()) {
       const std::vector<Eigen::Index> carrying = carriers_.indices();
       const VectorXd target = -carriers_.solve(b_);
-      double step = 1.0;
+      double step = 1.0;  // the whole way
       Eigen::Index first = -1;
       for (Eigen::Index k = 0; k < target.size(); ++k) {
-        const double f = f_[carrying[static_cast<std::size_t>(k)]];
         if (target[k] > 0) continue;
+        const double f = f_[carrying[static_cast<std::size_t>(k)]];
         const double at = f > 0 ? f / (f - target[k]) : 0.0;
-        if (first < 0 || at < step) step = at, first = k;
+        if (at <= step) step = at, first = k;
       }
       for (Eigen::Index k = 0; k < target.size(); ++k) {
         double& f = f_[carrying[static_cast<std::size_t>(k)]];
-        f = first < 0 ? target[k] : std::max(0.0, f + step * (target[k] - f));
+        f = (1 - step) * f + step * target[k];
       }
-      if (first < 0) return true;
+      if (first < 0) return;
       f_[carrying[static_cast<std::size_t>(first)]] = 0;
       carriers_.remove(first);
     }
-    return true;
   }
 
   const MatrixXd& A_;
