@@ -51,6 +51,45 @@ TEST(ContactForces, CarryAStackOfForty) {
                .handout = equation(9)});
 }
 
+TEST(ContactForces, HoldTwoHundredBallsBesideEachOther) {
+  // All of them push, each with its own weight: who lets one more push at a time needs 200 rounds.
+  constexpr int kBalls = 200;
+  const VectorXd masses = VectorXd::LinSpaced(kBalls, 1, kBalls);
+  const VectorXd found = forces_of(masses.cwiseInverse().asDiagonal().toDenseMatrix(),
+                                   VectorXd::Constant(kBalls, -kGravity));
+  expect_near(found, VectorXd(masses * kGravity), 1e-10 * kBalls * kGravity, "N",
+              {.scene = "200 balls of 1 to 200 kg lie beside each other on the floor",
+               .slip = "an iteration that stops too early: any number of contacts may have to push",
+               .handout = equation(9)});
+}
+
+/// Plates of 1 m beside each other, each above points of a bumpy floor, pushed and turned: gaps are
+/// left at most points, and let the plate come down there still. 3 forces hold a plate, and which 3
+/// depends on the gaps.
+Contacts plates_on_a_bumpy_floor(Random& random, int plates, int points) {
+  Rig rig;
+  rig.bodies = {ceiling()};
+  for (int plate = 1; plate <= plates; ++plate) {
+    const double mass = random.between(0.5, 2);
+    rig.bodies.push_back(movable(mass, Vector3d(12, 12, 6).asDiagonal().toDenseMatrix() / mass));
+    rig.bodies.back().free_acceleration.tail<3>() = random_vector(random, 15);
+    for (int i = 0; i < points; ++i) {
+      const double x = random.between(-0.5, 0.5), y = random.between(-0.5, 0.5);
+      rig.rows.push_back(rod_between(plate, {x, y, 0}, 0, no_arm(), Vector3d::UnitZ()));
+    }
+  }
+  Contacts contacts{dense_matrix(rig), accelerations_of_rows(rig, VectorXd::Zero(rig.size()))};
+  for (double& b : contacts.b) b += random.between(0, 4);
+  return contacts;
+}
+
+TEST(ContactForces, HoldPlatesOnABumpyFloor) {
+  Random random(353);
+  for (int i = 0; i < 200; ++i)
+    expect_complementary(plates_on_a_bumpy_floor(random, 1 + i % 3, 8),
+                         "plates on a bumpy floor, eight points each, number " + std::to_string(i));
+}
+
 TEST(ContactForces, LetABoxTipOverItsEdge) {
   // A box of 1 kg and 1 m is pushed sideways at its top: beyond half its weight it tips; the two
   // rear corners lift.

@@ -43,17 +43,31 @@ TEST(ConstraintMultipliers, FulfilRandomSystems) {
   }
 }
 
+/// Numbers 0 to n - 1 in no order: every `stride`-th of them, round and round. n and stride share
+/// no factor.
+std::vector<int> out_of_order(int n, int stride) {
+  std::vector<int> numbers;
+  for (int i = 0; i < n; ++i) numbers.push_back(i * stride % n);
+  return numbers;
+}
+
+/// The same rods and what is wanted of them, listed in another order.
+Rig relisted(const Rig& rig, const std::vector<int>& order) {
+  Rig other = rig;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    other.rows[i] = rig.rows[static_cast<std::size_t>(order[i])];
+  other.wanted = rig.wanted(order);
+  return other;
+}
+
 TEST(ConstraintMultipliers, FindAChainInAnyOrder) {
   constexpr int kLinks = 300;
-  const Rig in_order = hanging_chain(std::vector<double>(kLinks, 1.0));
-  Rig rig = in_order;
+  const std::vector<int> order = out_of_order(kLinks, 77);
+  Rig rig = relisted(hanging_chain(std::vector<double>(kLinks, 1.0)), order);
   rig.scene = "a chain of 300 links of 1 kg hangs at rest, its rods listed in no order";
-  // 77 and 300 share no factor
-  for (int i = 0; i < kLinks; ++i)
-    rig.rows[static_cast<std::size_t>(i)] =
-        in_order.rows[static_cast<std::size_t>(i * 77 % kLinks)];
   VectorXd expected(kLinks);
-  for (int i = 0; i < kLinks; ++i) expected[i] = -(kLinks - i * 77 % kLinks) * kGravity;
+  for (int i = 0; i < kLinks; ++i)
+    expected[i] = -(kLinks - order[static_cast<std::size_t>(i)]) * kGravity;
   // condition (4 n / pi)^2 = 1.5e5
   expect_near(
       rig.multipliers(), expected, 1e-9 * kLinks * kGravity, "N",
@@ -115,6 +129,31 @@ TEST(ConstraintMultipliers, CarryTonsOnGrams) {
     }
   }
   expect_no_light_row_is_left_out();
+}
+
+TEST(ConstraintMultipliers, CarryLightAndHeavyInTurn) {
+  // 1 kg, 1,000 t, 1 kg, ...: each rod carries what hangs below it, to 1e-6 of the largest.
+  for (const int links : {3, 20, 100}) {
+    std::vector<double> masses;
+    for (int i = 0; i < links; ++i) masses.push_back(i % 2 == 0 ? 1.0 : 1e6);
+    VectorXd expected(links);
+    double below = 0;
+    for (int i = links; i-- > 0;)
+      expected[i] = -(below += masses[static_cast<std::size_t>(i)]) * kGravity;
+    for (const int stride : {1, 37}) {
+      const std::vector<int> order = out_of_order(links, stride);
+      expect_near(relisted(hanging_chain(masses), order).multipliers(), VectorXd(expected(order)),
+                  1e-6 * below * kGravity, "N",
+                  {.scene = "a chain of " + std::to_string(links) +
+                            " links of 1 kg and 1,000 t in turn hangs at rest, its rods listed " +
+                            (stride == 1 ? "from the top" : "in no order"),
+                   .slip = "digits are lost where a light body hangs between heavy ones: compute "
+                           "what is left of the right-hand side by way of the bodies, solve for "
+                           "it, and add",
+                   .handout = equation(7),
+                   .iterates = true});
+    }
+  }
 }
 
 TEST(ConstraintMultipliers, CloseLoopsWithRowsTooMany) {
@@ -237,6 +276,30 @@ TEST(ConstraintCorrection, RemovesErrorsOfRandomSystems) {
         right_size ? Vector6d(x.head<6>()) : Vector6d(Vector6d::Constant(kUnset)), Vector6d::Zero(),
         0.0, "m (the ceiling)",
         {.scene = rig.scene, .slip = "a body of infinite mass moves", .handout = equation(8)});
+  }
+}
+
+TEST(ConstraintCorrection, TightensAChainInAnyOrder) {
+  // 300 rods, each 1 mm too long: every body rises by 1 mm for each rod above it, whatever the
+  // masses are.
+  constexpr int kLinks = 300;
+  constexpr double kTooLong = 1e-3;  // m
+  const Rig in_order = hanging_chain(std::vector<double>(kLinks, 1.0));
+  VectorXd expected = VectorXd::Zero(6 * (kLinks + 1));
+  for (int body = 1; body <= kLinks; ++body) expected[6 * body + 2] = body * kTooLong;
+  for (const int stride : {1, 77}) {
+    const Rig rig = relisted(in_order, out_of_order(kLinks, stride));
+    const VectorXd found = a3_module().constraint_correction(rig.rows, rig.bodies,
+                                                             VectorXd::Constant(kLinks, kTooLong));
+    // condition 1.5e5; every row to round-off of its terms, of which 300 add up
+    expect_near(
+        found, expected, 1e-10, "m (and rad)",
+        {.scene = std::string("a chain of 300 links of 1 kg, every rod 1 mm too long, ") +
+                  (stride == 1 ? "listed from the top" : "listed in no order"),
+         .slip = "J x = -error to round-off in every row: what a regularisation leaves over "
+                 "is solved for, and added",
+         .handout = equation(8),
+         .iterates = true});
   }
 }
 
