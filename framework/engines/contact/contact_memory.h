@@ -30,7 +30,7 @@ struct ContactMemory {
   using Pair = std::pair<int, int>;  // bodies, first < second
 
   std::set<Pair> persistent;  // pairs in contact
-  double longest_step = 0.0;  // so far [s]
+  double longest_step = 0.0;  // so far, at least that of the scene's grid [s]
   // Warm start: of the last step, and of attempts at the one that has begun.
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
   std::set<Pair> stuck;  // pairs with friction that did not slide in the last step

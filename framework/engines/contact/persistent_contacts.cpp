@@ -18,6 +18,7 @@ namespace tumble::engines {
 
 void PersistentContacts::recall(ContactMemory memory) {
   memory_ = std::move(memory);
+  memory_.longest_step = std::max(memory_.longest_step, step_);
   islands_.clear();
   points_.clear();
   reaches_.clear();

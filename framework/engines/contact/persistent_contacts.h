@@ -44,16 +44,22 @@ class PersistentContacts {
  public:
   using Pair = ContactGeometry::Pair;  // bodies, first < second
 
+  /// @param step  of the scene's grid: tolerances refer to it, however short the steps are that
+  /// impacts cut from it [s]
   PersistentContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules,
-                     double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
+                     double restitution_threshold, double step, RunCounters& counters,
+                     TrajectorySink& sink)
       : moving_(moving),
         laws_(laws),
         rules_(rules),
         restitution_threshold_(restitution_threshold),
+        step_(step),
         counters_(counters),
         sink_(sink),
         geometry_(moving),
-        correction_(moving, geometry_, memory_, restitution_threshold, counters) {}
+        correction_(moving, geometry_, memory_, restitution_threshold, counters) {
+    memory_.longest_step = step;
+  }
   PersistentContacts(const PersistentContacts&) = delete;
   PersistentContacts& operator=(const PersistentContacts&) = delete;
 
@@ -211,6 +217,7 @@ class PersistentContacts {
   const Laws& laws_;
   scene::ContactSpec rules_;
   double restitution_threshold_;  // [m/s]
+  double step_;                   // of the scene's grid [s]
   RunCounters& counters_;
   TrajectorySink& sink_;
   ContactMemory memory_;

@@ -24,7 +24,7 @@ WorldStep::WorldStep(World world, const Laws& laws, StepRules rules, RunCounters
   if (built::kContact && moving_.world().contact) {
     impacts_.use_contact_rules(rules.restitution_threshold, moving_.world().contact->impact_law);
     contacts_.emplace(moving_, laws, *moving_.world().contact, rules.restitution_threshold,
-                      counters, sink);
+                      rules.step, counters, sink);
   }
   searches_ = built::kCollision && impact_detection_.any() &&
               (has_contacts() || rules.searches_without_contacts);
