@@ -258,19 +258,21 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
   double excess = by_contacts.excess(
       solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities)
                          : by_contacts.change);
-  // the largest impulse of a pair stands for it
+  // One event a pair: where its impulse is largest, with the sum of all.
   for (std::size_t from = 0, to = 0; from < down.size(); from = to) {
     std::size_t largest = from;
-    for (; to < down.size() && down[to].pair == down[from].pair; ++to)
+    double impulse = 0.0;
+    for (; to < down.size() && down[to].pair == down[from].pair; ++to) {
+      impulse += solution.impulses_world[to].dot(problem.contacts[to].normal_b_to_a_world);
       if (solution.impulses_world[to].squaredNorm() >
           solution.impulses_world[largest].squaredNorm())
         largest = to;
+    }
     const double speed = approach(problem, largest, before);
     if (!(speed > restitution_threshold_)) continue;
     const PushingContact& c = problem.contacts[largest];
     sink_.event({moving_.time(), EventKind::kCollision, down[largest].pair.first,
-                 down[largest].pair.second, c.point_world, c.normal_b_to_a_world,
-                 solution.impulses_world[largest].dot(c.normal_b_to_a_world), -speed,
+                 down[largest].pair.second, c.point_world, c.normal_b_to_a_world, impulse, -speed,
                  -approach(problem, largest, solution.velocities), energy.change, excess});
     energy.change = excess = 0.0;
   }
