@@ -13,6 +13,8 @@ namespace {
 
 // relative to the query's size: error of a search against its limit
 constexpr double kRounding = 1e-14;
+// likewise: far above the error of any search
+constexpr double kCertain = 1e-11;
 
 Gap flipped(Gap gap) {
   std::swap(gap.point_a_world, gap.point_b_world);
@@ -131,6 +133,20 @@ double gap_distance(const CollisionShape& a, const Pose& pose_a, const Collision
   if (!(distance <= limit)) distance = std::nextafter(limit, kInfinity);
   if (cache) cache->note(pose_a, pose_b, distance, limit);
   return distance;
+}
+
+bool is_within(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+               const Pose& pose_b, double reach, PairCache* cache) {
+  if (cache && !a.is_half_space() && !b.is_half_space()) {
+    // No gap is larger than the distance of two points, however it is rounded.
+    const Vector3d offset = pose_a.com_world - pose_b.com_world;
+    const Vector3d between = offset + pose_a.world_from_body * cache->near_body_a -
+                             pose_b.world_from_body * cache->near_body_b;
+    const double radii = a.radius() + b.radius(),
+                 size = offset.norm() + a.bounding_radius() + b.bounding_radius();
+    if (between.norm() - radii <= reach - kCertain * size) return true;
+  }
+  return gap_distance(a, pose_a, b, pose_b, cache, reach) <= reach;
 }
 
 bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,

@@ -45,6 +45,11 @@ double gap_distance(const CollisionShape& a, const Pose& pose_a, const Collision
                     const Pose& pose_b, PairCache* cache = nullptr,
                     double limit = std::numeric_limits<double>::infinity());
 
+/// Whether the gap is at most `reach`: gap_distance(..., reach) <= reach, but cheaper where the
+/// cache still knows two points of convex solids that are.
+bool is_within(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+               const Pose& pose_b, double reach, PairCache* cache);
+
 /// Whether the interiors of two solids intersect, also when one lies entirely inside the other. For
 /// initial states.
 /// @param allowance  a penetration up to this depth counts as touching [m]

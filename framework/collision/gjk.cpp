@@ -51,7 +51,7 @@ DifferencePoint lowest_difference(const PlacedPolytope& a, const PlacedPolytope&
 }
 
 GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit) {
-  GjkResult result;
+  GjkResult result, trial;
   Simplex& simplex = result.simplex;
   simplex.points[0] = lowest_difference(a, b, a.translation - b.translation);
   simplex.size = 1;
@@ -68,18 +68,20 @@ GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, dou
     }
     if (result.distance - result.lower_bound <= kEpsilon * size) break;
     if (holds(simplex, next)) break;
-    const GjkResult before = result;
-    simplex.points[simplex.size++] = next;
-    const Vector3d nearest = reduce_to_nearest(simplex);
-    if (simplex.size == 4) {
+    Simplex& larger = trial.simplex;
+    larger = simplex;
+    larger.points[larger.size++] = next;
+    const Vector3d nearest = reduce_to_nearest(larger);
+    if (larger.size == 4) {
+      result.simplex = larger;
       result.verdict = Apartness::kEnclosed;
       return result;
     }
-    settle(nearest, result);
-    if (!(result.distance < before.distance)) {  // no progress above round-off
-      result = before;
-      break;
-    }
+    settle(nearest, trial);
+    if (!(trial.distance < result.distance)) break;  // no progress above round-off
+    simplex = larger;
+    result.distance = trial.distance;
+    result.normal = trial.normal;
   }
   result.verdict = result.distance > touching ? Apartness::kApart : Apartness::kTouching;
   return result;

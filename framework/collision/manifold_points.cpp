@@ -30,23 +30,41 @@ constexpr double kInTouch = 1e-6;
 // Height along n of the surface of a convex piece at a point: for `side` +1 the lowest of A, for -1
 // the highest of B. Where no face points towards the other solid (an edge, a corner), the vertices
 // bound it.
-double height_of(const PlacedPolytope& piece, const Vector3d& n, double side,
-                 const Vector3d& over) {
-  const Polytope& p = *piece.polytope;
-  const Vector3d d = piece.in_body(side * n), over_body = piece.in_body(over - piece.translation);
-  double foremost;
-  p.lowest(d, foremost);
-  const double base = d.dot(over_body);
-  double height = foremost;
-  for (std::size_t f = 0; f < p.face_normals.size(); ++f) {
-    const Vector3d& m = p.face_normals[f];
-    const double lean = d.dot(m);
-    if (lean > -kSteep) continue;
-    // m . (over + s d) = offset at the face
-    height = std::max(height, base + (p.face_offsets[f] - m.dot(over_body)) / lean);
+class Surface {
+ public:
+  Surface(const PlacedPolytope& piece, const Vector3d& n, double side)
+      : piece_(piece),
+        side_(side),
+        direction_body_(piece.in_body(side * n)),
+        foremost_(piece.polytope->lowest_height(direction_body_)),
+        base_(n.dot(piece.translation)) {
+    const Polytope& p = *piece.polytope;
+    for (std::size_t f = 0; f < p.face_normals.size(); ++f)
+      if (const double lean = direction_body_.dot(p.face_normals[f]); lean <= -kSteep)
+        faces_.push_back({&p.face_normals[f], p.face_offsets[f], lean});
   }
-  return side * height + n.dot(piece.translation);
-}
+  double height_at(const Vector3d& over) const {
+    const Vector3d over_body = piece_.in_body(over - piece_.translation);
+    const double base = direction_body_.dot(over_body);
+    double height = foremost_;
+    for (const Facing& face : faces_)  // m . (over + s d) = offset at the face
+      height = std::max(height, base + (face.offset - face.normal->dot(over_body)) / face.lean);
+    return side_ * height + base_;
+  }
+
+ private:
+  struct Facing {
+    const Vector3d* normal;  // body frame
+    double offset;           // normal . vertex [m]
+    double lean;             // cosine to the direction
+  };
+
+  const PlacedPolytope& piece_;
+  double side_;
+  Vector3d direction_body_;
+  double foremost_, base_;          // [m]
+  InlineVector<Facing, 32> faces_;  // towards the other solid, none too steep
+};
 
 std::vector<ManifoldPoint> nearest_point(const CollisionShape& a, const Pose& pose_a,
                                          const CollisionShape& b, const Pose& pose_b, double reach,
@@ -62,9 +80,6 @@ std::vector<ManifoldPoint> above_half_space(const CollisionShape& a, const Pose&
   const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
   const double height = n.dot(pose_a.com_world - plane.com_world) - a.radius();
   std::vector<ManifoldPoint> points;
-  double lowest = kInfinity;
-  for (const Vector3d& v : a.vertices()) lowest = std::min(lowest, n.dot(R * v));
-  if (lowest + height > reach) return {};
   for (const Vector3d& v : a.vertices()) {
     const Vector3d arm = R * v;
     const double gap = height + n.dot(arm);
@@ -83,6 +98,7 @@ std::vector<ManifoldPoint> above_half_space(const CollisionShape& a, const Pose&
   auto lower = lower_corners(places, heights, n, kSameHeight * a.bounding_radius());
   std::sort(lower.begin(), lower.end());  // in the order of the vertices
   std::vector<ManifoldPoint> corners;
+  corners.reserve(static_cast<std::size_t>(lower.size()));
   for (const int i : lower) corners.push_back(points[static_cast<std::size_t>(i)]);
   return corners;
 }
@@ -152,8 +168,11 @@ struct NearPair {
 // Contact points at the corners of the common region of two pieces.
 void add_points(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double reach,
                 const Vector3d& com_b_world, Region& region) {
-  for (const Vector3d& corner : facing_region(a, b, n, reach)) {
-    const double low = height_of(a, n, 1.0, corner), high = height_of(b, n, -1.0, corner);
+  const Corners corners = facing_region(a, b, n, reach);
+  if (corners.empty()) return;
+  const Surface surface_a(a, n, 1.0), surface_b(b, n, -1.0);
+  for (const Vector3d& corner : corners) {
+    const double low = surface_a.height_at(corner), high = surface_b.height_at(corner);
     if (low - high > reach) continue;
     const Vector3d flat = corner - n.dot(corner) * n;
     region.points.push_back(
@@ -170,8 +189,9 @@ void append_corners(const Region& region, double size, std::vector<ManifoldPoint
     all.push_back(p.point_a_world);
     gaps.push_back(p.gap);
   }
-  for (const int corner : lower_corners(all, gaps, region.normal, kSameHeight * size))
-    points.push_back(region.points[corner]);
+  const auto lower = lower_corners(all, gaps, region.normal, kSameHeight * size);
+  points.reserve(points.size() + static_cast<std::size_t>(lower.size()));
+  for (const int corner : lower) points.push_back(region.points[corner]);
 }
 
 // The ends of the common segment of two edges, each with its own gap, and the other points within

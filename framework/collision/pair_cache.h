@@ -4,14 +4,16 @@
 /// Keep one object per pair of solids (the same two, in the same order), pass its address to every
 /// query of the pair, and drop it with the pair. Where a solid is not convex, only the near ones of
 /// thousands of pairs of faces are tested until the solids have moved far. Two convex solids out of
-/// reach are rejected by one separating axis. A distance query in unchanged poses returns the last
-/// result. Not to be shared between threads. The members are internal to collision.
+/// reach are rejected by one separating axis, and known to be within reach by two of their points.
+/// A distance query in unchanged poses returns the last result. Not to be shared between threads.
+/// The members are internal to collision.
 #pragma once
 
 #include <vector>
 
 #include "framework/collision/collision_shape.h"
 #include "framework/core/math.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 
@@ -27,8 +29,12 @@ struct PairCache {
   Vector3d b_in_a = Vector3d::Zero(), a_in_b = Vector3d::Zero();  // [m]
   // queries answered from it; queries to wait until it is filled again
   int served = 0, unused = 0;
-  // separating axis of two convex solids; zero: not known
+  // Of two convex solids: the separating axis of the last query, and how far they were apart along
+  // it; not known before the first, when this is 0 [m]
   Vector3d apart_along_body_a = Vector3d::Zero();
+  double apart_by = 0.0;
+  // of two convex solids: a point of each that were nearest when last looked for; NaN: not known
+  Vector3d near_body_a = Vector3d::Constant(kUnset), near_body_b = near_body_a;
   // the last gap_distance and its limit [m]; limit < 0: none yet
   double measured = 0.0, measured_up_to = -1.0;
   Pose measured_a, measured_b;  // the poses of the last gap_distance

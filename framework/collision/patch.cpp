@@ -14,6 +14,7 @@ struct FlatPoint {
   int index;  // in the original list; -1: a new point
 };
 using Polygon = InlineVector<FlatPoint, 16>;
+using PointHeights = InlineVector<double, 16>;
 
 // Of the coordinates: what polygons that touch at their boundaries are apart by, first that of
 // coordinates alone, then that of a normal that itself has rounding.
@@ -154,8 +155,8 @@ Polygon shared_region(const Polygon& a, const Polygon& b) {
   return region;
 }
 
-// The facing part of a piece: the hull of its foremost vertices, projected along n. `side` is +1
-// for A, whose lowest vertices face B.
+// The foremost vertices of a piece, projected along n. `side` is +1 for A, whose lowest vertices
+// face B. They are numbered in the order of the piece.
 Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side,
                double tolerance, double& height) {
   const Vector3d d = piece.in_body(side * n);
@@ -167,32 +168,38 @@ Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3
     if (i == foremost || d.dot(vertices[i]) <= lowest + tolerance)
       points.push_back({axes.flatten(piece.vertex(i)), -1});
   height = side * lowest + n.dot(piece.translation);
-  return hull_of(points);
+  return points;
 }
 
-template <class Add>
-void add_vertices_inside(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n,
-                         double side, double tolerance, const Polygon& region, const Add& add) {
-  const Vector3d d = piece.in_body(side * n);
-  double lowest;
-  piece.polytope->lowest(d, lowest);
-  for (int i = 0; i < piece.size(); ++i) {
-    if (d.dot(piece.polytope->vertices[i]) > lowest + tolerance) continue;
-    const Vector2d p = axes.flatten(piece.vertex(i));
-    bool inside = true;
-    for (int k = 0; k < region.size() && inside; ++k)
-      inside = cross2(region[(k + 1) % region.size()].p - region[k].p, p - region[k].p) > 0;
-    if (inside) add(p);
+// The region in which the two pieces face each other.
+struct FacingParts {
+  Polygon of_a, of_b;  // foremost vertices; those of B are empty where A faces it with a corner
+  Polygon region;
+  double height;  // of A's foremost vertex along n [m]
+};
+
+FacingParts parts_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneAxes& axes,
+                     const Vector3d& n, double tolerance) {
+  FacingParts parts;
+  parts.of_a = facing(a, axes, n, 1.0, tolerance, parts.height);
+  const Polygon hull_a = hull_of(parts.of_a);
+  if (hull_a.size() == 1) {
+    parts.region = hull_a;
+    return parts;
   }
+  double height_b;
+  parts.of_b = facing(b, axes, n, -1.0, tolerance, height_b);
+  const Polygon hull_b = hull_of(parts.of_b);
+  parts.region = hull_a.size() <= hull_b.size() ? shared_region(hull_a, hull_b)
+                                                : shared_region(hull_b, hull_a);
+  return parts;
 }
 
-Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneAxes& axes,
-                  const Vector3d& n, double tolerance, double& height) {
-  double height_b;
-  const Polygon of_a = facing(a, axes, n, 1.0, tolerance, height);
-  if (of_a.size() == 1) return of_a;
-  const Polygon of_b = facing(b, axes, n, -1.0, tolerance, height_b);
-  return of_a.size() <= of_b.size() ? shared_region(of_a, of_b) : shared_region(of_b, of_a);
+bool is_inside(const Polygon& region, const Vector2d& p) {
+  for (int k = 0; k < region.size(); ++k)
+    if (!(cross2(region[k + 1 < region.size() ? k + 1 : 0].p - region[k].p, p - region[k].p) > 0))
+      return false;
+  return true;
 }
 
 // The set of feasible slopes s of a plane: a convex polygon, with a circle around it.
@@ -241,25 +248,24 @@ class Slopes {
 // The nearest points come first: they leave few slopes, which most other points allow without a
 // cut.
 // Points are sorted by height: of two with the same projection the first is the lower.
-bool lies_below_others(const Polygon& points, const std::vector<double>& heights, int i,
-                       double same, double tolerance, std::vector<std::pair<double, int>>& others) {
+bool lies_below_others(const Polygon& points, const PointHeights& heights, int i, double same,
+                       double tolerance) {
   constexpr double kSteepest = 1e3;  // steeper planes are walls
-  constexpr std::ptrdiff_t kNearest = 8;
-  others.clear();
+  constexpr int kNearest = 8;
+  InlineVector<std::pair<double, int>, 16> others;
   for (int j = 0; j < points.size(); ++j) {
     const double square = (points[j].p - points[i].p).squaredNorm();
     if (square > same * same)
-      others.emplace_back(square, j);
+      others.push_back({square, j});
     else if (j < i)
       return false;
   }
-  const auto near = others.begin() + std::min(kNearest, static_cast<std::ptrdiff_t>(others.size()));
+  const auto near = others.begin() + std::min(kNearest, others.size());
   std::nth_element(others.begin(), near, others.end());
   Slopes slopes(kSteepest);
   return std::all_of(others.begin(), others.end(), [&](const auto& other) {
-    const std::size_t j = static_cast<std::size_t>(other.second);
-    return slopes.keep(points[other.second].p - points[i].p,
-                       heights[j] - heights[static_cast<std::size_t>(i)] - tolerance);
+    const int j = other.second;
+    return slopes.keep(points[j].p - points[i].p, heights[j] - heights[i] - tolerance);
   });
 }
 
@@ -283,25 +289,25 @@ Vector2d middle_of(const Polygon& hull) {
 Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n,
                       double tolerance) {
   const PlaneAxes axes(n);
-  double height;
+  const FacingParts parts = parts_of(a, b, axes, n, tolerance);
   Corners corners;
-  const Polygon region = region_of(a, b, axes, n, tolerance, height);
   const auto add = [&](const Vector2d& p) {
-    corners.push_back(p.x() * axes.u + p.y() * axes.v + height * n);
+    corners.push_back(p.x() * axes.u + p.y() * axes.v + parts.height * n);
   };
-  for (const FlatPoint& q : region) add(q.p);
-  if (region.size() < 3) return corners;
-  add_vertices_inside(a, axes, n, 1.0, tolerance, region, add);
-  add_vertices_inside(b, axes, n, -1.0, tolerance, region, add);
+  for (const FlatPoint& q : parts.region) add(q.p);
+  if (parts.region.size() < 3) return corners;
+  for (const Polygon* vertices : {&parts.of_a, &parts.of_b})
+    for (const FlatPoint& q : *vertices)
+      if (is_inside(parts.region, q.p)) add(q.p);
   return corners;
 }
 
 Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b,
                                  const Vector3d& n, double tolerance) {
   const PlaneAxes axes(n);
-  double height;
-  const Vector2d middle = middle_of(hull_of(region_of(a, b, axes, n, tolerance, height)));
-  return middle.x() * axes.u + middle.y() * axes.v + height * n;
+  const FacingParts parts = parts_of(a, b, axes, n, tolerance);
+  const Vector2d middle = middle_of(hull_of(parts.region));
+  return middle.x() * axes.u + middle.y() * axes.v + parts.height * n;
 }
 
 FlatHull flat_hull(const std::vector<Vector3d>& points, const Vector3d& n) {
@@ -340,19 +346,20 @@ InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<do
   Polygon renamed = flat;
   for (int i = 0; i < renamed.size(); ++i) renamed[i].index = i;
   InlineVector<int, 16> corners;
-  std::vector<char> outer(static_cast<std::size_t>(flat.size()), 0);
+  InlineVector<char, 16> outer;
+  PointHeights ordered;
+  for (const FlatPoint& q : flat) {
+    outer.push_back(0);
+    ordered.push_back(heights[q.index]);
+  }
   double size = 0.0;
   for (const FlatPoint& q : hull_of(renamed)) {
     corners.push_back(flat[q.index].index);
-    outer[static_cast<std::size_t>(q.index)] = 1;
+    outer[q.index] = 1;
     size = std::max(size, (q.p - flat[0].p).norm());
   }
-  std::vector<double> ordered;
-  for (const FlatPoint& q : flat) ordered.push_back(heights[q.index]);
-  std::vector<std::pair<double, int>> others;
   for (int i = 0; i < flat.size(); ++i)
-    if (!outer[static_cast<std::size_t>(i)] &&
-        lies_below_others(flat, ordered, i, 1e-12 * size, tolerance, others))
+    if (!outer[i] && lies_below_others(flat, ordered, i, 1e-12 * size, tolerance))
       corners.push_back(flat[i].index);
   return corners;
 }

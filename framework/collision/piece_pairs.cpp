@@ -176,20 +176,31 @@ bool search_cache(const Query& query, double limit, PairCache& cache, Nearest& n
   return std::min(limit, nearest.best().gap.distance) + rounding(query) < certain;
 }
 
+// What the next query of two convex solids begins with.
+void keep(const PlacedPolytope& a, const PlacedPolytope& b, const PolytopeGap& gap,
+          PairCache& cache) {
+  cache.apart_along_body_a = a.in_body(gap.normal_b_to_a);
+  cache.apart_by = gap.distance;
+  if (gap.beyond || gap.point_a == gap.point_b) return;  // points that were not looked for
+  cache.near_body_a = a.in_body(gap.point_a - a.translation);
+  cache.near_body_b = b.in_body(gap.point_b - b.translation);
+}
+
 }  // namespace
 
 PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Points points) {
   const PlacedPolytope a = query.piece_of_a(0), b = query.piece_of_b(0);
   // Above the limit by more than rounding: without the cached axis the answer would be the same.
+  // Where the two were nearer than that along it, it would hardly be.
   const double certain = std::max(limit, 0.0) + rounding(query);
-  if (cache && !cache->apart_along_body_a.isZero(0.0)) {
+  if (cache && cache->apart_by > certain) {
     const Vector3d axis = query.rotation_a * cache->apart_along_body_a;
-    if (const double apart = separation_along(a, b, axis); apart > certain)
-      return {apart, Vector3d::Zero(), Vector3d::Zero(), axis, true};
+    cache->apart_by = separation_along(a, b, axis);
+    if (cache->apart_by > certain)
+      return {cache->apart_by, Vector3d::Zero(), Vector3d::Zero(), axis, true};
   }
   const PolytopeGap gap = polytope_gap(a, b, query.size, limit, points);
-  if (cache)
-    cache->apart_along_body_a = gap.beyond ? a.in_body(gap.normal_b_to_a) : Vector3d::Zero();
+  if (cache) keep(a, b, gap, *cache);
   return gap;
 }
 

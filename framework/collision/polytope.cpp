@@ -1,6 +1,8 @@
 #include "framework/collision/polytope.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 namespace tumble::collision {
@@ -34,12 +36,48 @@ void Polytope::prepare() {
   }
 }
 
+namespace {
+
+using Lanes = Polytope::Lanes;
+
+// Heights of the vertices of a pair of columns along a direction.
+class Heights {
+ public:
+  explicit Heights(const Vector3d& direction)
+      : x_{direction.x(), direction.x()},
+        y_{direction.y(), direction.y()},
+        z_{direction.z(), direction.z()} {}
+  Lanes operator()(const Polytope::Columns& c) const { return c[0] * x_ + c[1] * y_ + c[2] * z_; }
+
+ private:
+  Lanes x_, y_, z_;
+};
+
+double lower_of(const Lanes& pair) { return pair[1] < pair[0] ? pair[1] : pair[0]; }
+
+// The first of the heights that equals `height`: one bit a vertex, set without a branch, because a
+// branch could not be predicted.
+int first_at(const Lanes* heights, std::size_t n, double height) {
+  using Bits = std::uint64_t __attribute__((vector_size(16)));
+  constexpr std::size_t kMost = 32;  // pairs of vertices that one word has bits for
+  const Lanes wanted = {height, height};
+  for (std::size_t from = 0; from < n; from += kMost) {
+    Bits bit = {1, 2}, found = {0, 0};
+    const std::size_t to = std::min(n, from + kMost);
+    for (std::size_t k = from; k < to; ++k, bit <<= 2)
+      found |= reinterpret_cast<Bits>(heights[k] == wanted) & bit;
+    if (const std::uint64_t any = found[0] | found[1])
+      return static_cast<int>(2 * from) + std::countr_zero(any);
+  }
+  return 0;  // all heights are NaN
+}
+
+}  // namespace
+
 int Polytope::lowest(const Vector3d& direction, double& height) const {
-  const Lanes x = {direction.x(), direction.x()}, y = {direction.y(), direction.y()},
-              z = {direction.z(), direction.z()};
-  const auto heights = [&](const Columns& c) { return c[0] * x + c[1] * y + c[2] * z; };
   // First the lowest height, then its index: four vertices at a time, with no data dependence
   // between iterations.
+  const Heights heights(direction);
   constexpr std::size_t kMost = 64;
   const std::size_t n = columns.size();
   if (n > kMost) return lowest_of_many(direction, height);
@@ -53,13 +91,19 @@ int Polytope::lowest(const Vector3d& direction, double& height) const {
     even = kept[k] < even ? kept[k] : even;
     odd = kept[k + 1] < odd ? kept[k + 1] : odd;
   }
-  even = odd < even ? odd : even;
-  height = even[1] < even[0] ? even[1] : even[0];
-  for (std::size_t k = 0; k < n; ++k) {
-    if (kept[k][0] == height) return static_cast<int>(2 * k);
-    if (kept[k][1] == height) return static_cast<int>(2 * k + 1);
+  height = lower_of(odd < even ? odd : even);
+  return first_at(kept, n, height);
+}
+
+double Polytope::lowest_height(const Vector3d& direction) const {
+  const Heights heights(direction);
+  Lanes even = heights(columns[0]), odd = heights(columns[1]);
+  for (std::size_t k = 2; k < columns.size(); k += 2) {
+    const Lanes first = heights(columns[k]), second = heights(columns[k + 1]);
+    even = first < even ? first : even;
+    odd = second < odd ? second : odd;
   }
-  return 0;  // all heights are NaN
+  return lower_of(odd < even ? odd : even);
 }
 
 int Polytope::lowest_of_many(const Vector3d& direction, double& height) const {

@@ -32,6 +32,8 @@ struct Polytope {
   /// The lowest vertex along a direction; of equal ones the first.
   /// @param height  [out] its height [m]
   int lowest(const Vector3d& direction, double& height) const;
+  /// Only the height of the lowest vertex. [m]
+  double lowest_height(const Vector3d& direction) const;
 
  private:
   int lowest_of_many(const Vector3d& direction, double& height) const;
@@ -55,9 +57,7 @@ struct PlacedPolytope {
     return polytope->lowest(in_body(direction), height);
   }
   double lowest_height(const Vector3d& direction) const {
-    double height;
-    polytope->lowest(in_body(direction), height);
-    return height + direction.dot(translation);
+    return polytope->lowest_height(in_body(direction)) + direction.dot(translation);
   }
 };
 

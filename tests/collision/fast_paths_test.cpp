@@ -357,6 +357,67 @@ TEST(PairCache, ChangesNoBitForConvexSolidsEither) {
   }
 }
 
+// In small moves, as in a heap, an axis and two points of the last answer stay good for the next.
+TEST(PairCache, ChangesNoBitForRocksThatRollOnEachOther) {
+  Chance chance(27);
+  const CollisionShape a(random_hull(20, 5)), b(random_hull(20, 6));
+  PairCache cache;
+  const double size = std::min(a.bounding_radius(), b.bounding_radius());
+  Pose pose_a{{0, 0, 1.7 * size}, chance.turn()};
+  const Pose pose_b{Vector3d::Zero(), chance.turn()};
+  int within = 0;
+  for (int step = 0; step < 1000; ++step) {
+    // to and fro about touching, to a tenth of their size
+    const double gap = collision::gap_distance(a, pose_a, b, pose_b),
+                 wanted = 0.1 * size * std::sin(0.05 * step);
+    pose_a.com_world +=
+        0.3 * (wanted - gap) * pose_a.com_world.normalized() + 0.01 * size * chance.vector();
+    pose_a.world_from_body = (Quaterniond(Eigen::AngleAxisd(0.05, chance.vector().normalized())) *
+                              pose_a.world_from_body)
+                                 .normalized();
+    const double now = collision::gap_distance(a, pose_a, b, pose_b);
+    for (const double reach : {0.0, 0.01 * size, 0.1 * size, now, std::nextafter(now, -1e300)}) {
+      EXPECT_EQ(collision::is_within(a, pose_a, b, pose_b, reach, &cache), now <= reach);
+      within += now <= reach;
+      const auto points = collision::manifold_points(a, pose_a, b, pose_b, reach),
+                 kept = collision::manifold_points(a, pose_a, b, pose_b, reach, &cache);
+      ASSERT_EQ(points.size(), kept.size());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(points[i].point_a_world, kept[i].point_a_world);
+        EXPECT_EQ(points[i].gap, kept[i].gap);
+      }
+    }
+    expect_exact_within_limits(a, pose_a, b, pose_b, now, chance.in(-0.1, 0.1) * size, cache);
+  }
+  EXPECT_GT(within, 1000);
+  EXPECT_LT(within, 4000);
+}
+
+// The index is that of the first vertex of the lowest ones, whatever the number of vertices.
+TEST(Polytope, LowestVertexIsThatOfTryingAll) {
+  Chance chance(28);
+  for (const int n : {1, 2, 3, 8, 20, 63, 64, 65, 127, 128, 129, 300}) {
+    collision::Polytope polytope;
+    for (int i = 0; i < n; ++i)  // on a coarse grid: many are as low as each other
+      polytope.vertices.push_back({std::round(chance.in(-2, 2)), std::round(chance.in(-2, 2)),
+                                   std::round(chance.in(-2, 2))});
+    polytope.prepare();
+    for (int k = 0; k < 40; ++k) {
+      const Vector3d d = k < 6 ? Vector3d((k % 2 ? 1 : -1) * Vector3d::Unit(k / 2))
+                               : Vector3d(std::round(chance.in(-3, 3)), 1, 2);
+      int lowest = 0;  // of whole numbers: exact in any order
+      for (int i = 1; i < n; ++i)
+        if (d.dot(polytope.vertices[static_cast<std::size_t>(i)]) <
+            d.dot(polytope.vertices[static_cast<std::size_t>(lowest)]))
+          lowest = i;
+      double height;
+      EXPECT_EQ(polytope.lowest(d, height), lowest) << n << " vertices";
+      EXPECT_EQ(height, d.dot(polytope.vertices[static_cast<std::size_t>(lowest)]));
+      EXPECT_EQ(polytope.lowest_height(d), height);
+    }
+  }
+}
+
 TEST(BroadPhase, FindsTheSamePairsAsTestingAll) {
   Chance chance(25);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
