@@ -75,6 +75,7 @@ LocalContact prepare_local(const Matrix3d& w) {
   local.sine = std::sin(angle);
   local.coupling_1 = local.cosine * w(1, 0) + local.sine * w(2, 0);
   local.coupling_2 = -local.sine * w(1, 0) + local.cosine * w(2, 0);
+  local.coupling = std::hypot(local.coupling_1, local.coupling_2);
   return local;
 }
 
@@ -90,10 +91,9 @@ Vector3d solve_local(LocalContact& local, const Vector3d& free, double friction)
   if (!(p.length > friction * p.normal)) {
     local.slide = 0;
   } else {
-    const double c = std::hypot(problem.c1, problem.c2),
-                 coupling = std::hypot(local.coupling_1, local.coupling_2);
+    const double c = std::hypot(problem.c1, problem.c2);
     // there |p_t| < mu p_n for certain
-    const double high = c * (local.w_nn + friction * coupling) / (friction * -free[0]);
+    const double high = c * (local.w_nn + friction * local.coupling) / (friction * -free[0]);
     p = slide(problem, friction, high, local.slide);
     const double scale = p.length > 0 ? friction * std::max(p.normal, 0.0) / p.length : 0.0;
     p.t1 *= scale;

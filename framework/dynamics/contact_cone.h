@@ -30,6 +30,7 @@ struct LocalContact {
   // first eigenvector in the tangent plane
   double cosine = 1, sine = 0;
   double coupling_1 = 0, coupling_2 = 0;  // w_tn along the eigenvectors
+  double coupling = 0;                    // their length
   // s of (C.5) in the last answer; 0: it did not slide
   double slide = 0;
 };

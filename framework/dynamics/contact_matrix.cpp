@@ -31,7 +31,9 @@ int least_degree(const std::vector<std::vector<int>>& neighbours, const std::vec
 /// comes out as no numbers.
 /// Source: G. Golub, C. Van Loan, "Matrix Computations", 3.4.
 void invert(Block6& m) {
+  // Unrolled, every entry has a place that is known beforehand.
   Block6 x = Block6::Identity();
+#pragma GCC unroll 6
   for (int k = 0; k < 6; ++k) {
     int pivot = k;
     for (int i = k + 1; i < 6; ++i)
@@ -42,15 +44,21 @@ void invert(Block6& m) {
     }
     const double inverse = 1.0 / m(k, k);
     for (int i = k + 1; i < 6; ++i) m(i, k) *= inverse;
+#pragma GCC unroll 6
     for (int j = k + 1; j < 6; ++j)
+#pragma GCC unroll 6
       for (int i = k + 1; i < 6; ++i) m(i, j) -= m(i, k) * m(k, j);
   }
   for (int column = 0; column < 6; ++column) {
     double* const of = x.data() + 6 * column;
+#pragma GCC unroll 6
     for (int k = 0; k < 6; ++k)
+#pragma GCC unroll 6
       for (int i = k + 1; i < 6; ++i) of[i] -= m(i, k) * of[k];
+#pragma GCC unroll 6
     for (int k = 6; k-- > 0;) {
       of[k] /= m(k, k);
+#pragma GCC unroll 6
       for (int i = 0; i < k; ++i) of[i] -= m(i, k) * of[k];
     }
   }

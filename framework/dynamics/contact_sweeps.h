@@ -8,17 +8,50 @@
 /// Jean, Comput. Methods Appl. Mech. Eng. 155, 1998.
 #pragma once
 
+#include <limits>
+
 #include "framework/dynamics/contact_cone.h"
 #include "framework/dynamics/contact_system.h"
 
 namespace tumble::contacts {
 
-/// The small problems of a system's contacts, prepared once.
-std::vector<LocalContact> prepare_locals(const System& system);
+/// Sweeps over the contacts of one system. Most points of a heap are near each other and do not
+/// touch: such a point is looked at again when its bodies' velocities have changed by enough to
+/// bring it together, at the earliest; until then its impulse could only stay zero. Answers are the
+/// same as without that, bit for bit.
+class Sweeper {
+ public:
+  /// @param system  stays where it is as long as this lives
+  explicit Sweeper(const System& system);
 
-/// One sweep, forward or backward (alternate: together they treat no contact as the last). Returns
-/// the largest change of an impulse, as a velocity.
-double sweep(const System& system, std::vector<LocalContact>& locals, bool forward,
-             Impulses& impulses);
+  /// The impulses have been changed by others since the last sweep.
+  void begin();
+  struct Swept {
+    double change = 0;    // largest of an impulse, as a velocity [m/s]
+    double rounding = 0;  // rounding_floor of the impulses afterwards [m/s]
+  };
+  /// One sweep, forward or backward (alternate: together they treat no contact as the last).
+  Swept sweep(bool forward, Impulses& impulses);
+
+ private:
+  // When an open contact has to be looked at again: at the earliest when the changes of its two
+  // bodies' y, summed up, reach so far.
+  struct Gate {
+    int body_a, body_b;        // places in ways_
+    bool is_prepared = false;  // its local problem
+    double open_until = -std::numeric_limits<double>::infinity();
+  };
+
+  void relax_contact(std::size_t i, Impulses& impulses, Swept& swept);
+  void relax_row(std::size_t i, Impulses& impulses, Swept& swept);
+  LocalContact& local_of(std::size_t i);
+  void note_push(int body_a, int body_b, double length);
+
+  const System& system_;
+  std::vector<LocalContact> locals_;  // each prepared when it is first solved
+  std::vector<Gate> gates_;           // by contact
+  // by body, after one for what cannot be pushed: bound on the sum of |changes of y| so far
+  std::vector<double> ways_;
+};
 
 }  // namespace tumble::contacts

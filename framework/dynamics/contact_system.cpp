@@ -185,16 +185,20 @@ Violation measure_violation(const System& system, const Impulses& impulses) {
   return violation;
 }
 
-double rounding_floor(const System& system, const Impulses& impulses) {
+double rounding_of(double largest) {
   // a contact's impulse goes through about so many operations on its way to a velocity
   constexpr double kRoundings = 16;
+  return kRoundings * std::numeric_limits<double>::epsilon() * largest;
+}
+
+double rounding_floor(const System& system, const Impulses& impulses) {
   double largest = 0;
   for (std::size_t i = 0; i < system.contacts.size(); ++i)
     largest = std::max(largest, system.contacts[i].inverse_effective_mass *
                                     impulses.contacts[i].cwiseAbs().maxCoeff());
   for (std::size_t i = 0; i < system.rows.size(); ++i)
     largest = std::max(largest, system.rows[i].inverse_effective_mass * std::abs(impulses.rows[i]));
-  return kRoundings * std::numeric_limits<double>::epsilon() * largest;
+  return rounding_of(largest);
 }
 
 }  // namespace tumble::contacts

@@ -123,5 +123,8 @@ Violation measure_violation(const System& system, const Impulses& impulses);
 
 /// Below this no iteration gets: what the rounding of the largest impulse alone does to a velocity.
 double rounding_floor(const System& system, const Impulses& impulses);
+/// The same from the largest impulse, as a velocity: over contacts and rows, of their inverse
+/// effective mass times the largest part of their impulse. [m/s]
+double rounding_of(double largest);
 
 }  // namespace tumble::contacts

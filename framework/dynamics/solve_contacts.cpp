@@ -60,15 +60,18 @@ ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
 }
 
 /// Sweeps until the goal is met, or their number is spent.
-void sweep_until(const Goal& goal, std::vector<contacts::LocalContact>& locals, int most_sweeps,
+void sweep_until(const Goal& goal, contacts::Sweeper& sweeper, int most_sweeps,
                  Progress& progress) {
+  sweeper.begin();
   for (int i = 0; i < most_sweeps && !progress.accepted; ++i) {
-    const double change = contacts::sweep(goal.system, locals, i % 2 == 0, progress.impulses);
+    const contacts::Sweeper::Swept swept = sweeper.sweep(i % 2 == 0, progress.impulses);
     ++progress.sweeps;
     // The change of a sweep is about as large as the violation before it: only when it is small the
     // true one is worth its price.
-    if (i + 1 < most_sweeps && !goal.accepts(progress.impulses, change)) continue;
+    if (i + 1 < most_sweeps && swept.change > goal.violation && swept.change > swept.rounding)
+      continue;
     contacts::sum_impulses(goal.system, progress.impulses);
+    sweeper.begin();
     goal.measure(progress);
   }
 }
@@ -80,7 +83,7 @@ class Turns {
   Turns(const Goal& goal, double enough, contacts::BodyMatrix& matrix, Progress& progress)
       : goal_(goal),
         enough_(enough),
-        locals_(contacts::prepare_locals(goal.system)),
+        sweeper_(goal.system),
         matrix_(matrix),
         now_(progress),
         best_(progress) {}
@@ -132,7 +135,7 @@ class Turns {
   }
 
   void sweep_and_finish(int sweeps) {
-    sweep_until(goal_, locals_, sweeps, now_);
+    sweep_until(goal_, sweeper_, sweeps, now_);
     try_to_finish();
   }
 
@@ -199,7 +202,7 @@ class Turns {
 
   const Goal& goal_;
   double enough_;
-  std::vector<contacts::LocalContact> locals_;
+  contacts::Sweeper sweeper_;
   contacts::BodyMatrix& matrix_;
   Progress& now_;
   Progress best_;
@@ -209,8 +212,8 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
   const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
   // one contact: the first sweep is exact
   if (static_cast<int>(size) > options.largest_direct || size == 1) {
-    std::vector<contacts::LocalContact> locals = contacts::prepare_locals(goal.system);
-    sweep_until(goal, locals, options.most_sweeps_alone, progress);
+    contacts::Sweeper sweeper(goal.system);
+    sweep_until(goal, sweeper, options.most_sweeps_alone, progress);
     return;
   }
   contacts::BodyMatrix matrix(goal.system);
