@@ -136,6 +136,33 @@ TEST(Spinning, NoContactOfARodOrABoxIsMissed) {
   EXPECT_GT(cut, cases / 2) << "steps of 1/60 s should have been cut for most of these spins";
 }
 
+TEST(Paths, APlaceAloneIsThatOfTheMotion) {
+  std::vector<scene::BodySpec> bodies;
+  for (const char* name : {"flies", "is pushed", "is driven"})
+    bodies.push_back(box(name, {0.3, 0.2, 0.1}, 1.0,
+                         {2.0 * static_cast<double>(bodies.size()), 0, 0}, {0.3, 0.2, 0.1}));
+  bodies[0].omega_world_rad_s = bodies[1].omega_world_rad_s = {3, 2, 1};
+  bodies[2].mass_kg.reset();
+  bodies[2].velocity_m_s = Vector3d::Zero();
+  bodies[2].immovable = true;
+  bodies[2].motion.emplace().velocity_m_s = {0, 1, 0};
+  const Laws laws = laws_of_method(3);
+  RunCounters counters;
+  MovingWorld moving(build_world(scene_of(bodies, 1.0)), laws, counters);
+  const double h = 1.0 / 60;
+  moving.begin_step(h);
+  RigidBodyState end = moving.path_end(1);
+  end.com_world.z() += 0.01;
+  moving.set_path(1, moving.state(1), end);
+  for (int body = 0; body < moving.size(); ++body)
+    for (const double t : {0.0, 0.3 * h, h}) {
+      const collision::Pose place = moving.pose_at(body, t), whole = moving.motion_at(body, t).pose;
+      EXPECT_EQ(place.com_world, whole.com_world) << bodies[body].name << " at " << t;
+      EXPECT_EQ(place.world_from_body.coeffs(), whole.world_from_body.coeffs())
+          << bodies[body].name << " at " << t;
+    }
+}
+
 TEST(Spinning, TheErrorOfAPathsTurningIsBelowItsBound) {
   Random random(32);
   for (int i = 0; i < 2000; ++i) {

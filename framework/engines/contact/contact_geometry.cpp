@@ -86,6 +86,13 @@ double ContactGeometry::distance_of(Pair pair, const std::vector<RigidBodyState>
                                  moving_.pair_cache(pair.first, pair.second), limit);
 }
 
+bool ContactGeometry::is_within(Pair pair, const std::vector<RigidBodyState>& states,
+                                double reach) const {
+  return collision::is_within(moving_.shape(pair.first), pose(pair.first, states),
+                              moving_.shape(pair.second), pose(pair.second, states), reach,
+                              moving_.pair_cache(pair.first, pair.second));
+}
+
 double ContactGeometry::least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
   return collision::least_gap(moving_.shape(pair.first), pose(pair.first, states),
                               moving_.shape(pair.second), pose(pair.second, states));

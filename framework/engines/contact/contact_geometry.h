@@ -52,10 +52,12 @@ class ContactGeometry {
   /// @param limit  of larger gaps any bound from below will do [m]
   double distance_of(Pair pair, const std::vector<RigidBodyState>& states,
                      double limit = std::numeric_limits<double>::infinity()) const;
+  /// Whether the gap is at most `reach` [m].
+  bool is_within(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
   /// A bound from below, at once. [m]
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   bool overlap(Pair pair, const std::vector<RigidBodyState>& states) const {
-    return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0;
+    return least_gap_of(pair, states) < 0 && distance_of(pair, states, 0.0) < 0;
   }
 
   /// Where the force of a contact point acts. World frame. [m]

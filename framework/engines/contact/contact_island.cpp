@@ -10,11 +10,11 @@ Matrix3d inverse_inertia_world(const WorldBody& body, const Quaterniond& q) {
 
 }  // namespace
 
-int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places,
+int place_body(const MovingWorld& moving, int body, double t, BodyPlaces& places,
                const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
                ContactProblem& problem) {
-  const auto [found, is_new] = places.try_emplace(body, static_cast<int>(problem.bodies.size()));
-  if (!is_new) return found->second;
+  const int next = static_cast<int>(problem.bodies.size()), place = places.enter(body, next);
+  if (place != next) return place;
   const WorldBody& b = moving.world().bodies[body];
   PushedBody pushed;
   pushed.com_world = states[body].com_world;
@@ -31,12 +31,12 @@ int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>
     }
   }
   problem.bodies.push_back(pushed);
-  return found->second;
+  return place;
 }
 
 void add_island_rows(MovingWorld& moving, const ContactIsland& island,
-                     const std::vector<RigidBodyState>& states, double t,
-                     const std::map<int, int>& places, bool of_places, ContactProblem& problem) {
+                     const std::vector<RigidBodyState>& states, double t, const BodyPlaces& places,
+                     bool of_places, ContactProblem& problem) {
   for (const int index : island.linked)
     engines::add_rows(moving.linked_groups()[static_cast<std::size_t>(index)], states, t, places,
                       problem);

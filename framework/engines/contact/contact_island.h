@@ -2,11 +2,11 @@
 /// solved island by island.
 #pragma once
 
-#include <map>
 #include <utility>
 #include <vector>
 
 #include "framework/dynamics/contact_problem.h"
+#include "framework/engines/stepping/body_places.h"
 #include "framework/engines/stepping/moving_world.h"
 
 namespace tumble::engines {
@@ -26,7 +26,7 @@ struct ContactIsland {
 /// position correction
 /// @param places      of bodies in the problem; the new one is entered
 /// @return its place
-int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places,
+int place_body(const MovingWorld& moving, int body, double t, BodyPlaces& places,
                const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
                ContactProblem& problem);
 
@@ -34,7 +34,7 @@ int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>
 /// @param of_places  true: the errors of places go; false: what the free step has made of
 /// velocities stays
 void add_island_rows(MovingWorld& moving, const ContactIsland& island,
-                     const std::vector<RigidBodyState>& states, double t,
-                     const std::map<int, int>& places, bool of_places, ContactProblem& problem);
+                     const std::vector<RigidBodyState>& states, double t, const BodyPlaces& places,
+                     bool of_places, ContactProblem& problem);
 
 }  // namespace tumble::engines

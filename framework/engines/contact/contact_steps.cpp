@@ -28,19 +28,19 @@ ContactProblem PersistentContacts::problem_of(const ContactIsland& island,
                                               const std::vector<RigidBodyState>& states, double h,
                                               const std::vector<RigidBodyState>* ends) {
   ContactProblem problem;
-  std::map<int, int> places;
+  places_.begin(moving_.size());
   const bool at_once = h == 0.0;
   const double t = at_once ? moving_.time() : moving_.target();
   for (const int body : island.bodies) {
     RigidBodyState free = at_once ? states[body] : moving_.path_end(body);
     if (ends) free.world_from_body = (*ends)[body].world_from_body;
-    place_body(moving_, body, t, places, states, &free, problem);
+    place_body(moving_, body, t, places_, states, &free, problem);
   }
   for (const StepContact& step_contact : contacts) {
     PushingContact contact;
-    contact.body_a = place_body(moving_, step_contact.pair.first, t, places, states,
+    contact.body_a = place_body(moving_, step_contact.pair.first, t, places_, states,
                                 &states[step_contact.pair.first], problem);
-    contact.body_b = place_body(moving_, step_contact.pair.second, t, places, states,
+    contact.body_b = place_body(moving_, step_contact.pair.second, t, places_, states,
                                 &states[step_contact.pair.second], problem);
     contact.point_world = geometry_.point_of(step_contact.pair, step_contact.point);
     contact.normal_b_to_a_world = step_contact.point.normal_b_to_a_world;
@@ -55,10 +55,10 @@ ContactProblem PersistentContacts::problem_of(const ContactIsland& island,
         island.large ? kContact.warm_start_within_in_large_island : kContact.warm_start_within,
         problem);
   if (at_once || island.linked.empty())
-    add_island_rows(moving_, island, moving_.states(), moving_.time(), places, false, problem);
+    add_island_rows(moving_, island, moving_.states(), moving_.time(), places_, false, problem);
   else
-    add_island_rows(moving_, island, middle_of_step(island, ends), moving_.time() + 0.5 * h, places,
-                    false, problem);
+    add_island_rows(moving_, island, middle_of_step(island, ends), moving_.time() + 0.5 * h,
+                    places_, false, problem);
   return problem;
 }
 
@@ -220,13 +220,17 @@ void PersistentContacts::remember(const std::vector<StepContact>& contacts,
                                   const ContactProblem& problem, const ContactSolution& solution,
                                   double h,
                                   std::map<Pair, std::vector<KnownImpulse>>& store) const {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    std::vector<KnownImpulse>& known = store[contacts[i].pair];
-    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) known.clear();
-    const RigidBodyState& a = moving_.state(contacts[i].pair.first);
-    known.push_back(
-        {a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world),
-         solution.impulses_world[i], h});
+  for (std::size_t from = 0, to = 0; from < contacts.size(); from = to) {
+    const Pair& pair = contacts[from].pair;
+    while (to < contacts.size() && contacts[to].pair == pair) ++to;
+    std::vector<KnownImpulse>& known = store[pair];
+    known.clear();
+    known.reserve(to - from);
+    const RigidBodyState& a = moving_.state(pair.first);
+    for (std::size_t i = from; i < to; ++i)
+      known.push_back(
+          {a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world),
+           solution.impulses_world[i], h});
   }
 }
 
@@ -335,36 +339,36 @@ bool PersistentContacts::activates(const std::vector<StepContact>& contacts,
   return false;
 }
 
-// Where the island's bodies come out with these impulses.
-// @param at  where the problem took the inertia of the bodies, null: at the end of their free paths
-std::vector<RigidBodyState> PersistentContacts::ends_of(
-    const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution,
-    double h, bool activation, const std::vector<RigidBodyState>* at) const {
-  std::vector<RigidBodyState> ends = moving_.states();
+// Where the island's bodies come out with these impulses: ends_.
+// @param inertia_at_ends  the problem took the inertia of the bodies where ends_ has had them so far;
+// else at the end of their free paths
+void PersistentContacts::find_ends(const ContactIsland& island, const ContactProblem& problem,
+                                   const ContactSolution& solution, double h, bool activation,
+                                   bool inertia_at_ends) {
   // the problem's first bodies are the island's
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
     const int body = island.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
-    RigidBodyState& end = ends[body];
+    RigidBodyState& end = ends_[body];
     if (activation) {
-      end.com_world += h * after.linear_world;
-      end.world_from_body = turned(end.world_from_body, h * after.angular_world);
+      const RigidBodyState& start = moving_.state(body);
+      end.com_world = start.com_world + h * after.linear_world;
+      end.world_from_body = turned(start.world_from_body, h * after.angular_world);
       end.angular_momentum_world =
           angular_momentum_of(after.angular_world, end.world_from_body, inertia);
     } else {
       const RigidBodyState& free = moving_.path_end(body);
+      const Quaterniond at = inertia_at_ends ? end.world_from_body : free.world_from_body;
       const Vector3d turning = after.angular_world - problem.bodies[k].omega_world;
       end.com_world =
           free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
       end.world_from_body = turned(free.world_from_body, 0.5 * h * turning);
       end.angular_momentum_world =
-          free.angular_momentum_world +
-          angular_momentum_of(turning, (at ? (*at)[body] : free).world_from_body, inertia);
+          free.angular_momentum_world + angular_momentum_of(turning, at, inertia);
     }
     end.momentum_world = inertia.mass * after.linear_world;
   }
-  return ends;
 }
 
 // The angle that the fastest of the island's bodies turns in the step; a ball looks the same
@@ -403,9 +407,10 @@ double PersistentContacts::turn_of_normals(const ContactIsland& island,
 // (J_end - J_middle) v'. Without that a body that tips over its edge gains or loses energy in
 // proportion to the step.
 std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway(
-    const ContactIsland& island, const std::vector<StepContact>& contacts,
-    const std::vector<RigidBodyState>& ends, std::vector<RigidBodyState>& middle) const {
+    const ContactIsland& island, const std::vector<StepContact>& contacts) {
   const std::vector<RigidBodyState>& starts = moving_.states();
+  const std::vector<RigidBodyState>& ends = ends_;
+  std::vector<RigidBodyState>& middle = midway_;
   for (const int body : island.bodies) {
     middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
     middle[body].world_from_body =
@@ -469,26 +474,27 @@ bool PersistentContacts::set_paths(const ContactIsland& island,
                                    const std::vector<StepContact>& contacts,
                                    const std::vector<RigidBodyState>& contacts_at,
                                    const ContactProblem& problem, const ContactSolution& solution,
-                                   double h, bool activation,
-                                   const std::vector<RigidBodyState>* at) {
-  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation, at);
+                                   double h, bool activation) {
+  const bool is_midway = &contacts_at == &midway_;
+  find_ends(island, problem, solution, h, activation, is_midway);
   std::vector<ActiveContact> active;  // where nothing turns, points stay as near as they are
-  if (&contacts_at != &moving_.states() && !activation && contacts.size() <= kContact.many_contacts)
+  if (is_midway && !activation && contacts.size() <= kContact.many_contacts)
     for (std::size_t i = 0; i < contacts.size(); ++i)
       if (contacts[i].start_gap < kContact.far_at_start * geometry_.margin(contacts[i].pair) &&
           solution.impulses_world[i].squaredNorm() > 0.0)
         active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart =
-      correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
+      correction_.correct_positions(island, island.pairs, ends_, moving_.target(), active);
+  for (const int body : moving_.driven_bodies()) ends_[body] = moving_.state(body);
   // The path goes where position correction has moved its end, however short the step: velocities
   // along it are no momenta. What rods and joints hold is put right where a step ends within it
   // (MovingWorld::commit).
   for (const int body : island.bodies) {
     if (activation)
-      set_straight_path(body, ends[body]);
+      set_straight_path(body, ends_[body]);
     else
-      moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
+      moving_.set_path(body, moving_.state(body), ends_[body], SmoothPath::Momenta::kEven);
     moving_.refuse_fast_turning(body);
   }
   return apart;

@@ -42,22 +42,30 @@ void ImpactDetection::refuse_overlap(const std::string& where, const scene::Scen
   refuse_overlaps(where, scene, near);
 }
 
-// Planes without end are in every box: whether the ball around a body reaches one is asked
-// directly.
-bool ImpactDetection::may_meet(int a, int b) {
-  if (moving_.shape(a).is_half_space()) std::swap(a, b);
-  if (!moving_.shape(b).is_half_space()) return true;
-  const collision::SweptBox box = moving_.swept_box(a);
-  const collision::Pose start = moving_.motion_at(b, moving_.time()).pose,
-                        end = moving_.motion_at(b, moving_.target()).pose;
+// A half-space in the step under way: how high it reaches at most along its normal.
+struct ImpactDetection::Plane {
+  int box;            // its place among the boxes
+  Vector3d up_world;  // unit
+  double start, end;  // heights at the step's ends [m]
+  double shake;       // farther than there between them, at most [m]
+  bool reaches(const collision::SweptBox& box_of_other) const {
+    const Vector3d middle = 0.5 * (box_of_other.low + box_of_other.high),
+                   half = 0.5 * (box_of_other.high - box_of_other.low);
+    const double lowest = up_world.dot(middle) - up_world.cwiseAbs().dot(half);
+    return lowest <= std::max(start, end) + shake;
+  }
+};
+
+ImpactDetection::Plane ImpactDetection::plane_of(int box) {
+  const int body = colliding_[box];
+  const collision::Pose start = moving_.pose_at(body, moving_.time()),
+                        end = moving_.pose_at(body, moving_.target());
   const Vector3d n = start.world_from_body.toRotationMatrix().col(2);
-  const Vector3d middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
-  const double lowest = n.dot(middle) - n.cwiseAbs().dot(half);
-  const scene::PrescribedMotion& m = moving_.world().bodies[b].motion;
+  const scene::PrescribedMotion& m = moving_.world().bodies[body].motion;
   const double shake =
       m.amplitude_m.norm() *
       std::min(2.0, std::pow(m.angular_frequency_rad_s * (moving_.target() - moving_.time()), 2));
-  return lowest <= std::max(n.dot(start.com_world), n.dot(end.com_world)) + shake;
+  return {box, n, n.dot(start.com_world), n.dot(end.com_world), shake};
 }
 
 std::vector<ImpactDetection::Pair> ImpactDetection::candidates() {
@@ -74,16 +82,28 @@ std::vector<ImpactDetection::Pair> ImpactDetection::candidates() {
 
 std::vector<ImpactDetection::Pair> ImpactDetection::pairs_of_boxes() {
   std::vector<collision::SweptBox> boxes;
+  std::vector<Plane> planes;
   boxes.reserve(colliding_.size());
-  for (const int body : colliding_) boxes.push_back(moving_.swept_box(body));
+  for (const int body : colliding_) {
+    if (moving_.shape(body).is_half_space())
+      planes.push_back(plane_of(static_cast<int>(boxes.size())));
+    boxes.push_back(moving_.swept_box(body));
+  }
+  // Planes without end are in every box: whether one reaches the box of a body is asked directly.
+  const auto is_missed = [&](const Pair& places) {
+    return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+      return (plane.box == places.second && !plane.reaches(boxes[places.first])) ||
+             (plane.box == places.first && !plane.reaches(boxes[places.second]));
+    });
+  };
   auto pairs = collision::overlapping_pairs(boxes);
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return !moving_.may_collide(colliding_[pair.first], colliding_[pair.second]) || is_missed(pair);
+  });
   for (auto& [a, b] : pairs) {
     a = colliding_[a];
     b = colliding_[b];
   }
-  std::erase_if(pairs, [&](const Pair& pair) {
-    return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second);
-  });
   return pairs;
 }
 
@@ -122,8 +142,7 @@ std::optional<Earliest> ImpactDetection::find_earliest(const std::vector<Pair>& 
 // Of those that are farther apart than what counts as touching a bound from below.
 double ImpactDetection::gap_on_path(Pair pair, double t) {
   const auto [a, b] = pair;
-  const collision::Pose pose_a = moving_.motion_at(a, t).pose,
-                        pose_b = moving_.motion_at(b, t).pose;
+  const collision::Pose pose_a = moving_.pose_at(a, t), pose_b = moving_.pose_at(b, t);
   const double least = collision::least_gap(moving_.shape(a), pose_a, moving_.shape(b), pose_b);
   const double touching = touching_distance(pair);
   if (least > touching) return least;

@@ -61,7 +61,8 @@ class ImpactDetection {
   void note_overlaps(const std::vector<Pair>& pairs);
   std::vector<Pair> pairs_of_boxes();
   bool ask_for_ends(const std::vector<Pair>& pairs);
-  bool may_meet(int a, int b);
+  struct Plane;
+  Plane plane_of(int box);
   std::optional<Earliest> find_earliest(const std::vector<Pair>& pairs);
   std::optional<Earliest> find_missed(const std::vector<Pair>& pairs, double target);
   double gap_on_path(Pair pair, double t);

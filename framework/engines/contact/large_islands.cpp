@@ -129,14 +129,15 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
   counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
   if (!solution.converged) ++counters_.contact_unsolved;
   require_numbers(island, solution);
-  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, true);
+  find_ends(island, problem, solution, h, true);
   // Pairs with bodies of other groups may meet within the step: that is for the finding of impacts.
   std::vector<double> gaps(island.pairs.size(), 0.0);
   const bool apart =
-      correction_.correct_large_island(island, island.pairs, ends, moving_.target(), gaps);
+      correction_.correct_large_island(island, island.pairs, ends_, moving_.target(), gaps);
+  for (const int body : moving_.driven_bodies()) ends_[body] = moving_.state(body);
   if (!apart && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   for (const int body : island.bodies) {
-    set_straight_path(body, ends[body]);
+    set_straight_path(body, ends_[body]);
     moving_.refuse_fast_turning(body);
   }
   keep_warm_start(island, contacts, problem, solution, h);

@@ -166,7 +166,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     if (in_step) {
       const double within = reach(pair);
       if (geometry_.least_gap_of(pair, moving_.states()) <= within &&
-          geometry_.distance_of(pair, moving_.states(), within) <= within)
+          geometry_.is_within(pair, moving_.states(), within))
         touching.push_back(pair);
       continue;
     }
@@ -176,6 +176,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     points_.emplace(pair, std::move(points));
   }
   if (touching.empty()) return std::nullopt;
+  ends_ = midway_ = moving_.states();
   // What touches or is linked is solved together, island by island; large islands without
   // restitution are solved in steps.
   islands_ = islands(touching);
@@ -339,20 +340,20 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   }
   // An island that turns too far gets a shorter step; one that turns at all meets its contacts at
   // the step's middle.
-  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation);
-  const double turn = std::max(largest_turn(island, ends, h), turn_of_normals(island, ends));
+  find_ends(island, problem, solution, h, activation);
+  const double turn = std::max(largest_turn(island, ends_, h), turn_of_normals(island, ends_));
   if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step)
     return moving_.time() + h * kContact.most_turn / turn;
-  std::vector<RigidBodyState> middle;
+  bool is_midway = false;
   std::vector<StepContact> used = contacts;
   const int rounds = turn <= kContact.even_turn ? 0
                      : is_curved(island)        ? kContact.curved_rounds
                                                 : 1;
   for (int round = 0; round < rounds && !activation; ++round) {
-    if (round > 0) ends = ends_of(island, problem, solution, h, activation, &ends);
-    middle = moving_.states();
-    used = contacts_midway(island, contacts, ends, middle);
-    problem = problem_of(island, used, middle, h, &ends);
+    if (round > 0) find_ends(island, problem, solution, h, activation, true);
+    is_midway = true;
+    used = contacts_midway(island, contacts);
+    problem = problem_of(island, used, midway_, h, &ends_);
     // the same points, a little farther on
     for (std::size_t i = 0; i < used.size(); ++i)
       problem.contacts[i].warm_start_world = solution.impulses_world[i];
@@ -371,8 +372,8 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     return stop;
   // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts
   // bring no energy in.
-  if (!set_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h,
-                 activation, middle.empty() ? nullptr : &ends)) {
+  if (!set_paths(island, used, is_midway ? midway_ : moving_.states(), problem, solution, h,
+                 activation)) {
     if (!located && island.linked.empty()) return take_large_island_step(island, h);
     if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   }
@@ -482,8 +483,7 @@ bool PersistentContacts::commit() {
       const double near =
           std::max(island.large ? 2 * geometry_.large_island_margin(pair) : open_distance(pair),
                    stays_near ? restitution_threshold_ * memory_.longest_step : 0.0);
-      const bool is_near =
-          (island.large ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
+      const bool is_near = island.large ? gaps[k] <= near : geometry_.is_within(pair, states, near);
       if (is_near == lasted) continue;
       const collision::Gap gap = geometry_.gap_of(pair, states);
       if (is_near) {

@@ -163,20 +163,17 @@ class PersistentContacts {
   void require_numbers(const ContactIsland& island, const ContactSolution& solution) const;
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const StepContacts& contacts,
                                         const ContactSolution& solution, double h);
-  std::vector<RigidBodyState> ends_of(const ContactIsland& island, const ContactProblem& problem,
-                                      const ContactSolution& solution, double h, bool activation,
-                                      const std::vector<RigidBodyState>* at = nullptr) const;
+  void find_ends(const ContactIsland& island, const ContactProblem& problem,
+                 const ContactSolution& solution, double h, bool activation,
+                 bool inertia_at_ends = false);
   double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends,
                       double h) const;
   double turn_of_normals(const ContactIsland& island,
                          const std::vector<RigidBodyState>& ends) const;
-  StepContacts contacts_midway(const ContactIsland& island, const StepContacts& contacts,
-                               const std::vector<RigidBodyState>& ends,
-                               std::vector<RigidBodyState>& middle) const;
+  StepContacts contacts_midway(const ContactIsland& island, const StepContacts& contacts);
   bool set_paths(const ContactIsland& island, const StepContacts& contacts,
                  const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem,
-                 const ContactSolution& solution, double h, bool activation,
-                 const std::vector<RigidBodyState>* at);
+                 const ContactSolution& solution, double h, bool activation);
   void set_straight_path(int body, const RigidBodyState& end);
   bool gains_energy(const ContactIsland& island);
 
@@ -231,6 +228,10 @@ class PersistentContacts {
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
+  // By body, of the island whose step is taken: where it comes out, and the middle of the way there.
+  // Others stand where the step began; those of islands whose steps have been taken are stale.
+  std::vector<RigidBodyState> ends_, midway_;
+  BodyPlaces places_;                   // in the problem that is being set up
   std::vector<RigidBodyState> middle_;  // of a linked island's step, by body; others are stale
   RunWatch unsolved_;                   // what it leaves unsolved, until it is committed
 };

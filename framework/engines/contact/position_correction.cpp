@@ -30,10 +30,10 @@ void limit_ratios(ContactProblem& problem) {
 void PositionCorrection::place_for_correction(const ContactIsland& island, Pair pair,
                                               const collision::ManifoldPoint& point,
                                               const std::vector<RigidBodyState>& states, double t,
-                                              double margin, std::map<int, int>& places,
-                                              ContactProblem& problem, PushingContact& contact) {
-  contact.body_a = place_body(moving_, pair.first, t, places, states, nullptr, problem);
-  contact.body_b = place_body(moving_, pair.second, t, places, states, nullptr, problem);
+                                              double margin, ContactProblem& problem,
+                                              PushingContact& contact) {
+  contact.body_a = place_body(moving_, pair.first, t, places_, states, nullptr, problem);
+  contact.body_b = place_body(moving_, pair.second, t, places_, states, nullptr, problem);
   for (const int index : {contact.body_a, contact.body_b})
     if (index >= static_cast<int>(island.bodies.size())) {
       problem.bodies[index].inverse_mass = 0.0;
@@ -42,6 +42,12 @@ void PositionCorrection::place_for_correction(const ContactIsland& island, Pair 
   contact.point_world = geometry_.point_of(pair, point);
   contact.normal_b_to_a_world = point.normal_b_to_a_world;
   contact.target = margin - point.gap;
+}
+
+// What is driven goes where its law has it by then.
+void PositionCorrection::place_driven(std::vector<RigidBodyState>& states, double t) const {
+  for (const int body : moving_.driven_bodies())
+    states[body].com_world = prescribed_position(moving_.world().bodies[body], t);
 }
 
 // Momenta follow: the velocities stay. @return whether the body has moved
@@ -64,7 +70,7 @@ double PositionCorrection::add_corrections(const ContactIsland& island,
                                            const std::vector<Pair>& pairs,
                                            const std::vector<RigidBodyState>& states, double t,
                                            const std::vector<ActiveContact>& active, double reach,
-                                           std::map<int, int>& places, ContactProblem& problem) {
+                                           ContactProblem& problem) {
   double wrong = 0.0;
   for (const Pair& pair : pairs) {
     const double margin = geometry_.margin(pair), size = geometry_.size_of(pair);
@@ -86,7 +92,7 @@ double PositionCorrection::add_corrections(const ContactIsland& island,
       if (point.gap < 0.5 * margin || (is_active && point.gap > 2 * margin))
         wrong = std::max(wrong, std::abs(margin - point.gap));
       PushingContact contact;
-      place_for_correction(island, pair, point, states, t, margin, places, problem, contact);
+      place_for_correction(island, pair, point, states, t, margin, problem, contact);
       if (is_active) {
         Constraint row;
         row.body_a = contact.body_a;
@@ -113,26 +119,24 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
                                            const std::vector<Pair>& pairs,
                                            std::vector<RigidBodyState>& states, double t,
                                            const std::vector<ActiveContact>& active) {
-  for (int i = 0; i < moving_.size(); ++i)
-    if (moving_.world().bodies[i].immovable())
-      states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  place_driven(states, t);
   double reach = 0.0;
   for (int round = 0; round < kContact.most_corrections; ++round) {
     ContactProblem problem;
-    std::map<int, int> places;
+    places_.begin(moving_.size());
     for (const int body : island.bodies)
-      place_body(moving_, body, t, places, states, nullptr, problem);
+      place_body(moving_, body, t, places_, states, nullptr, problem);
     limit_ratios(problem);
     const double wrong = add_corrections(
         island, pairs, states, t,
         round < kContact.most_corrections / 2 ? active : std::vector<ActiveContact>{}, reach,
-        places, problem);
+        problem);
     // what a correction this long may bring together has to be in it
     if (kContact.correction_reach * wrong > reach) {
       reach = 2 * kContact.correction_reach * wrong;
       if (round == 0) continue;
     }
-    add_island_rows(moving_, island, states, t, places, true, problem);
+    add_island_rows(moving_, island, states, t, places_, true, problem);
     double size = 0.0;
     for (const int body : island.bodies)
       size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
@@ -173,9 +177,7 @@ bool PositionCorrection::correct_large_island(const ContactIsland& island,
                                               const std::vector<Pair>& pairs,
                                               std::vector<RigidBodyState>& states, double t,
                                               std::vector<double>& gaps) {
-  for (int i = 0; i < moving_.size(); ++i)
-    if (moving_.world().bodies[i].immovable())
-      states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  place_driven(states, t);
   std::vector<double> way(states.size(), 0.0);
   std::vector<KnownManifold> manifolds(pairs.size());
   for (int round = 0; round < kContact.most_corrections_in_large_island; ++round) {
@@ -220,9 +222,9 @@ ContactProblem PositionCorrection::corrections_of(const ContactIsland& island,
                                                   double wrong, const std::vector<double>& way,
                                                   std::vector<KnownManifold>& manifolds) {
   ContactProblem problem;
-  std::map<int, int> places;
+  places_.begin(moving_.size());
   for (const int body : island.bodies)
-    place_body(moving_, body, t, places, states, nullptr, problem);
+    place_body(moving_, body, t, places_, states, nullptr, problem);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double reach = std::max(
         kContact.correction_reach_in_large_island * wrong,
@@ -235,7 +237,7 @@ ContactProblem PositionCorrection::corrections_of(const ContactIsland& island,
       if (point.gap > reach) continue;
       PushingContact contact;
       place_for_correction(island, pairs[k], point, states, t,
-                           geometry_.large_island_margin(pairs[k]), places, problem, contact);
+                           geometry_.large_island_margin(pairs[k]), problem, contact);
       problem.contacts.push_back(contact);
     }
   }

@@ -57,14 +57,14 @@ class PositionCorrection {
   void place_for_correction(const ContactIsland& island, Pair pair,
                             const collision::ManifoldPoint& point,
                             const std::vector<RigidBodyState>& states, double t, double margin,
-                            std::map<int, int>& places, ContactProblem& problem,
-                            PushingContact& contact);
+                            ContactProblem& problem, PushingContact& contact);
   bool apply_correction(int body, const Velocity& correction,
                         std::vector<RigidBodyState>& states) const;
   double add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs,
                          const std::vector<RigidBodyState>& states, double t,
                          const std::vector<ActiveContact>& active, double reach,
-                         std::map<int, int>& places, ContactProblem& problem);
+                         ContactProblem& problem);
+  void place_driven(std::vector<RigidBodyState>& states, double t) const;
   double way_of(int body, const Velocity& correction) const;
   ContactProblem corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs,
                                 const std::vector<RigidBodyState>& states, double t,
@@ -77,6 +77,7 @@ class PositionCorrection {
   ContactMemory& memory_;
   double restitution_threshold_;  // [m/s]
   RunCounters& counters_;
+  BodyPlaces places_;  // in the problem that is being set up
 };
 
 }  // namespace tumble::engines

@@ -246,11 +246,14 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
   // Bodies: those that touch, and what is linked to them.
   MovingWorld& moving = work.bodies.moving();
   ContactProblem problem;
-  std::map<int, int> places;
+  BodyPlaces places;
+  places.begin(moving.size());
+  std::vector<int> all;  // bodies of the problem
   std::vector<int> held_groups;
   const auto place = [&](int index) {
-    const auto [found, is_new] = places.try_emplace(index, static_cast<int>(problem.bodies.size()));
-    if (!is_new) return found->second;
+    const int next = static_cast<int>(problem.bodies.size()), at = places.enter(index, next);
+    if (at != next) return at;
+    all.push_back(index);
     if (moving.resting(index)) moving.wake(index);
     const Body& body = work.body(index);
     const Matrix3d R = body.world_from_body.toRotationMatrix();
@@ -260,7 +263,7 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     if (const int group = work.bodies.held_group(index);
         group >= 0 && std::find(held_groups.begin(), held_groups.end(), group) == held_groups.end())
       held_groups.push_back(group);
-    return found->second;
+    return at;
   };
   struct Met {
     const TouchingPair* pair;
@@ -288,12 +291,12 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
 
   const std::vector<Velocity> before = velocities_of(problem);
   const ContactSolution solution = solve_without_gain(problem);
-  std::vector<int> all;
-  for (const auto& [index, at] : places) all.push_back(index);
+  std::sort(all.begin(), all.end());
   note_unsolved(moving, all, solution);
   const Vector3d driven = work.bodies.driven_velocity(all).value_or(Vector3d::Constant(kUnset));
   EnergyOfImpact energy;
-  for (const auto& [index, at] : places) {
+  for (const int index : all) {
+    const auto at = static_cast<std::size_t>(places.at(index));
     const Body& body = work.body(index);
     if (body.inertia.inverse_mass == 0.0) continue;
     energy.add(body.inertia, body.world_from_body, before[at], solution.velocities[at], driven);

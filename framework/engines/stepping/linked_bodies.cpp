@@ -219,7 +219,7 @@ std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBod
 }
 
 void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t,
-              const std::map<int, int>& places, ContactProblem& problem) {
+              const BodyPlaces& places, ContactProblem& problem) {
   const int fixed = static_cast<int>(problem.bodies.size());
   bool uses_fixed = false;
   for (Constraint row : group.constraint_rows(states, t)) {

@@ -23,6 +23,7 @@
 #include "framework/effects/effect.h"
 #include "framework/engines/base/effects_built.h"
 #include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/body_places.h"
 
 namespace tumble::engines {
 
@@ -211,7 +212,7 @@ bool goes_without_rows(const World& world);
 /// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become
 /// one body that cannot be pushed
 void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t,
-              const std::map<int, int>& places, ContactProblem& problem);
+              const BodyPlaces& places, ContactProblem& problem);
 
 /// Rows are to have the rates afterwards that the problem's bodies give them before.
 void keep_rates(ContactProblem& problem);

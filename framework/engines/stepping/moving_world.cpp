@@ -49,6 +49,8 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
       paths_(world_.bodies.size()),
       principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
+  for (int i = 0; i < size(); ++i)
+    if (world_.bodies[i].immovable() && is_driven(i)) driven_.push_back(i);
   if (shapes_.empty()) {
     for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
     for (const collision::CollisionShape& shape : own_shapes_) shapes_.push_back(&shape);
@@ -451,6 +453,12 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
                           (t - time_) * paths_[body].acceleration_world;
   if (!shapes_[body]->is_ball()) motion.omega_world = omega_of(state, inertia);
   return motion;
+}
+
+collision::Pose MovingWorld::pose_at(int body, double t) {
+  if (t != time_ && t != target_) return motion_at(body, t).pose;
+  const RigidBodyState state = path(body, t);
+  return {state.com_world, state.world_from_body};
 }
 
 collision::MotionBounds MovingWorld::work_out_bounds(int body) {

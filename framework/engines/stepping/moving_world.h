@@ -82,6 +82,8 @@ class MovingWorld {
   }
   /// Whether an immovable body moves by a law of its own.
   bool is_driven(int body) const { return tumble::is_driven(world_.bodies[body].motion); }
+  /// Those that do, ascending.
+  const std::vector<int>& driven_bodies() const { return driven_; }
   bool resting(int body) const { return rests_[body].has_value(); }
   void put_to_rest(int body, int support);
   /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked
@@ -168,6 +170,8 @@ class MovingWorld {
   /// sleeping ones.
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
+  /// Only where it is: cheap at the step's ends.
+  collision::Pose pose_at(int body, double t);
   collision::Motion motion(int body);
   /// How fast any point of a body is in the step under way, from the speeds at its ends. [m/s]
   double fastest_in_step(int body);
@@ -232,6 +236,7 @@ class MovingWorld {
   std::vector<collision::CollisionShape> own_shapes_;
   std::vector<const collision::CollisionShape*> shapes_;
   std::vector<RigidBodyState> states_;
+  std::vector<int> driven_;  // bodies
   std::vector<std::optional<Rest>> rests_;
   // asked for often: a byte each is read faster than a bit
   std::vector<char> asleep_;
