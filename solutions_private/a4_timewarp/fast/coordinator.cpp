@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <system_error>
-#include <thread>
 
 #include <fmt/format.h>
 
-#include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/numbers.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -24,7 +21,7 @@ constexpr std::size_t kCommitAfter = 512;
 // advances per body, likewise: the data of segments should stay in the nearer caches
 constexpr std::size_t kForgetAfter = 1;
 constexpr int kMostThreads = 64;
-// Shared::owner has one byte; the boundary is one more
+// a territory's number has one byte; the boundary is one more
 constexpr int kRegionIds = std::numeric_limits<std::uint8_t>::max();
 // a segment keeps two committed steps, and the current one
 constexpr int kFewestStates = 8;
@@ -37,12 +34,7 @@ constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;  // of the first window
 constexpr double kOptimismWindowSteps = 2.0;
 // with one thread, which is unbounded until too much is rolled back: of that window
 constexpr double kOptimismWindowAlone = 2.0;
-// of the window is an epoch: at its end processes have completed their advances, not been cut short
-constexpr double kRound = 0.25;
 constexpr double kMostInARound = 2.0;  // integrations per body
-// with one thread and several regions: longer epochs check more pairs, shorter ones switch between
-// regions more often
-constexpr double kEpochAlone = 0.125;
 
 }  // namespace
 
@@ -53,20 +45,15 @@ Coordinator::Coordinator(const scene::Scene& scene, const Laws& laws,
       record_(record),
       watch_(watch),
       commit_at_(kCommitAfter),
-      wanted_owner_(all_.owner),
-      leaders_(all_.owner.size()) {
+      wanted_site_(static_cast<std::size_t>(all_.world().size())),
+      leaders_(wanted_site_.size()) {
   const FlightWorld& world = all_.world();
-  const double bin = bin_for(world, all_.lengths.advance, all_.run.duration());
-  const std::size_t domains = all_.regions > 1 ? static_cast<std::size_t>(all_.regions) + 1 : 1;
-  const int all_bodies = world.size(), a_territory = 2 * all_bodies / all_.regions;
-  all_.domains.reserve(domains);
-  for (std::size_t k = 0; k < domains; ++k) {
-    all_.domains.emplace_back(all_.boxes, static_cast<int>(k),
-                              k == kBoundary ? all_bodies : a_territory, all_.lengths,
-                              k == kBoundary ? bin : bin * all_.regions);
-    workers_.push_back(std::make_unique<Worker>(all_, k));
-  }
-  if (domains > 1) all_.work_loads.assign(static_cast<std::size_t>(world.size()), 0.0);
+  add_domains();
+  workers_.push_back(std::make_unique<Worker>(all_));
+  for (int pass = 0; pass < kPasses; ++pass)
+    for (std::size_t k = 1; k < all_.territories[static_cast<std::size_t>(pass)].size(); ++k)
+      workers_.push_back(std::make_unique<Worker>(all_, pass, static_cast<std::uint8_t>(k)));
+  if (all_.domains.size() > 1) all_.work_loads.assign(static_cast<std::size_t>(world.size()), 0.0);
   all_.is_recorded = record_ != nullptr;
   for (const int i : world.movers()) {
     if (record_) record_->processes.push_back(world.world().bodies[i].name);
@@ -77,12 +64,34 @@ Coordinator::Coordinator(const scene::Scene& scene, const Laws& laws,
   first_optimism_window_ = first_optimism_window();
 }
 
+// Space is not cut yet: all bodies belong to the boundary.
+void Coordinator::add_domains() {
+  const double bin = bin_for(all_.world(), all_.lengths.advance, all_.run.duration());
+  const int all_bodies = all_.world().size();
+  const std::size_t regions = all_.regions == 1 ? 0 : static_cast<std::size_t>(all_.regions),
+                    slabs = static_cast<std::size_t>(all_.slabs);
+  all_.territories = {std::vector<Box>(1 + regions, all_space()),
+                      std::vector<Box>(1 + slabs, all_space())};
+  all_.domains.reserve((1 + regions) * (1 + slabs));
+  for (std::size_t k = 0; k <= regions; ++k)
+    for (std::size_t m = 0; m <= slabs; ++m) {
+      const Site site{{static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(m)}};
+      // a snapshot of cells shows the number of buckets: there it is the same for all
+      const int held = watch_ || site == Site{} ? all_bodies : 2 * all_bodies / all_.regions;
+      all_.domains.emplace_back(all_.boxes, static_cast<int>(all_.domains.size()), site, held,
+                                all_.lengths.cell, site == Site{} ? bin : bin * all_.regions);
+    }
+  for (Domain& domain : all_.domains) domain.region = all_space();
+  if (all_.domains.size() == 1) all_.domains.front().hull = all_space();
+}
+
 void Coordinator::enter_obstacle(int i) {
   const FlightWorld& world = all_.world();
   all_.processes[static_cast<std::size_t>(i)].horizon = kInfinity;
   if (world.is_half_space(i)) return all_.planes.push_back(i);
-  all_.domains[kBoundary].pairs.set_box(i,
-                                        engines::box_of_immovable(world, i, all_.run.duration()));
+  const Box box = engines::box_of_immovable(world, i, all_.run.duration());
+  obstacles_.take_in(box);
+  all_.enter(i, Site{}, box);
 }
 
 void Coordinator::run() {
@@ -132,7 +141,7 @@ void Coordinator::begin() {
 // ---- One thread ------------------------------------------------------------------------------
 
 void Coordinator::run_alone() {
-  engines::EventQueue<Due>& queue = all_.domains[kBoundary].queue;
+  engines::EventQueue<Due>& queue = all_.domains.front().queue;
   const double duration = all_.run.duration();
   while (!queue.empty() && queue.front().key.time <= duration) {
     if (is_injection_due())
@@ -143,7 +152,7 @@ void Coordinator::run_alone() {
           work_alone_at(queue.pop());
       });
     if (all_.faults.rollback_every > 0) alone().disturb();
-    Due due = all_.faults.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
+    Due due = all_.faults.disorder_s > 0 ? alone().next_legal(queue, duration) : queue.pop();
     if (all_.faults.late_callbacks && due.key.kind == StampKind::kCallback && !queue.empty() &&
         queue.front().key.time <= duration)
       due = in_place_of(due);
@@ -163,7 +172,7 @@ void Coordinator::run_alone() {
 
 // For tests: an event after a callback is executed before it.
 Due Coordinator::in_place_of(const Due& callback) {
-  engines::EventQueue<Due>& queue = all_.domains[kBoundary].queue;
+  engines::EventQueue<Due>& queue = all_.domains.front().queue;
   std::vector<Due> late{callback};
   while (queue.front().key.kind == StampKind::kCallback && queue.size() > 1)
     late.push_back(queue.pop());
@@ -172,7 +181,7 @@ Due Coordinator::in_place_of(const Due& callback) {
   return next;
 }
 
-// ---- Several threads -------------------------------------------------------------------------
+// ---- The first event of all ---------------------------------------------------------------------
 
 Domain* Coordinator::next_domain() {
   Domain* next = nullptr;
@@ -203,125 +212,12 @@ double Coordinator::first_optimism_window() const {
              : kOptimismWindowSteps * sum / static_cast<double>(world.movers().size());
 }
 
-void Coordinator::run_in_epochs() {
-  all_.optimism_window = first_optimism_window_;
-  double end_of_epoch = 0.0;
-  bool is_over = false;
-  std::barrier resolve_impact(all_.threads);
-  std::vector<std::jthread> threads;
-  // An exception in this thread ends the others.
-  struct Release {
-    std::barrier<>& resolve_impact;
-    bool& is_over;
-    ~Release() {
-      is_over = true;
-      resolve_impact.arrive_and_wait();
-    }
-  };
-  threads.reserve(static_cast<std::size_t>(all_.threads));
-  // gone before the threads are: they are joined after it has ended them
-  const Release release{resolve_impact, is_over};
-  try {
-    for (int thread = 1; thread < all_.threads; ++thread)
-      threads.emplace_back([&, thread] {
-        for (;;) {
-          resolve_impact.arrive_and_wait();
-          if (is_over) return;
-          work_as(thread, end_of_epoch);
-          resolve_impact.arrive_and_wait();
-        }
-      });
-  } catch (const std::system_error&) {
-    const int made = 1 + static_cast<int>(threads.size());
-    // those that are there wait for all: for the missing ones, too
-    for (int missing = made; missing < all_.threads; ++missing) resolve_impact.arrive_and_drop();
-    throw UserError("--threads " + std::to_string(all_.threads),
-                    fmt::format("the system gives only {} of them", made), "Give fewer.");
-  }
-  while (next_time() <= all_.run.duration()) {
-    if (is_injection_due()) inject_rollback([&] { run_epoch(end_of_epoch, resolve_impact); });
-    run_epoch(end_of_epoch, resolve_impact);
-    commit_before(std::min(next_time(), all_.run.duration()));
-    adapt_optimism_window();
-  }
-}
-
-// Threads take the regions in turn, each to the end of the epoch, so that a region's data stays in
-// the caches meanwhile.
-// @return the time that all of them have reached
-double Coordinator::work_as(int thread, double end) {
-  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size();
-       k += static_cast<std::size_t>(all_.threads))
-    end = workers_[k]->work_before(end);
-  return end;
-}
-
-void Coordinator::run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact) {
-  all_.global_virtual_time = next_time();
-  end_of_epoch =
-      all_.global_virtual_time + (all_.threads > 1 ? kRound : kEpochAlone) * all_.optimism_window;
-  const double began = thread_seconds();
-  settle();
-  const double settled = thread_seconds();
-  all_.run.share(all_.threads > 1);
-  resolve_impact.arrive_and_wait();
-  const double reached = work_as(0, end_of_epoch);  // with several threads: the end of the epoch
-  resolve_impact.arrive_and_wait();
-  all_.run.share(false);
-  for (const auto& worker : workers_)
-    if (worker->deferred.out_of_time) std::rethrow_exception(worker->deferred.out_of_time);
-  std::vector<double> of_threads(static_cast<std::size_t>(all_.threads), 0.0);
-  for (std::size_t k = 1; k < workers_.size(); ++k)
-    of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
-  const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
-  const double worked = thread_seconds();
-  collect_deferred();
-  work_alone_before(reached);
-  ++alone().counters.rounds;
-  alone().counters.together_seconds += busiest;
-  alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
-}
-
-// As many as there is room for.
-void Coordinator::collect_moves(Worker& worker) {
-  const std::size_t taken =
-      std::min(worker.moves.size(), engines::kMostMoves - alone().moves.size());
-  const auto end = worker.moves.begin() + static_cast<std::ptrdiff_t>(taken);
-  alone().moves.insert(alone().moves.end(), worker.moves.begin(), end);
-  if (worker.has_more_moves || end != worker.moves.end()) alone().has_more_moves = true;
-  worker.moves.clear();
-}
-
-void Coordinator::collect_deferred() {
-  for (std::size_t k = 1; k < workers_.size(); ++k) {
-    collect_moves(*workers_[k]);
-    Worker::Deferred& deferred = workers_[k]->deferred;
-    for (const Due& due : deferred.due) all_.domains[kBoundary].queue.push(due);
-    for (const EventStamp& callback : deferred.cancelled_callbacks)
-      if (all_.called[callback.microstep]) alone().expect_callback(callback);
-    deferred.due.clear();
-    deferred.cancelled_callbacks.clear();
-  }
-  for (std::size_t k = 1; k < workers_.size(); ++k) {
-    for (const auto& [body, version] : workers_[k]->deferred.anti_messages)
-      alone().roll_back_from(body, version);
-    workers_[k]->deferred.anti_messages.clear();
-  }
-}
-
-void Coordinator::work_alone_before(double end) {
-  for (Domain* next = next_domain(); next && next->queue.front().key.time < end &&
-                                     next->queue.front().key.time <= all_.run.duration();
-       next = next_domain())
-    work_alone_at(next->queue.pop());
-}
-
 // The first event of all: this one, or the queues' first, in whose place it is put back.
 Due Coordinator::first_before(const Due& due) {
   Domain* next = next_domain();
   if (!next || !(next->queue.front().key < due.key)) return due;
   const Due first = next->queue.pop();
-  all_.domains[all_.regions > 1 ? all_.owner_of(due.key) : kBoundary].queue.push(due);
+  all_.domain_of(due.key).queue.push(due);
   return first;
 }
 
@@ -422,7 +318,8 @@ void Coordinator::end(const std::string& stopped_by) {
       return x->worked_at < y->worked_at;
     };
     all_.run.counters.least_of_a_thread =
-        (*std::min_element(workers_.begin() + 1, workers_.end(), works_less))->worked_at;
+        (*std::min_element(workers_.begin() + 1, workers_.begin() + 1 + all_.regions, works_less))
+            ->worked_at;
   }
   all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
   if (record_) {

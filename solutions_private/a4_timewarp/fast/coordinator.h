@@ -1,16 +1,18 @@
 /// The order of execution: one thread alone, or several in epochs. Its parts: coordinator.cpp has
-/// the loops, ownership.cpp assigns bodies to threads, commits.cpp commits, fault_injection.cpp
-/// rolls everything back for tests.
+/// the beginning, the end and the loop of one thread, epochs.cpp that of several, ownership.cpp
+/// assigns bodies to threads, commits.cpp commits, fault_injection.cpp rolls everything back for
+/// tests.
 ///
-/// An epoch begins at global virtual time. Each worker advances the processes that its region owns,
-/// optimistically, each as far as the optimism window allows; bodies of the boundary do not
-/// advance. Then one thread alone executes what was deferred and the boundary's own events, in
-/// order, and rolls back the bodies that these affect in their past. Everything before the end of
-/// the epoch is then certain. So nothing depends on the speed of threads: a thread reads what
-/// others did in earlier epochs, and nothing that they do concurrently.
+/// An epoch begins at global virtual time. In its first pass each worker advances the processes
+/// that lie in its territory, optimistically, each as far as the optimism window allows; bodies of
+/// the boundary do not advance. The second pass has territories across those of the first: most
+/// bodies of the first boundary lie in them, and advance as far, with what was deferred; they roll
+/// back the bodies that they affect in their past. Then one thread alone executes what is left, in
+/// order. Everything before the end of the epoch is then certain. So nothing depends on the speed
+/// of threads: a thread reads what others did in earlier passes, and nothing that they do
+/// concurrently.
 #pragma once
 
-#include <barrier>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -31,20 +33,15 @@ class Coordinator {
   bool is_injection_due();
   void inject_rollback(const std::function<void()>& take_a_step);
 
-  // conductor.cpp
+  // coordinator.cpp
+  void add_domains();
   void enter_obstacle(int body);
   void begin();
   void run_alone();
   Due in_place_of(const Due& callback);
-  void run_in_epochs();
-  double work_as(int thread, double end);
-  void run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact);
-  void work_alone_before(double end);
   void work_alone_at(Due due);
   Due first_before(const Due& due);
   bool is_stale_fault(const Due& due);
-  void collect_deferred();
-  void collect_moves(Worker& worker);
   Domain* next_domain();
   double next_time();
   void adapt_optimism_window();
@@ -52,14 +49,35 @@ class Coordinator {
   double first_optimism_window() const;
   void check_nothing_leaked();
   void end(const std::string& stopped_by);
-  Worker& alone() { return *workers_[kBoundary]; }
+  Worker& alone() { return *workers_.front(); }
+
+  // epochs.cpp
+  int passes() const { return all_.regions == 1 ? 0 : all_.slabs == 0 ? 1 : 2; }
+  // Calls `work` with each worker that the thread is in a pass, in order.
+  template <class Work>
+  void for_each_worker(int pass, int thread, const Work& work) const {
+    const int first = pass == 0 ? 0 : all_.regions, count = pass == 0 ? all_.regions : all_.slabs;
+    for (int k = thread; k < count; k += all_.threads)
+      work(*workers_[static_cast<std::size_t>(1 + first + k)]);
+  }
+  struct Pass;
+  void run_in_epochs();
+  double work_as(int thread, const Pass& pass) const;
+  void run_epoch(Pass& now);
+  double run_pass(Pass& now);
+  bool has_left_over(double end) const;
+  void work_alone_before(double end);
+  void collect_deferred();
+  void collect_moves(Worker& worker);
 
   // ownership.cpp
   void settle();
+  double unevenness() const;
   void repartition();
-  void find_owners();
+  std::uint8_t territory_that_holds(std::size_t pass, const Box& box) const;
+  void find_sites();
   void keep_processes_together();
-  void change_owner(int body, std::uint8_t owner);
+  void change_site(int body, const Site& site);
   void hand_out();
 
   // commits.cpp
@@ -74,18 +92,20 @@ class Coordinator {
   static std::uint64_t anti_messages_of(const Executed& rolled_back);
 
   Shared all_;
-  std::vector<std::unique_ptr<Worker>> workers_;  // by domain
-  VirtualTimes* record_;                          // null: no record is wanted
-  const engines::RollbackCheck* watch_;           // null: no fault injection
-  int injections_ = 0;                            // so far
-  int since_injection_ = 0;                       // events, or epochs
-  double last_injection_ = 0.0;                   // [s]
+  // the one that runs alone, those of the first pass, those of the second
+  std::vector<std::unique_ptr<Worker>> workers_;
+  Box obstacles_;                        // around all of them, but half-spaces
+  VirtualTimes* record_;                 // null: no record is wanted
+  const engines::RollbackCheck* watch_;  // null: no fault injection
+  int injections_ = 0;                   // so far
+  int since_injection_ = 0;              // events, or epochs
+  double last_injection_ = 0.0;          // [s]
   // executed events between computations of global virtual time
   std::size_t commit_at_;
-  std::size_t since_commit_ = 0;            // events
-  std::optional<EventStamp> working_at_;    // by one thread alone
-  std::vector<std::uint8_t> wanted_owner_;  // by body: the new owner
-  std::vector<int> leaders_;                // by body: of processes that must have one owner
+  std::size_t since_commit_ = 0;          // events
+  std::optional<EventStamp> working_at_;  // by one thread alone
+  std::vector<Site> wanted_site_;         // by body: the new site
+  std::vector<int> leaders_;              // by body: of processes that must have one site
   // started; the epoch before which regions were last cut
   std::uint64_t epochs_ = 0, last_partition_ = 0;
   double first_optimism_window_ = 0.0;  // [s]

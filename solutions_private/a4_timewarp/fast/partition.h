@@ -1,10 +1,12 @@
-/// The partition of space: one box per thread, or several, with about the same work in each.
+/// Cuts of space: into one box per thread, or several, with about the same work in each; and across
+/// that cut, for the bodies that lie in none of these boxes.
 #pragma once
 
+#include <limits>
 #include <vector>
 
-#include "framework/engines/events/flight_world.h"
 #include "framework/engines/base/run_options.h"
+#include "framework/engines/events/flight_world.h"
 #include "framework/engines/timewarp/active_pairs.h"
 
 namespace tumble::a4 {
@@ -14,18 +16,37 @@ namespace tumble::a4 {
 /// nearer caches.
 int regions_for(const engines::FlightWorld& world, const engines::RunOptions& options);
 
-/// The position of a body and its recent cost.
+/// The number of slabs of the second cut; 0: there is none. One per thread, where the pieces of
+/// both cuts are not too many.
+int slabs_for(int regions, int threads);
+
+/// The box of a body and its recent cost.
 struct WorkLoad {
-  Vector3d middle_world;  // [m]
-  double work;            // in any unit, >= 0
+  engines::Box box_world;  // finite [m]
+  double work;             // in any unit, >= 0
+
+  Vector3d middle_world() const { return 0.5 * (box_world.low + box_world.high); }
 };
 
-/// Cuts space across its longest side, recursively.
+/// Cuts space recursively, each time into two parts of the same work, across the axis on which the
+/// bodies in the plane of the cut have the least work.
 /// @param count  of boxes, >= 1
 /// @return boxes with disjoint interiors that fill all space
 /// Source: M. Berger, S. Bokhari, "A partitioning strategy for nonuniform problems on
 /// multiprocessors", IEEE Transactions on Computers 36, 1987.
 std::vector<engines::Box> partition_space(std::vector<WorkLoad> work_loads, int count);
+
+/// Cuts space into parallel slabs with about the same work in each, across the axis on which the
+/// bodies in the planes of the cuts have the least work. For the bodies in the planes of another
+/// cut that is an axis along those planes.
+/// @param count  of slabs, >= 1
+/// @return slabs in order, which fill all space
+std::vector<engines::Box> slabs_of_space(std::vector<WorkLoad> work_loads, int count);
+
+inline engines::Box all_space() {
+  constexpr double kEnd = std::numeric_limits<double>::infinity();
+  return {Vector3d::Constant(-kEnd), Vector3d::Constant(kEnd)};
+}
 
 /// Whether a box lies inside a region.
 inline bool holds(const engines::Box& region, const engines::Box& box) {

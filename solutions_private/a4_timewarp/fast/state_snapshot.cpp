@@ -127,7 +127,7 @@ std::string events(Shared& all, std::vector<std::unique_ptr<Worker>>& workers) {
   return bytes.take();
 }
 
-// Ownership is no part of the state.
+// Sites are no part of the state.
 std::string cells(const Shared& all) {
   std::vector<std::string> rows;
   for (const Domain& domain : all.domains)
@@ -138,12 +138,11 @@ std::string cells(const Shared& all) {
     });
   for (const int body : all.world().movers())
     for (const Domain& domain : all.domains)
-      domain.pairs.for_each_in(
-          all.domains[all.owner[static_cast<std::size_t>(body)]].pairs.box(body), [&](int other) {
-            Bytes row;
-            row << 'p' << body << other;
-            rows.push_back(row.take());
-          });
+      domain.pairs.for_each_in(domain.pairs.box(body), [&](int other) {
+        Bytes row;
+        row << 'p' << body << other;
+        rows.push_back(row.take());
+      });
   std::sort(rows.begin(), rows.end());
   Bytes bytes;
   bytes << rows;

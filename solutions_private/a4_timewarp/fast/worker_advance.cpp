@@ -60,13 +60,13 @@ double Worker::horizon_after(int body, const Flight& flight, double t) const {
 // For any rotation: bounding balls are compared, nothing is searched.
 bool Worker::meets_nobody(int body, const Flight& flight, double from, double to) const {
   const Box box = swept_box(body, std::min(from, global_virtual_time()), to);
-  if (!is_alone() && !may_enter(box)) return false;
+  if (!is_alone() && !may_enter(body, box)) return false;
   for (const int plane : all_.planes)
     if (world().may_collide(body, plane) &&
         all_.run.impacts().may_meet(body, flight, plane, all_.immovable(plane), from, to))
       return false;
   bool is_nobody = true;
-  for_each_in(all_.owner[static_cast<std::size_t>(body)], box, [&](int other) {
+  for_each_in(box, [&](int other) {
     is_nobody = is_nobody && (other == body || !world().may_collide(body, other));
   });
   return is_nobody;
@@ -89,7 +89,7 @@ double Worker::global_virtual_time() const {
 }
 
 // All members of a process advance together; `body` is the first of them. None leaves the optimism
-// window or the region.
+// window or the territory.
 void Worker::advance(int body) {
   const Flight flight = history(body).back();
   const double from = process(body).horizon, gvt = global_virtual_time();
@@ -109,7 +109,8 @@ void Worker::advance(int body) {
   boxes_.clear();
   for (const int member : members) {
     boxes_.push_back(swept_box(member, swept_from, to));
-    if (!is_alone() && !may_enter(boxes_.back())) return schedule_recheck(body, kBoundary);
+    if (!is_alone() && !may_enter(member, boxes_.back()))
+      return schedule_recheck(body, beyond(all_.site_of(body)));
   }
   found_.clear();
   if (own_end && own_end->time >= from) found_.push_back({*own_end, flight.version, 0});
@@ -119,18 +120,18 @@ void Worker::advance(int body) {
   // one is cancelled. Where another worker owns that impact, the advance is deferred too.
   for (const Due& due : found_) to = std::min(to, due.key.time);
   set_horizon(body, to);
-  std::size_t owner = all_.owner[static_cast<std::size_t>(body)];
+  Site site = all_.site_of(body);
   for (const Due& due : found_) {
     if (due.key.time > to) continue;
-    const std::size_t its_owner = all_.regions > 1 ? all_.owner_of(due.key) : kBoundary;
-    if (its_owner != owner) owner = kBoundary;
-    push(due, its_owner);
+    const Site its = all_.regions > 1 ? all_.site_of(due.key) : Site{};
+    site = common(site, its);
+    push(due, its);
   }
-  schedule(body, owner);
+  schedule(body, site);
 }
 
 // After a rollback nothing may be lost: an advance that is impossible here is deferred to the
-// worker of the boundary, which reports why it is impossible.
+// worker that runs alone, which reports why it is impossible.
 void Worker::advance_or_defer(int body) {
   if (is_alone()) return advance(body);
   try {
@@ -138,15 +139,15 @@ void Worker::advance_or_defer(int body) {
   } catch (const engines::OutOfTime&) {
     throw;
   } catch (...) {
-    schedule_recheck(body, kBoundary);
+    schedule_recheck(body, Site{});
   }
 }
 
-void Worker::push(const Due& due, std::size_t owner) {
-  if (is_alone() || owner == owner_)
-    all_.domains[owner].queue.push(due);
+void Worker::push(const Due& due, const Site& site) {
+  if (is_mine(site))
+    all_.domains[all_.domain_of(site)].queue.push(due);
   else
-    deferred.due.push_back(due);
+    deferred.due.emplace_back(due, site);
 }
 
 void Worker::advance_member(int body, const Flight& flight, double from, double to,
@@ -168,15 +169,19 @@ void Worker::advance_member(int body, const Flight& flight, double from, double 
 
 // ---- Ownership -------------------------------------------------------------------------------
 
-// While other threads run: only within the region, and where the visible part of the boundary does
-// not change. Segments change: a query computes their steps.
-bool Worker::may_enter(const Box& box) const {
-  if (!holds(all_.domains[owner_].region, box)) return false;
-  if (!world().processes()) return true;
+// While other threads run: only within the territory, and where the visible part of the boundary
+// does not change. Segments change: a query computes their steps. A body on its own may cross the
+// other pass's cut meanwhile, members of a process must not: they keep one site.
+bool Worker::may_enter(int body, const Box& box) const {
+  if (!world().processes())
+    return holds(all_.territories[static_cast<std::size_t>(pass_)][territory_], box);
+  if (!holds(all_.domains[all_.domain_of(body)].region, box)) return false;
   bool stands_still = true;
-  all_.domains[kBoundary].pairs.for_each_in(box, [&](int other) {
-    stands_still = stands_still && (!world().can_move(other) || has_only_flown(other));
-  });
+  for (const Domain* domain : visible_)
+    if (!is_mine(domain->site) && domain->hull.overlaps(box))
+      domain->pairs.for_each_in(box, [&](int other) {
+        stands_still = stands_still && (!world().can_move(other) || has_only_flown(other));
+      });
   return stands_still;
 }
 
@@ -187,46 +192,51 @@ bool Worker::has_only_flown(int body) const {
   return true;
 }
 
+// A body whose box leaves a territory belongs to the boundary of that pass from now on.
 void Worker::enter_box(int body, const Box& box) {
-  std::uint8_t& owner = all_.owner[static_cast<std::size_t>(body)];
-  if (is_alone() && owner != kBoundary && !holds(all_.domains[owner].region, box)) {
-    all_.domains[owner].pairs.remove(body);
-    owner = kBoundary;
+  if (all_.domains.size() == 1) return all_.domains.front().pairs.set_box(body, box);
+  Site site = all_.site_of(body);
+  for (std::size_t pass = 0; pass < kPasses; ++pass) {
+    std::uint8_t& territory = site.territory[pass];
+    if (territory != kBoundary && !holds(all_.territories[pass][territory], box))
+      territory = kBoundary;
   }
-  all_.domains[owner].pairs.set_box(body, box);
+  all_.enter(body, site, box);
+}
+
+// Members of a process that begins have one site from now on, so that one thread at a time computes
+// its segments in the next pass, too.
+void Worker::keep_together(const std::vector<engines::BegunFlight>& begun) {
+  Site site = all_.site_of(begun.front().body);
+  for (const engines::BegunFlight& flight : begun) site = common(site, all_.site_of(flight.body));
+  for (const engines::BegunFlight& flight : begun)
+    if (all_.site_of(flight.body) != site)
+      all_.enter(flight.body, site, all_.domains.front().pairs.box(flight.body));
 }
 
 // After a rollback, what a body swept beyond that time concerns no other body.
 void Worker::shrink_box(int body) {
   const double to = process(body).horizon;
   Box box = swept_box(body, std::min(to, global_virtual_time()), to);
-  // not out of the region, whatever rounding does: the previous box contains all that it sweeps
-  if (!is_alone()) {
-    const Box& had = all_.domains[owner_].pairs.box(body);
+  // not out of the territory, whatever rounding does: the previous box contains all that it sweeps
+  if (!is_alone() || is_between_passes) {
+    const Box& had = all_.domains.front().pairs.box(body);
     box = {box.low.cwiseMax(had.low), box.high.cwiseMin(had.high)};
   }
   enter_box(body, box);
 }
 
-// Bodies of the boundary may be met everywhere, those of a region within it and by the boundary's.
+// The grids have cells of one size: the body's own are looked up in each of them.
 template <class Found>
 void Worker::for_each_partner(int body, const Box& box, const Found& found) const {
-  const std::size_t owner = all_.owner[static_cast<std::size_t>(body)];
-  all_.domains[owner].pairs.for_each_partner(body, found);
-  for_each_elsewhere(owner, box, found);
+  for (const Domain* domain : visible_)
+    if (domain->hull.overlaps(box)) domain->pairs.for_each_partner(body, found);
 }
 
 template <class Found>
-void Worker::for_each_in(std::size_t owner, const Box& box, const Found& found) const {
-  all_.domains[owner].pairs.for_each_in(box, found);
-  for_each_elsewhere(owner, box, found);
-}
-
-template <class Found>
-void Worker::for_each_elsewhere(std::size_t owner, const Box& box, const Found& found) const {
-  if (owner != kBoundary) return all_.domains[kBoundary].pairs.for_each_in(box, found);
-  for (std::size_t k = 1; k < all_.domains.size(); ++k)
-    if (all_.domains[k].region.overlaps(box)) all_.domains[k].pairs.for_each_in(box, found);
+void Worker::for_each_in(const Box& box, const Found& found) const {
+  for (const Domain* domain : visible_)
+    if (domain->hull.overlaps(box)) domain->pairs.for_each_in(box, found);
 }
 
 // A body's local virtual time rises or falls.
@@ -330,16 +340,16 @@ void Worker::offer(int body, const Flight& flight, int other, const Flight& its,
   found_.push_back({key, is_a ? flight.version : its.version, is_a ? its.version : flight.version});
 }
 
-void Worker::schedule(int body, std::size_t owner) {
+void Worker::schedule(int body, const Site& site) {
   LogicalProcess& going = process(body);
-  push({{going.horizon, kAfterAll, StampKind::kAdvance, body, -1}, ++going.version, 0}, owner);
+  push({{going.horizon, kAfterAll, StampKind::kAdvance, body, -1}, ++going.version, 0}, site);
 }
 
 // After a rollback the impacts of that time are forgotten, those of the very instant, too: one of
 // them may precede all that is known of the body.
-void Worker::schedule_recheck(int body, std::size_t owner) {
+void Worker::schedule_recheck(int body, const Site& site) {
   LogicalProcess& going = process(body);
-  push({{going.horizon, 0, StampKind::kRecheck, body, -1}, ++going.version, 0}, owner);
+  push({{going.horizon, 0, StampKind::kRecheck, body, -1}, ++going.version, 0}, site);
 }
 
 }  // namespace tumble::a4

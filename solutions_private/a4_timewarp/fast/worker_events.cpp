@@ -19,6 +19,57 @@ constexpr std::size_t kMostOfABody = 256;
 
 }  // namespace
 
+Worker::Worker(Shared& all, int pass, std::uint8_t territory)
+    : all_(all),
+      pass_(pass),
+      territory_(territory),
+      random_(all.faults.seed + territory +
+              (pass > 0 ? static_cast<std::uint64_t>(all.regions) : 0)) {
+  for (Domain& domain : all.domains) {
+    const bool is_of_boundary =
+        !is_alone() && domain.site.territory[static_cast<std::size_t>(pass)] == kBoundary;
+    if (is_mine(domain.site)) mine_.push_back(&domain);
+    if (is_mine(domain.site) || is_of_boundary) visible_.push_back(&domain);
+  }
+}
+
+bool Worker::is_mine(const EventStamp& key) const {
+  if (is_alone()) return true;
+  if (key.kind == StampKind::kCallback) return false;
+  for (const int body : {key.body_a, key.body_b})
+    if (all_.can_move(body) && !is_mine(body)) return false;
+  return true;
+}
+
+// Whether all that share a segment with a body, now or as far back as a rollback may go, are this
+// worker's. In the first pass they are; a process of the first pass may have taken a body to the
+// boundary of the second, and left there the bodies of its earlier processes.
+bool Worker::is_whole(int body) const {
+  if (pass_ <= 0 || !world().processes()) return true;
+  const FlightHistory& flights = history(body);
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    if (flights[k].segment < 0) continue;
+    for (const int member : world().all_processes().segments().members(flights[k].segment))
+      if (!is_mine(member)) return false;
+  }
+  return true;
+}
+
+bool Worker::is_whole(const EventStamp& key) const {
+  for (const int body : {key.body_a, key.body_b})
+    if (all_.can_move(body) && !is_whole(body)) return false;
+  return true;
+}
+
+// The one with the first event of all; null: all queues are empty.
+Domain* Worker::first_domain() const {
+  Domain* first = nullptr;
+  for (Domain* domain : mine_)
+    if (!domain->queue.empty() && (!first || domain->queue.front().key < first->queue.front().key))
+      first = domain;
+  return first;
+}
+
 // ---- Impact ----------------------------------------------------------------------------------
 
 // Whether the flight that an event names exists and the event is still to come on it.
@@ -102,7 +153,7 @@ void Worker::collide(const Due& due) {
 
 void Worker::expect_callback(const EventStamp& key) {
   all_.called[key.microstep] = false;
-  push({key, 0, 0}, kBoundary);
+  push({key, 0, 0}, Site{});
 }
 
 // Everything that its bodies did after its time is rolled back.
@@ -115,7 +166,7 @@ void Worker::call(const Due& due) {
       advance(all_.first_member(body));
       is_early = true;
     }
-  if (is_early) return push(due, kBoundary);
+  if (is_early) return push(due, Site{});
   for (const int body : all_.run.receivers(due.key)) {
     const FlightHistory& flights = history(body);
     std::size_t place = flights.size();
@@ -131,6 +182,7 @@ void Worker::call(const Due& due) {
 // All flights that an event on processes begins are recorded as one change, so that a rollback
 // drops all of them.
 void Worker::begin_flights(const Due& due, engines::Discontinuity discontinuity) {
+  if (!is_alone()) keep_together(discontinuity.begun);
   const int change = all_.changes.add(due.key);
   std::uint32_t versions[] = {0, 0};
   for (engines::BegunFlight& begun : discontinuity.begun) {
@@ -276,21 +328,23 @@ double Worker::work_before(double end) {
   const double began = thread_seconds();
   const double last = all_.run.duration();
   // Events in order, to `end` or to the end of the run.
-  engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
+  Domain* next = first_domain();
   const auto is_to_do = [&] {
-    return !queue.empty() && queue.front().key.time < end && queue.front().key.time <= last;
+    return next && next->queue.front().key.time < end && next->queue.front().key.time <= last;
   };
   longest = 0;
-  while (is_to_do()) {
+  for (; is_to_do(); next = first_domain()) {
     if (all_.threads == 1 && longest > kMostOfABody) break;
     if (all_.faults.delay_s > 0) delay();
     if (all_.faults.rollback_every > 0) disturb();
     const Due due = all_.faults.disorder_s > 0
-                        ? next_legal(std::min(last, std::nextafter(end, 0.0)))
-                        : queue.pop();
-    if (!queue.empty()) fetch(queue.front());
-    if (all_.owner_of(due.key) != owner_) {
-      deferred.due.push_back(due);
+                        ? next_legal(next->queue, std::min(last, std::nextafter(end, 0.0)))
+                        : next->queue.pop();
+    if (!next->queue.empty()) fetch(next->queue.front());
+    if (!is_mine(due.key)) {
+      deferred.due.emplace_back(due, beyond(next->site));
+    } else if (!is_whole(due.key)) {
+      defer(due);
     } else if (all_.most_states > 0 && !has_room(due)) {
       ++counters.held_back;
       defer(due);
@@ -309,17 +363,18 @@ double Worker::work_before(double end) {
     }
   }
   now = kInfinity;
+  next = first_domain();
   cpu_seconds += thread_seconds() - began;
-  return is_to_do() ? queue.front().key.time : end;
+  return is_to_do() ? next->queue.front().key.time : end;
 }
 
 // A body that waits for an impact does not advance before it: it would find the same impact again
 // and again.
 void Worker::defer(const Due& due) {
-  deferred.due.push_back(due);
+  deferred.due.emplace_back(due, Site{});
   if (is_advance(due)) return;
   for (const int body : {due.key.body_a, due.key.body_b})
-    if (body >= 0 && world().can_move(body)) schedule(all_.first_member(body), kBoundary);
+    if (all_.can_move(body) && is_whole(body)) schedule(all_.first_member(body), Site{});
 }
 
 // Prefetches the data of the next event while this one is executed: in scenes of many bodies half
@@ -329,15 +384,14 @@ void Worker::fetch(const Due& due) const {
     if (body < 0) continue;
     __builtin_prefetch(&all_.processes[static_cast<std::size_t>(body)]);
     all_.histories.fetch(body);
-    all_.domains[owner_].pairs.fetch(body);
+    all_.domains.front().pairs.fetch(body);
   }
 }
 
 // ---- Fault injection -------------------------------------------------------------------------
 
 // A random event that is not too far ahead of global virtual time.
-Due Worker::next_legal(double last) {
-  engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
+Due Worker::next_legal(engines::EventQueue<Due>& queue, double last) {
   const double latest = std::min(
       last, queue.front().key.time + std::min(all_.faults.disorder_s, all_.optimism_window));
   std::vector<Due> taken;
@@ -355,7 +409,7 @@ void Worker::disturb() {
   const std::vector<int>& movers = world().movers();
   const int body = movers[random_.below(movers.size())];
   const double back = random_.between(0.0, all_.faults.rollback_s);
-  if (!is_mine(body)) return;
+  if (!is_mine(body) || !is_whole(body)) return;
   const double back_to =
       std::max(global_virtual_time(), std::min(process(body).horizon, all_.run.duration()) - back);
   if (back_to < process(body).horizon) roll_back_to(body, back_to);
