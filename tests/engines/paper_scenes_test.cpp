@@ -8,6 +8,7 @@
 
 #include "framework/effects/motor/motor.h"
 #include "framework/scene/sized_scenes.h"
+#include "tests/engines/event_process_scenes.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/support/whole.h"
@@ -240,6 +241,25 @@ TEST(PaperScenes, UndoLittleOfTheirWork) {
       sum += undone / committed;
     }
     EXPECT_LE(sum / static_cast<double>(scenes.size()), 0.15) << threads << " threads";
+  }
+}
+
+// Of processes that fuse and split across territories, too.
+TEST(PaperScenes, AreCommittedAndCountedTheSameHoweverThreadsAreDelayed) {
+  for (const scene::Scene& scene :
+       {sized("avalanche", 60, 0.5), sized("cars", 12, 0.2), tower_and_projectile(5.0)}) {
+    const Trajectory one = run_on(1, scene, {});
+    for (const int threads : {2, 4}) {
+      const Trajectory plain = run_on(threads, scene, {});
+      EXPECT_EQ(difference(one, plain), "") << scene.name << ", " << threads << " threads";
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        engines::FaultInjection delayed;
+        delayed.seed = seed;
+        delayed.delay_s = 2e-5;
+        EXPECT_EQ(run_on(threads, scene, delayed).counters.counts, plain.counters.counts)
+            << scene.name << ", " << threads << " threads, seed " << seed;
+      }
+    }
   }
 }
 

@@ -24,7 +24,7 @@ double work_of(std::span<const WorkLoad> work_loads) {
 
 void sort_along(int axis, std::span<WorkLoad> work_loads) {
   std::sort(work_loads.begin(), work_loads.end(), [axis](const WorkLoad& a, const WorkLoad& b) {
-    return a.middle_world()[axis] < b.middle_world()[axis];
+    return a.middle(axis) < b.middle(axis);
   });
 }
 
@@ -38,8 +38,8 @@ Cut cut_along(int axis, std::span<const WorkLoad> sorted, double work_below) {
   double sum = 0.0;
   while (below + 1 < sorted.size() && sum + 0.5 * sorted[below].work < work_below)
     sum += sorted[below++].work;
-  const double above_m = sorted[below].middle_world()[axis];
-  return {below, below > 0 ? 0.5 * (sorted[below - 1].middle_world()[axis] + above_m) : above_m};
+  const double above_m = sorted[below].middle(axis);
+  return {below, below > 0 ? 0.5 * (sorted[below - 1].middle(axis) + above_m) : above_m};
 }
 
 double work_in_plane(int axis, double place, std::span<const WorkLoad> work_loads) {
@@ -51,9 +51,11 @@ double work_in_plane(int axis, double place, std::span<const WorkLoad> work_load
 }
 
 int longest_axis(std::span<const WorkLoad> work_loads) {
-  Box around;
-  for (const WorkLoad& work_load : work_loads)
-    around.take_in({work_load.middle_world(), work_load.middle_world()});
+  Box around;  // all middles
+  for (const WorkLoad& work_load : work_loads) {
+    const Vector3d middle = 0.5 * (work_load.box_world.low + work_load.box_world.high);
+    around.take_in({middle, middle});
+  }
   int axis = 0;
   (around.high - around.low).maxCoeff(&axis);
   return axis;

@@ -25,7 +25,7 @@ struct WorkLoad {
   engines::Box box_world;  // finite [m]
   double work;             // in any unit, >= 0
 
-  Vector3d middle_world() const { return 0.5 * (box_world.low + box_world.high); }
+  double middle(int axis) const { return 0.5 * (box_world.low[axis] + box_world.high[axis]); }
 };
 
 /// Cuts space recursively, each time into two parts of the same work, across the axis on which the

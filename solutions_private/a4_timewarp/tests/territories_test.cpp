@@ -63,7 +63,7 @@ int axis_between(const std::vector<Box>& two) {
 TEST(Territories, AreCutWhereHalfOfTheWorkIsOnEachSide) {
   std::vector<WorkLoad> bodies = lattice(40, 3, 3);
   for (WorkLoad& body : bodies)
-    if (body.middle_world().x() < 2.0) body.work = 9.0;  // the first fifth
+    if (body.middle(0) < 2.0) body.work = 9.0;  // the first fifth
   const std::vector<Box> two = partition_space(bodies, 2);
   EXPECT_EQ(axis_between(two), 0);
   const double below = work_held(two[0], bodies), above = work_held(two[1], bodies);
@@ -89,7 +89,7 @@ TEST(Territories, FillAllSpaceAndDoNotOverlap) {
          {partition_space(bodies, count), slabs_of_space(bodies, count)}) {
       ASSERT_EQ(boxes.size(), static_cast<std::size_t>(count));
       for (const WorkLoad& body : bodies) {
-        const Vector3d point = body.middle_world();
+        const Vector3d point(body.middle(0), body.middle(1), body.middle(2));
         int times = 0;
         for (const Box& box : boxes) times += holds(box, {point, point}) ? 1 : 0;
         ASSERT_EQ(times, 1) << count << " boxes, at " << point.transpose();
