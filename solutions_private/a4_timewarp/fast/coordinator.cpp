@@ -28,6 +28,7 @@ constexpr int kFewestStates = 8;
 
 // Bounded optimism: the window is adapted so that 5 to 15 % of the integrations are rolled back.
 constexpr double kTooMuchUndone = 0.15, kTooLittleUndone = 0.05, kWiden = 1.3, kNarrow = 0.75;
+constexpr double kHardlyUndone = 0.01;
 constexpr std::uint64_t kIntegrationsToJudgeBy = 2000;
 constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;  // of the first window
 // with several threads, the first window: of the time in which a process advances once
@@ -263,6 +264,7 @@ void Coordinator::adapt_optimism_window() {
       static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
   done_before_ = done;
   undone_before_ = undone;
+  round_ = share < kHardlyUndone ? kLongRound : kRound;
   const double first =
       all_.regions > 1 ? first_optimism_window_ : kOptimismWindowAlone * first_optimism_window_;
   if (share > kTooMuchUndone)

@@ -22,6 +22,12 @@
 
 namespace tumble::a4 {
 
+// With several threads an epoch is this part of the window: at its end processes have completed
+// their advances, not been cut short. The longer one is for runs in which hardly anything is
+// undone: work evens out, and threads wait less often. Elsewhere boxes grow, and more pairs are
+// checked.
+constexpr double kRound = 0.25, kLongRound = 0.5;
+
 class Coordinator {
  public:
   Coordinator(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options,
@@ -65,7 +71,7 @@ class Coordinator {
   double work_as(int thread, const Pass& pass) const;
   void run_epoch(Pass& now);
   double run_pass(Pass& now);
-  bool has_left_over(double end) const;
+  bool is_worth_a_pass() const;
   void work_alone_before(double end);
   void collect_deferred();
   void collect_moves(Worker& worker);
@@ -109,6 +115,7 @@ class Coordinator {
   // started; the epoch before which regions were last cut
   std::uint64_t epochs_ = 0, last_partition_ = 0;
   double first_optimism_window_ = 0.0;  // [s]
+  double round_ = kRound;               // with several threads: of the window is an epoch
   // integrations, at the last adaptation of the window
   std::uint64_t done_before_ = 0, undone_before_ = 0;
   std::int64_t most_kept_ = 0;

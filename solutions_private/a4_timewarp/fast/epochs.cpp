@@ -14,11 +14,11 @@
 namespace tumble::a4 {
 namespace {
 
-// of the window is an epoch: at its end processes have completed their advances, not been cut short
-constexpr double kRound = 0.25;
 // with one thread and several regions: longer epochs check more pairs, shorter ones switch between
 // regions more often
 constexpr double kEpochAlone = 0.125;
+// events that wait in the first pass's boundary, per body
+constexpr double kWorthAPass = 0.04;
 
 }  // namespace
 
@@ -75,13 +75,13 @@ void Coordinator::run_in_epochs() {
 void Coordinator::run_epoch(Pass& now) {
   all_.global_virtual_time = next_time();
   now.end =
-      all_.global_virtual_time + (all_.threads > 1 ? kRound : kEpochAlone) * all_.optimism_window;
+      all_.global_virtual_time + (all_.threads > 1 ? round_ : kEpochAlone) * all_.optimism_window;
   const double began = thread_seconds();
   settle();
   double alone_seconds = thread_seconds() - began;
   double reached = now.end;
   for (now.number = 0; now.number < passes(); ++now.number) {
-    if (now.number > 0 && !has_left_over(now.end)) break;
+    if (now.number > 0 && !is_worth_a_pass()) break;
     reached = run_pass(now);
     const double worked = thread_seconds();
     alone().is_between_passes = true;
@@ -115,12 +115,14 @@ double Coordinator::run_pass(Pass& now) {
   return reached;
 }
 
-// Whether the second pass has something to do.
-bool Coordinator::has_left_over(double end) const {
-  return std::any_of(all_.domains.begin() + 1, all_.domains.end(), [&](const Domain& domain) {
-    return domain.site.territory[0] == kBoundary && !domain.queue.empty() &&
-           domain.queue.front().key.time < end;
-  });
+// Whether the first pass has left enough for all threads together: a pass has two more barriers,
+// and for a few bodies one thread alone is as quick.
+bool Coordinator::is_worth_a_pass() const {
+  std::size_t waiting = 0;
+  for (std::size_t k = 1; k < all_.domains.size(); ++k)
+    if (all_.domains[k].site.territory[0] == kBoundary) waiting += all_.domains[k].queue.size();
+  return static_cast<double>(waiting) >
+         kWorthAPass * static_cast<double>(all_.world().movers().size());
 }
 
 // Threads take the regions in turn, each to the end of the epoch, so that a region's data stays in
