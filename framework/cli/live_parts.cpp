@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <list>
 #include <regex>
 #include <set>
 
@@ -26,6 +27,7 @@
 #include "framework/live/records.h"
 #include "framework/live/recipe.h"
 #include "framework/live/simulate.h"
+#include "framework/modules/call_counts.h"
 #include "framework/modules/names.h"
 #include "framework/scene/load_scene.h"
 
@@ -51,6 +53,40 @@ scene::Scene scene_of(const Context& context, const RunWords& words, const live:
   return scene;
 }
 
+/// What is asked of the modules of a run.
+struct Asked {
+  struct Module {
+    Module(const modules::ModuleKind& of, const std::string& word)
+        : kind(&of), source(word), counts(of.functions), laws(of.functions_of_laws()) {}
+    const modules::ModuleKind* kind;
+    std::string source;
+    modules::CallCounts counts;
+    std::vector<std::string> laws;
+  };
+  std::list<Module> all;  // watched by their addresses
+
+  modules::AnyModule counted(const modules::ModuleKind& kind, const std::string& source,
+                             const modules::AnyModule& module) {
+    for (Module& one : all)  // a sandbox has three copies of a module
+      if (one.kind == &kind) return kind.watched(module, one.counts);
+    Module& one = all.emplace_back(kind, source);
+    return kind.watched(module, one.counts);
+  }
+  std::string as_json() const {
+    Json modules = Json::array();
+    for (const Module& one : all) {
+      Json functions = Json::array();
+      for (std::size_t k = 0; k < one.counts.functions().size(); ++k)
+        functions.push_back({one.counts.functions()[k], one.counts.count(k)});
+      modules.push_back({{"id", one.kind->id},
+                         {"source", one.source},
+                         {"functions", functions},
+                         {"laws", one.laws}});
+    }
+    return dumped(modules);
+  }
+};
+
 live::Simulation simulation_of(const Context& context, RunWords words, const Json& asked,
                                ChosenLaws& chosen) {
   const live::Recipe recipe = live::recipe_of(asked.at("recipe"));
@@ -59,8 +95,11 @@ live::Simulation simulation_of(const Context& context, RunWords words, const Jso
   if (!recipe.changes.engine.empty()) words.engine = recipe.changes.engine;
   if (!recipe.changes.method.empty()) words.method = recipe.changes.method;
   if (recipe.changes.step_s) words.step_s = recipe.changes.step_s;
-  chosen = choose_laws(context, simulation.scene,
-                       parse_module_words(words.modules, context.registry), words.engine);
+  const auto counts = std::make_shared<Asked>();
+  chosen = choose_laws(
+      context, simulation.scene, parse_module_words(words.modules, context.registry), words.engine,
+      [counts](const modules::ModuleKind& kind, const std::string& word,
+               const modules::AnyModule& module) { return counts->counted(kind, word, module); });
   const PlannedRun plan = plan_run(context, simulation.scene, chosen, words);
   simulation.laws = plan.laws;
   simulation.options = plan.options;
@@ -87,6 +126,9 @@ live::Simulation simulation_of(const Context& context, RunWords words, const Jso
     if (!hit) return std::nullopt;
     return live::Hit{hit->body, hit->face, hit->point_world};
   };
+  // Whether a function is written was tried out above: that is no call of the run.
+  for (Asked::Module& one : counts->all) one.counts.clear();
+  simulation.asked = [counts] { return counts->as_json(); };
   return simulation;
 }
 

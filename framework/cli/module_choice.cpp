@@ -285,11 +285,14 @@ bool is_about(const scene::Scene& scene, const ModuleKind& kind) {
 
 /// Adds one module, chosen by a word, to the laws.
 void add_module(const Context& context, const scene::Scene& scene, const ModuleKind& kind,
-                const std::string& word, const fs::path& file, ChosenLaws& result) {
+                const std::string& word, const fs::path& file, const InPlaceOf& in_place_of,
+                ChosenLaws& result) {
   result.modules.push_back({kind.id, word});
   if (word == "library") return;
   if (!file.empty()) {
-    const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
+    SandboxedModule sandboxed = load_sandboxed(context, kind, file);
+    for (auto* depth : {&sandboxed.search, &sandboxed.step, &sandboxed.derivative})
+      depth->module = in_place_of(kind, word, depth->module);
     Laws step, derivative;  // from workers of their own, for calls within calls
     modules::bind_laws(kind, sandboxed.search.module, kind.id + " " + word, result.laws);
     kind.bind(sandboxed.step.module, step);
@@ -304,7 +307,8 @@ void add_module(const Context& context, const scene::Scene& scene, const ModuleK
     return;
   }
   const Laws before = result.laws;
-  modules::bind_laws(kind, load_word(context, kind, word), kind.id + " " + word, result.laws);
+  modules::bind_laws(kind, in_place_of(kind, word, load_word(context, kind, word)),
+                     kind.id + " " + word, result.laws);
   const bool may_stand_in = word == "student" && !is_about(scene, kind) &&
                             before.integrator_source != result.laws.integrator_source;
   if (!may_stand_in) return;
@@ -341,11 +345,13 @@ void refuse_unknown_needs(const scene::Scene& scene, const std::vector<const Mod
 namespace {
 
 /// A module that the scene does not need, for later calls: from the existing build, if it compiles.
-void bind_spare(const Context& context, const ModuleKind& kind, ChosenLaws& result) {
+void bind_spare(const Context& context, const ModuleKind& kind, const InPlaceOf& in_place_of,
+                ChosenLaws& result) {
   const std::string word = best_available(context, kind.id);
   if (kind.is_scheduler || !is_there(context, kind, word)) return;
   try {
-    modules::bind_laws(kind, load_word(context, kind, word), kind.id + " " + word, result.laws);
+    modules::bind_laws(kind, in_place_of(kind, word, load_word(context, kind, word)),
+                       kind.id + " " + word, result.laws);
   } catch (const UserError& error) {
     result.notices.push_back(error.where() + " does not compile; this scene does not need it");
   }
@@ -362,7 +368,10 @@ void expect_module_files(const Context& context, const ModuleWords& words) {
 }
 
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
-                       const std::string& engine) {
+                       const std::string& engine, const InPlaceOf& asked_in_place_of) {
+  const InPlaceOf in_place_of = asked_in_place_of ? asked_in_place_of
+                                                  : [](const ModuleKind&, const std::string&,
+                                                       const AnyModule& module) { return module; };
   const auto kinds = context.registry.all();
   refuse_unknown_needs(scene, kinds);
   const bool has_home = std::any_of(kinds.begin(), kinds.end(),
@@ -405,7 +414,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   // Modules that the scene does not need may still be called (a push by hand): from the existing
   // build, if there is one.
   for (const ModuleKind* kind : kinds) {
-    if (chosen[kind->id].empty()) bind_spare(context, *kind, result);
+    if (chosen[kind->id].empty()) bind_spare(context, *kind, in_place_of, result);
   }
   modules::set_library_motion(result.laws);
   result.laws.rows_are_given = true;
@@ -413,7 +422,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
     const std::string& word = chosen[kind->id];
     if (word.empty()) continue;
     const std::string before = result.laws.constraint_source;
-    add_module(context, scene, *kind, word, files[kind->id], result);
+    add_module(context, scene, *kind, word, files[kind->id], in_place_of, result);
     // Rows of the reference, or of a finished assignment in a scene of another, are not looked at.
     if (result.laws.constraint_source != before)
       result.laws.rows_are_given =

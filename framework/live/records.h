@@ -17,6 +17,7 @@ enum class RecordKind : char {
   kAimed = 'A',    // JSON: what a ray has hit
   kHand = 'P',     // JSON: a point force that was put on a body by hand, as a scene says it
   kTimes = 'V',    // JSON: local virtual times of a timewarp
+  kAsked = 'C',    // JSON: what the run has asked of the modules so far (simulate.h)
   kEnd = 'X',      // JSON: how the run ended
   kRefused = 'U',  // JSON: a UserError
 };

@@ -113,6 +113,7 @@ class LiveRun final : public TrajectorySink {
  private:
   void send_head(const Frame& first);
   void send_times(const VirtualTimes& times, std::size_t from);
+  void send_asked(bool is_now);
   void keep_pace(double time);
   void obey_waiting();
   void obey(const std::string& line);
@@ -134,7 +135,9 @@ class LiveRun final : public TrajectorySink {
   bool has_head_ = false;
   std::size_t moves_sent_ = 0;
   bool is_cut_sent_ = false;
-  Frame last_;  // that has come
+  Frame last_;         // that has come
+  std::string asked_;  // as it was sent last
+  Clock::time_point asked_at_;
   // The pace: at base_wall_ the run was at base_s_.
   Clock::time_point base_wall_;
   double base_s_ = kUnset;
@@ -162,7 +165,20 @@ void LiveRun::frame(const Frame& frame) {
   }
   send(RecordKind::kFrame, pack(frame));
   if (simulation_.times) send_times(*simulation_.times, moves_sent_);
+  send_asked(simulation_.is_paused);
   keep_pace(frame.time);
+}
+
+void LiveRun::send_asked(bool is_now) {
+  constexpr double kEvery = 0.3;  // s
+  const auto now = Clock::now();
+  if (!simulation_.asked || (!is_now && now - asked_at_ < std::chrono::duration<double>(kEvery)))
+    return;
+  asked_at_ = now;
+  std::string asked = simulation_.asked();
+  if (asked == asked_) return;
+  asked_ = std::move(asked);
+  send(RecordKind::kAsked, asked_);
 }
 
 void LiveRun::send_head(const Frame& first) {
@@ -212,6 +228,7 @@ void LiveRun::send_times(const VirtualTimes& times, std::size_t from) {
 
 void LiveRun::end(const Counters& counters, const std::string& stopped_by) {
   if (simulation_.times) send_times(*simulation_.times, moves_sent_);
+  send_asked(true);
   Json end{{"stopped_by", stopped_by}, {"time_s", has_head_ ? last_.time : 0.0}};
   end["faults"] = in_words(counters.faults);
   end["notices"] = counters.notices;
@@ -251,6 +268,7 @@ void LiveRun::obey(const std::string& line) {
   const std::string what = command.at("do");
   if (what == "pace") {
     simulation_.is_paused = command.at("paused");
+    if (simulation_.is_paused && has_head_) send_asked(true);
     simulation_.speed = command.at("speed");
     base_s_ = last_.time;
     base_wall_ = Clock::now();

@@ -34,6 +34,10 @@ struct Simulation {
   // The first face that a ray hits, by the laws' ray function.
   // posed: the scene with bodies where they are now
   std::function<std::optional<Hit>(const scene::Scene& posed, const Ray& ray)> pick;
+  // What the run has asked of each module so far, JSON: [{"id": "a1", "source": "student",
+  // "functions": [["collision_impulse", 12], ...], "laws": ["collision_impulse", ...]}], where laws
+  // are the functions that a run can ask at all; empty: not counted
+  std::function<std::string()> asked;
 };
 
 /// Runs to the end, or until nobody reads or writes any more.

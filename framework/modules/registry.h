@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/dynamics/laws.h"
+#include "framework/modules/call_counts.h"
 #include "framework/modules/load.h"
 #include "framework/modules/names.h"
 #include "framework/modules/proxy.h"
@@ -31,6 +32,8 @@ struct NamedMethod {
 /// Everything that the framework can do with a module without its header.
 struct ModuleKind : ModuleName {
   std::vector<std::string> functions;  // in header order
+  // those that become laws: only these can the run of a scene ask
+  std::function<std::vector<std::string>()> functions_of_laws;
   // sets laws of a world to the module's functions
   std::function<void(const AnyModule&, Laws&)> bind;
   std::function<void(const AnyModule&, Channel&)> serve;  // on the worker's side
@@ -64,6 +67,7 @@ class Registry {
     static_cast<ModuleName&>(kind) = find_name(assignment_names(), Module::kId);
     Module names;
     Module::visit(names, [&](const char* name, auto&) { kind.functions.push_back(name); });
+    kind.functions_of_laws = [bind] { return modules::functions_of_laws<Module>(bind); };
     kind.bind = [bind](const AnyModule& module, Laws& laws) {
       bind(*static_cast<const Module*>(module.get()), laws);
     };
