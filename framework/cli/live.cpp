@@ -2,7 +2,9 @@
 // pushed, pulled and changed while it goes.
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -31,6 +33,7 @@ struct LiveWords : RunWords {
 };
 
 /// "a3" becomes a scene of it. @return the assignment's id; empty for a scene
+/// @throws UserError for an assignment that there is not
 std::string scene_of_assignment(const Context& context, std::string& word) {
   for (const modules::ModuleKind* kind : context.registry.all())
     if (kind->id == word) {
@@ -45,6 +48,13 @@ std::string scene_of_assignment(const Context& context, std::string& word) {
       word = scenes.front().stem().string();
       return kind->id;
     }
+  if (std::regex_match(word, std::regex("a[0-9]+")) && !fs::exists(word)) {
+    std::string known;
+    for (const modules::ModuleKind* kind : context.registry.all())
+      known += (known.empty() ? "" : ", ") + kind->id;
+    throw UserError(word, "there is no such assignment",
+                    "Known: " + known + ". A scene has a name: tumble scenes lists them.");
+  }
   return "";
 }
 
@@ -108,9 +118,10 @@ std::string handout_page(const Context& context, const std::string& name) {
 
 /// What was changed in the page comes first. Its engine and its step stand in the saved file; those
 /// of the command line do not.
-std::string again(const LiveWords& words, const fs::path& file, const live::Changes& changes,
-                  const std::string& modules) {
-  std::string command = "tumble run " + grading::shell_word(file.string());
+/// @param program  as it is called where the user is
+std::string again(const std::string& program, const LiveWords& words, const fs::path& file,
+                  const live::Changes& changes, const std::string& modules) {
+  std::string command = program + " run " + grading::shell_word(file.string());
   const auto add = [&](const std::string& flag, const std::string& value) {
     if (!value.empty()) command += " " + flag + " " + value;
   };
@@ -136,6 +147,103 @@ void expect_saves(const LiveWords& words, bool can_save) {
   }
 }
 
+live::SceneStart start_of(const Context& context, const LiveWords& words) {
+  const scene::Scene scene = scene_of_words(context, words, true);
+  live::SceneStart start;
+  start.name = scene.name;
+  start.title = scene.title;
+  start.recipe.file = scene.file;
+  if (fs::is_regular_file(scene.file) && scene.file.extension() == ".json")
+    start.recipe.document = text_of(scene.file);
+  start.simulator = words_of_part(words, "simulate", "");
+  start.locate = words_of_part(words, "locate", "");
+  start.again = [words, program = context.is_installed ? "tumble" : "./tumble"](
+                    const fs::path& file, const live::Changes& changes, const std::string& laws) {
+    return again(program, words, file, changes, laws);
+  };
+  return start;
+}
+
+/// Those of a module's laws that a file says are not written.
+bool lacks_laws(const modules::ModuleKind& kind, const fs::path& file) {
+  if (!fs::is_regular_file(file)) return true;
+  const std::string text = text_of(file);
+  const std::vector<std::string> laws = kind.functions_of_laws();
+  return std::any_of(laws.begin(), laws.end(), [&](const std::string& law) {
+    return std::regex_search(text, std::regex("NotImplemented\\s*\\(\\s*\"" + law + "\""));
+  });
+}
+
+/// The scenes that can be chosen in the page, on the code that the sitting is about.
+class Choice {
+ public:
+  /// @param own  id of the assignment that the sitting is about; empty: none
+  Choice(const Context& context, const LiveWords& words, const std::string& own,
+         const live::SceneStart& first)
+      : context_(context), words_(words), first_name_(first.name), own_(own) {
+    std::map<std::string, std::string> ids;  // by folder
+    for (const modules::ModuleKind* kind : context.registry.all()) ids[kind->folder] = kind->id;
+    for (const ListedScene& listed : listed_scenes(context)) {
+      if (!listed.problem.empty()) continue;
+      const auto home = ids.find(listed.folder);
+      scenes_.push_back({.name = listed.name,
+                         .title = listed.title,
+                         .home = home == ids.end() ? "" : home->second,
+                         .needs = listed.needs,
+                         .unwritten = {}});
+    }
+    const bool is_listed = std::any_of(scenes_.begin(), scenes_.end(),
+                                       [&](const auto& one) { return one.name == first.name; });
+    if (!is_listed) scenes_.insert(scenes_.begin(), {first.name, first.title, "", {}, {}});
+    // Other scenes run on the same file as the first one.
+    const ModuleWords modules = parse_module_words(words.modules, context.registry);
+    modules_ = words.modules;
+    if (!own.empty() && !modules.contains(own) && !modules.contains(""))
+      modules_ += (modules_.empty() ? "" : ",") + own + "=student";
+  }
+
+  std::vector<live::OfferedScene> offered() const {
+    std::map<std::string, bool> is_stub;  // of the student's file, by id
+    for (const modules::ModuleKind* kind : context_.registry.all())
+      is_stub[kind->id] = lacks_laws(*kind, own_file(context_, kind->folder));
+    std::vector<live::OfferedScene> all = scenes_;
+    for (live::OfferedScene& scene : all) {
+      std::vector<std::string> asked = scene.needs;
+      if (!scene.home.empty() && std::find(asked.begin(), asked.end(), scene.home) == asked.end())
+        asked.push_back(scene.home);
+      for (const std::string& id : asked)
+        if (id != own_ && runs_on_student(scene, id) && is_stub[id]) scene.unwritten.push_back(id);
+    }
+    return all;
+  }
+
+  /// @throws UserError for a name that was not offered
+  live::SceneStart named(const std::string& name) const {
+    if (name == first_name_) return start_of(context_, words_);
+    if (std::none_of(scenes_.begin(), scenes_.end(),
+                     [&](const auto& one) { return one.name == name; }))
+      throw UserError(name, "there is no such scene", "");
+    LiveWords words;
+    words.scene = name;
+    words.modules = modules_;
+    return start_of(context_, words);
+  }
+
+ private:
+  /// Else on a reference, on a file that was named, or on the library.
+  bool runs_on_student(const live::OfferedScene& scene, const std::string& id) const {
+    const ModuleWords modules = parse_module_words(modules_, context_.registry);
+    const auto word = modules.contains(id) ? modules.find(id) : modules.find("");
+    if (word != modules.end()) return word->second == "student";
+    return scene.home == id || !fs::exists(context_.build / "modules" / (id + "_reference.so"));
+  }
+
+  const Context& context_;
+  LiveWords words_;
+  std::string first_name_, own_, modules_;
+  std::vector<live::OfferedScene> scenes_;
+};
+
 void live_verb(Context& context, LiveWords& words) {
   if (words.part == "judge") return judge_for_page(context, words, words.id);
   if (words.part == "locate") return locate_for_page(context, words);
@@ -149,14 +257,9 @@ void live_verb(Context& context, LiveWords& words) {
   check_plan_words(words);
 
   live::Sitting sitting;
-  sitting.name = scene.name;
+  static_cast<live::SceneStart&>(sitting) = start_of(context, words);
   sitting.port = words.port;
-  sitting.recipe.file = scene.file;
-  if (fs::is_regular_file(scene.file) && scene.file.extension() == ".json")
-    sitting.recipe.document = text_of(scene.file);
   expect_saves(words, !sitting.recipe.document.empty());
-  sitting.simulator = words_of_part(words, "simulate", "");
-  sitting.locate = words_of_part(words, "locate", "");
   sitting.watched = watched_files(context, modules);
   sitting.judge = [words](const std::string& judged) {
     return words_of_part(words, "judge", judged);
@@ -169,8 +272,9 @@ void live_verb(Context& context, LiveWords& words) {
       sitting.first_judged = one.id;
   }
   sitting.saves = words.saves.value_or(kSaves);
-  sitting.again = [words](const fs::path& file, const live::Changes& changes,
-                          const std::string& laws) { return again(words, file, changes, laws); };
+  const Choice choice(context, words, sitting.first_judged, sitting);
+  sitting.offered = [&choice] { return choice.offered(); };
+  sitting.scene_named = [&choice](const std::string& name) { return choice.named(name); };
   sitting.handout = [&context](const std::string& name) { return handout_page(context, name); };
   const live::Left left = live::serve(sitting, [&](const std::string& address) {
     fmt::print("{}\n", address);
@@ -182,8 +286,11 @@ void live_verb(Context& context, LiveWords& words) {
   fmt::print(stderr, "\nended; nothing is left running\n");
   for (const fs::path& kept : left.scenes) fmt::print(stderr, "kept: {}\n", kept.string());
   if (left.has_unsaved)
-    fmt::print(stderr, "not kept: what was done by hand since {}; Save in the page keeps it\n",
-               left.scenes.empty() ? "the start" : "the last scene was saved");
+    fmt::print(
+        stderr,
+        "not kept: what was done by hand since {}; 'Save scene' in the page keeps it, and says "
+        "'not saved' beside it until then\n",
+        left.scenes.empty() ? "the start" : "the last scene was saved");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace tumble::live {
 
 void Session::run(int stop) {
-  to_judge_ = sitting_.first_judged;
+  if (!sitting_.first_judged.empty()) to_judge_.insert(sitting_.first_judged);
   begin("begin", 0.0, recipe_);
   for (;;) {
     std::vector<pollfd> waiting = {

@@ -100,7 +100,10 @@ void Session::take_posts() {
     try {
       obey(text);
     } catch (const UserError& error) {
-      tell({{"kind", "notice"}, {"text", error.what()}});
+      Json notice{{"kind", "notice"}, {"text", error.what()}};
+      if (const Json command = Json::parse(text, nullptr, false); command.is_object())
+        notice["about"] = command.value("do", "");
+      tell(notice);
     } catch (const nlohmann::json::exception&) {
       tell({{"kind", "notice"}, {"text", "the page asked for something that is not understood"}});
     }
@@ -125,11 +128,13 @@ void Session::greet(Mailbox& page) {
   const auto put = [&](std::string text) {
     page.put(std::make_shared<const std::string>(std::move(text)));
   };
-  put(event_of("say", dumped({{"kind", "hello"},
-                              {"name", sitting_.name},
-                              {"can_save", !sitting_.recipe.document.empty()},
-                              {"speed", speed_},
-                              {"paused", is_paused_}})));
+  Json hello = scene_words();
+  hello["kind"] = "hello";
+  hello["speed"] = speed_;
+  hello["paused"] = is_paused_;
+  hello["is_unsaved"] = is_unsaved_;
+  put(event_of("say", dumped(hello)));
+  if (sitting_.offered) put(event_of("say", dumped(scenes_words())));
   if (!current_.head().empty()) {
     Json words = run_words();
     words["head"]["from_s"] = 0.0;
@@ -151,7 +156,9 @@ void Session::greet(Mailbox& page) {
   if (current_.is_full())
     put(event_of("say", dumped({{"kind", "limit"}, {"text", current_.limit_in_words()}})));
   for (const std::string& text : times_) put(event_of("say", text));
-  for (const std::string* text : {&trouble_, &verdicts_, &difference_, &end_, &saved_})
+  for (const auto& [id, text] : verdicts_) put(event_of("say", text));
+  if (judge_) put(event_of("say", dumped({{"kind", "judging"}, {"id", judging_}})));
+  for (const std::string* text : {&trouble_, &asked_, &difference_, &end_, &saved_})
     if (!text->empty()) put(event_of("say", *text));
 }
 
@@ -200,6 +207,8 @@ void Session::obey(const std::string& text) {
     if (!command.value("keep", false)) changed.pushes.clear();
     if (!changed.document.empty()) document_of(changed);  // throws where it cannot be done
     begin("change", 0.0, changed);
+  } else if (what == "scene") {
+    choose_scene(command.at("name"));
   } else if (what == "judge") {
     judge(command.value("id", sitting_.first_judged));
   } else if (what == "save") {

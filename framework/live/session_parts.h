@@ -5,6 +5,7 @@
 #include <sys/eventfd.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -45,7 +46,11 @@ struct Simulator {
 class Session {
  public:
   Session(const Sitting& sitting, SaveWatch& saves)
-      : sitting_(sitting), saves_(saves), recipe_(sitting.recipe), saved_recipe_(as_text(recipe_)) {
+      : sitting_(sitting),
+        saves_(saves),
+        scene_(sitting),
+        recipe_(sitting.recipe),
+        saved_recipe_(as_text(recipe_)) {
     wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   }
   ~Session() { ::close(wake_); }
@@ -56,10 +61,7 @@ class Session {
   /// @param stop  a descriptor that becomes readable when all is to end
   void run(int stop);
   void close_pages();
-  /// A scene that is made by code cannot be saved: what is done to it is never kept.
-  Left left() const {
-    return {scenes_, !recipe_.document.empty() && as_text(wanted()) != saved_recipe_};
-  }
+  Left left() const;
 
  private:
   // From threads of the server.
@@ -70,6 +72,11 @@ class Session {
   // In the thread of run().
   void take_posts();
   void greet(Mailbox& page);
+  void choose_scene(const std::string& name);
+  Json scene_words() const;
+  Json scenes_words() const;
+  void look_for_unsaved();
+  void tell_unsaved(bool is_unsaved);
   void tell(const Json& what) { send(event_of("say", dumped(what))); }
   void send(std::string text);
   void obey(const std::string& text);
@@ -86,10 +93,12 @@ class Session {
   void hear_starting(Record record);
   void lost(Simulator& simulator);
   void hand_acted(const std::string& text);
+  void asked(const std::string& modules);
   void trouble(Json what);
   void locate(const std::string& said);
   void listen_to_locator();
   void judge(const std::string& id);
+  void judge_next();
   void listen_to_judge();
   void compare();
   void save();
@@ -105,7 +114,16 @@ class Session {
   std::vector<std::shared_ptr<Mailbox>> new_pages_;
 
   std::vector<std::shared_ptr<Mailbox>> pages_;
-  Recipe recipe_;                              // of the run that is shown, with what a hand did
+  SceneStart scene_;  // that is shown
+  // What was done to scenes that were left for another one, by name.
+  struct LeftScene {
+    Recipe recipe;
+    std::string saved_recipe;
+  };
+  std::map<std::string, LeftScene> left_scenes_;
+  std::map<std::string, Json> asked_of_scenes_;  // ids and functions, as far as runs have shown
+  bool is_unsaved_ = false;                      // as it was told last
+  Recipe recipe_;                                // of the run that is shown, with what a hand did
   std::string saved_recipe_;                   // as it was when it was last saved, or at the start
   std::vector<std::filesystem::path> scenes_;  // saved
   std::vector<std::string> pushes_of_former_;
@@ -119,10 +137,12 @@ class Session {
   std::chrono::steady_clock::time_point compared_at_ = std::chrono::steady_clock::now();
   std::string reason_ = "begin";
   // Said again to pages that are opened later: JSON; empty: nothing.
-  std::string trouble_, verdicts_, difference_, end_, saved_;
+  std::string trouble_, difference_, end_, saved_, asked_;
+  std::map<std::string, std::string> verdicts_;  // by id
   std::vector<std::string> times_;
   std::unique_ptr<Child> judge_;
-  std::string judging_, judge_text_, judge_talk_, to_judge_;
+  std::string judging_, judge_text_, judge_talk_;
+  std::set<std::string> to_judge_;  // ids
   std::unique_ptr<Child> locator_;
   std::string place_;                    // that it has found
   std::unique_ptr<Simulator> checking_;  // whether a saved scene runs again byte for byte

@@ -26,12 +26,13 @@ std::string for_people(const std::string& talk) {
 
 void Session::begin(const std::string& reason, double from_s, const Recipe& recipe) {
   // The recipe may be the one of the run that is starting, which ends with the assignment.
-  starting_ = std::make_unique<Simulator>(sitting_.simulator, from_s, reason, recipe);
+  starting_ = std::make_unique<Simulator>(scene_.simulator, from_s, reason, recipe);
   starting_->child.say(dumped({{"recipe", as_text(starting_->recipe)},
                                {"from_s", from_s},
                                {"speed", speed_},
                                {"paused", true}}));
   tell({{"kind", "starting"}, {"reason", reason}});
+  look_for_unsaved();
 }
 
 // Nobody looks: nothing is held, and nothing moves.
@@ -59,6 +60,7 @@ void Session::adopt(const std::string& head) {
   }
   compared_until_ = std::min(compared_until_, current_.end_s());
   has_difference_ = false;
+  asked_.clear();
   difference_.clear();
   times_.clear();
   end_.clear();
@@ -67,7 +69,8 @@ void Session::adopt(const std::string& head) {
   words["head"] = Json::parse(head);
   tell(words);
   set_pace();
-  if (!to_judge_.empty()) judge(std::exchange(to_judge_, ""));
+  if (reason_ == "code") tell(scenes_words());  // a module may be written now
+  judge_next();
 }
 
 void Session::listen_to(std::unique_ptr<Simulator>& simulator) {
@@ -111,17 +114,23 @@ void Session::hear_starting(Record record) {
     trouble({{"title", "The run stopped"},
              {"text", why.empty() ? "it ended before its first frame" : why}});
     if (!why.empty()) locate(why);
+    look_for_unsaved();
+    judge_next();
     return;
   }
   if (record.kind != RecordKind::kRefused) return;
   Json refused = Json::parse(record.bytes);
   const std::string problem = refused.at("problem");
-  refused["title"] = problem.starts_with("does not compile") ? "Does not compile"
+  const bool compiles = !problem.starts_with("does not compile");
+  refused["title"] = !compiles                               ? "Does not compile"
                      : refused.value("not_attempted", false) ? "Not attempted"
                                                              : "The scene cannot begin";
   refused["text"] = problem;
+  if (!compiles) refused["remedy"] = "";  // for the command line
   starting_->has_ended = true;
   trouble(refused);
+  look_for_unsaved();
+  if (compiles) judge_next();
 }
 
 void Session::hear(Simulator& from, Record record) {
@@ -153,6 +162,7 @@ void Session::hear(Simulator& from, Record record) {
       send(event_of("say", times_.back()));
       break;
     }
+    case RecordKind::kAsked: asked(record.bytes); break;
     case RecordKind::kEnd: {
       Json end = Json::parse(record.bytes);
       end["kind"] = "end";
@@ -160,7 +170,7 @@ void Session::hear(Simulator& from, Record record) {
       from.has_ended = true;
       send(event_of("say", end_));
       if (const std::string why = end.value("stopped_by", ""); !why.empty()) {
-        trouble({{"title", "The run stopped"}, {"text", why}});
+        trouble({{"title", "The run stopped"}, {"text", why}, {"ends_run", true}});
         locate(why);
       }
       break;
@@ -169,6 +179,7 @@ void Session::hear(Simulator& from, Record record) {
       Json refused = Json::parse(record.bytes);
       refused["title"] = refused.value("not_attempted", false) ? "Not attempted" : "Stopped";
       refused["text"] = refused.at("problem");
+      refused["ends_run"] = true;
       from.has_ended = true;
       trouble(refused);
       break;
@@ -188,14 +199,28 @@ void Session::lost(Simulator& simulator) {
     said = code > 128 ? fmt::format("ended by signal {} ({})", code - 128, ::strsignal(code - 128))
                       : fmt::format("ended with code {}", code);
   trouble({{"title", said.find("out of time") != std::string::npos ? "Out of time" : "Crashed"},
-           {"text", said}});
+           {"text", said},
+           {"ends_run", &simulator == running_.get()}});
   locate(simulator.talk);
+  if (&simulator == starting_.get()) judge_next();
+}
+
+// What the run has asked of the modules: said, and kept by scene.
+void Session::asked(const std::string& modules) {
+  const Json all = Json::parse(modules);
+  asked_ = dumped({{"kind", "asked"}, {"scene", scene_.name}, {"modules", all}});
+  send(event_of("say", asked_));
+  Json& kept = asked_of_scenes_[scene_.name];
+  for (const Json& module : all)
+    for (const Json& function : module.at("functions"))
+      if (function.at(1) > 0)
+        kept[module.at("id").get<std::string>()][function.at(0).get<std::string>()] = true;
 }
 
 // In which line it was: comes when it has been found.
 void Session::locate(const std::string& said) {
-  if (sitting_.locate.empty()) return;
-  locator_ = std::make_unique<Child>(sitting_.locate);
+  if (scene_.locate.empty()) return;
+  locator_ = std::make_unique<Child>(scene_.locate);
   locator_->say(said);
   locator_->close_input();
   place_.clear();
@@ -222,6 +247,7 @@ void Session::hand_acted(const std::string& text) {
   if (!runs_again) {
     recipe_.pushes.push_back(dumped(push));
     tell({{"kind", "push"}, {"push", push}});
+    tell_unsaved(!recipe_.document.empty());
     return;
   }
   // The run that is shown goes on without the push: it belongs to the one that is begun. A second

@@ -28,7 +28,13 @@ void Session::judge(const std::string& id) {
   judging_ = id;
   judge_text_.clear();
   judge_talk_.clear();
+  to_judge_.erase(id);
   tell({{"kind", "judging"}, {"id", id}});
+}
+
+// One after the other: two builds at once would be in each other's way.
+void Session::judge_next() {
+  if (!judge_ && !to_judge_.empty()) judge(std::string(*to_judge_.begin()));
 }
 
 void Session::listen_to_judge() {
@@ -41,8 +47,8 @@ void Session::listen_to_judge() {
   if (verdicts.is_discarded())
     verdicts = {{"id", judging_}, {"said", judge_talk_}, {"tests", Json::array()}};
   verdicts["kind"] = "verdicts";
-  verdicts_ = dumped(verdicts);
-  send(event_of("say", verdicts_));
+  send(event_of("say", verdicts_[judging_] = dumped(verdicts)));
+  if (!starting_ || starting_->has_ended) judge_next();
 }
 
 // The run against the one before it, as far as both have come since the last look.
@@ -77,25 +83,26 @@ void Session::compare() {
 }
 
 void Session::save() {
-  if (sitting_.recipe.document.empty())
-    throw UserError(sitting_.name, "is made by code and has no scene file to add pushes to",
+  if (scene_.recipe.document.empty())
+    throw UserError(scene_.name, "is made by code and has no scene file to add pushes to",
                     "Begin with a scene file.");
-  if (current_.frames().empty()) throw UserError(sitting_.name, "has not moved yet", "");
+  if (current_.frames().empty()) throw UserError(scene_.name, "has not moved yet", "");
   fs::path file;
   for (int number = 1; file.empty() || fs::exists(file); ++number)
-    file = sitting_.saves / fmt::format("{}_{}.json", sitting_.name, number);
+    file = sitting_.saves / fmt::format("{}_{}.json", scene_.name, number);
   const Json head = Json::parse(current_.head());
   const std::string again =
-      sitting_.again ? sitting_.again(file, recipe_.changes, head.value("modules", "")) : "";
+      scene_.again ? scene_.again(file, recipe_.changes, head.value("modules", "")) : "";
   write_whole(file, saved_document(recipe_, current_.end_s(), again));
   scenes_.push_back(file);
   saved_recipe_ = as_text(recipe_);
+  look_for_unsaved();
   // The same code runs what stands in the file.
   Recipe written;
   written.document = tumble::text_of(file);
-  written.file = sitting_.recipe.file;
+  written.file = scene_.recipe.file;
   written.changes.method = recipe_.changes.method;
-  checking_ = std::make_unique<Simulator>(sitting_.simulator, 0.0, "check", written);
+  checking_ = std::make_unique<Simulator>(scene_.simulator, 0.0, "check", written);
   checking_->child.say(
       dumped({{"recipe", as_text(written)}, {"from_s", 0.0}, {"speed", 1e30}, {"paused", false}}));
   frames_checked_ = 0;
@@ -134,13 +141,16 @@ void Session::check_saved() {
 }
 
 void Session::code_saved(const std::set<fs::path>& files) {
+  bool is_any = false;
   for (const Watched& one : sitting_.watched)
     if (files.contains(fs::absolute(one.file).lexically_normal())) {
-      judge_.reset();  // of the code before; and two builds at once would be in each other's way
-      to_judge_ = one.id;
-      tell({{"kind", "code_saved"}, {"file", one.file.filename().string()}});
-      return begin("code", 0.0, wanted());
+      if (judge_) to_judge_.insert(judging_);  // of the code before
+      judge_.reset();
+      to_judge_.insert(one.id);
+      is_any = true;
+      tell({{"kind", "code_saved"}, {"file", one.file.filename().string()}, {"id", one.id}});
     }
+  if (is_any) begin("code", 0.0, wanted());
 }
 
 }  // namespace tumble::live
