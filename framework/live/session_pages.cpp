@@ -62,8 +62,8 @@ std::optional<Served> Session::file(const std::string& path) const {
     std::string text = "'use strict';\n(() => {\n";
     for (const char* part : {"model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js"})
       text += std::string(report::player_source(part)) + "\n";
-    for (const char* part :
-         {"live_run.js", "live_stage.js", "live_curves.js", "live_panes.js", "live_main.js"})
+    for (const char* part : {"live_run.js", "live_stage.js", "live_curves.js", "live_scenes.js",
+                             "live_verdicts.js", "live_panes.js", "live_said.js", "live_main.js"})
       text += std::string(page_file(part)) + "\n";
     return Served{"text/javascript; charset=utf-8", text + "})();\n"};
   }

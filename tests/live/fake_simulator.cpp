@@ -1,7 +1,8 @@
 // A process that simulates, for tests of the session: it does what a file says, whose name is its
 // first word. "right": frames until nobody reads; "crash": three, then the message of a guarded
 // call and exit code 1; "die": three, then a signal; "refuse": a compiler's error; "stop": an end
-// before the first frame; "talk": as "right", with more on standard error than a pipe holds.
+// before the first frame; "talk": as "right", with more on standard error than a pipe holds. After its
+// head it says that it has asked function f of module a1.
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -31,6 +32,10 @@ int main(int argc, char** argv) {
                      R"({"from_s": 0, "scene": {"camera": {"eye": [0, -5, 0],)"
                      R"( "target": [0, 0, 0]}, "bodies": [{"name": "box",)"
                      R"( "immovable": false, "radius": 1}]}})");
+  live::write_record(
+      1, RecordKind::kAsked,
+      R"([{"id": "a1", "source": "student", "laws": ["f", "g"], "functions": [["f", )"
+      R"(12], ["g", 0], ["h", 0]]}])");
   const bool is_right = what == "right" || what == "talk";
   Frame frame{};
   frame.poses.push_back(

@@ -129,6 +129,91 @@ test('a saved slip shows its verdict; errors, loops and crashes are shown and th
   await live.stop('SIGTERM');
 });
 
+test('the page says what a run asks, and begins another scene on the same code', async () => {
+  const file = join(folder, 'asked_a1_impulse.cpp'), right = readFileSync(join(root, 'solutions_private/a1_impulse/a1_impulse.cpp'), 'utf8');
+  writeFileSync(file, right);
+  const live = await Live.start('poked_box', '--modules', `a1=${file}`), page = await browser.open(live.address);
+  await page.until('tumble.run && tumble.run.length > 60', 'the motion', 120);
+  const asked = JSON.parse(await page.until('document.body.dataset.asked', 'what the run asks', 60));
+  expect(asked.a1 && asked.a1.wrench_of_point_force > 0 && !('angular_acceleration' in asked.a1), `the box asks for the wrench of its push only: ${JSON.stringify(asked)}`);
+  const said = await page.value('document.querySelector(".asked").textContent');
+  expect(/This run asks a1 for wrench_of_point_force \d+/.test(said) && /Only the tests ask: .*angular_acceleration/.test(said) && /Not asked here.*collision_impulse/.test(said), `the pane says it: ${said}`);
+  await page.until('document.body.dataset.verdicts', 'the verdicts', 240);
+  // A save that this scene does not show.
+  const runs = Number(await page.value('document.body.dataset.runs'));
+  writeFileSync(file, `${right}\n// saved again\n`);
+  await page.until(`Number(document.body.dataset.runs) > ${runs}`, 'the run of the save', 240);
+  const same = await page.until('/only for/.test(document.getElementById("difference").textContent) && document.getElementById("difference").textContent', 'that it is the same', 60);
+  expect(/The same as the run before .*This scene asks a1 only for wrench_of_point_force: if you changed another function, look at the tests, or choose a scene/.test(same), `what is said of it: ${same}`);
+  if (pictures) await page.picture(join(pictures, 'same.png'));
+  await page.value('document.getElementById("toScenes").click()');
+  const offered = await page.value('[...document.querySelectorAll(".scenes li")].map(li => li.textContent).join("|")');
+  expect(/poked_box.*asks a1 for wrench_of_point_force/.test(offered), 'the list says what the scene has asked');
+  if (pictures) await page.picture(join(pictures, 'scenes.png'));
+  await page.until('/right/.test(document.body.dataset.verdicts || "") && Number(document.body.dataset.judged) >= 2', 'the verdicts of the save', 240);
+  const judged = await page.value('document.body.dataset.judged');
+  await page.value('[...document.querySelectorAll(".scenes li button")].find(button => button.textContent.includes("collide_off_centre_e05")).click()');
+  await page.until('document.body.dataset.scene === "collide_off_centre_e05" && tumble.run && tumble.run.length > 60 && tumble.hadStage', 'the chosen scene', 120);
+  await page.until('JSON.parse(document.body.dataset.asked).a1.collision_impulse > 0', 'what the impact asks', 60);
+  expect(await page.value('tumble.former === null'), 'no ghost of another scene');
+  expect(await page.value('document.body.dataset.judged') === judged && (await page.value('document.querySelector("#panes").textContent')).includes('tests are right'), 'the verdicts stay');
+  expect((await page.value('tumble.run.facts.modules')).includes(file), 'the same code runs');
+  if (pictures) await page.picture(join(pictures, 'chosen.png'));
+  expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
+  await live.stop();
+});
+
+test('the view finds and follows; changes keep pushes; a refused number stands at its field', async () => {
+  const scene = join(folder, 'leaving.json');
+  writeFileSync(scene, JSON.stringify({ title: 'A box that leaves', duration_s: 5, step_s: 1 / 240, needs: ['a1'], bodies: [{ name: 'box', shape: { box: { size_m: [0.6, 0.6, 0.6] } }, mass_kg: 3, position_m: [0, 0, 1] }],
+    camera: { eye_m: [0, -4, 1], target_m: [0, 0, 1], field_of_view_deg: 40 }, grid: { spacing_m: 0.5 } }));
+  const live = await Live.start(scene, '--modules', 'reference'), page = await browser.open(live.address);
+  await page.until('window.tumble && tumble.run && tumble.run.length > 5 && tumble.hadStage', 'the motion');
+  const box = JSON.parse(await page.value('JSON.stringify(document.getElementById("picture").getBoundingClientRect())')), x = box.x + box.width / 2, y = box.y + box.height / 2;
+  expect(await page.value('document.body.dataset.unsaved') === 'false', 'nothing is unsaved at the start');
+  // From the middle over a tenth of the picture's height: 0.3 of its weight.
+  await page.drag([x, y], [x + 0.1 * box.height, y]);
+  const push = JSON.parse(await page.until('tumble.pushes.length > 0 && JSON.stringify(tumble.pushes[0])', 'the push')), weights = Math.hypot(...push.force_n) / 3 / 9.81;
+  expect(weights > 0.24 && weights < 0.33, `a tenth of the picture is 0.3 of the weight, less what lies before the plane: ${weights}`);
+  expect(/of its weight/.test(await page.value('document.getElementById("aimed").textContent')) || await page.until('/hit box/.test(document.getElementById("aimed").textContent)', 'what was hit'), 'the push is told in weights');
+  await page.until('document.body.dataset.unsaved === "true"', 'that it is not saved');
+  expect(await page.value('getComputedStyle(document.getElementById("unsaved")).visibility') === 'visible', 'the page shows that it is not saved');
+  // Away it goes, to be found again.
+  const y0 = await page.value('document.getElementById("go").getBoundingClientRect().top');
+  await page.value('(async () => { const post = c => fetch("do", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(c) }); await post({ do: "aim", body: 0, point_body_m: [0, 0, 0] }); await post({ do: "push", force_n: [3000, 0, 0], duration_s: 0.1 }); })()');
+  await page.until('/left the picture/.test(document.getElementById("hint").textContent)', 'that the box has left');
+  if (pictures) await page.picture(join(pictures, 'lost.png'));
+  await page.value('document.getElementById("all").click()');
+  await page.until('!/left the picture/.test(document.getElementById("hint").textContent)', 'that it is found', 20);
+  await page.value('document.getElementById("follow").click()');
+  await sleep(2500);
+  const off = await page.value('(() => { const t = tumble.picture.time, at = tumble.run.frameAt(t), place = tumble.picture.orbit.target.clone(), turn = tumble.picture.camera.quaternion.clone(), centre = tumble.picture.orbit.target.clone(); tumble.run.pose(0, at, place, turn); return place.distanceTo(centre); })()');
+  expect(off < 1, `the view follows the box: off by ${off} m`);
+  if (pictures) await page.picture(join(pictures, 'follow.png'));
+  // A change keeps the pushes, and another number is refused where it stands.
+  await page.value('[...document.querySelectorAll("#tabs button")].find(tab => tab.textContent === "Change").click()');
+  expect(/with the 2 pushes so far/.test(await page.value('document.querySelector("#panes").textContent')), 'the pane says that the pushes stay');
+  const enter = (field, value) => page.value(`(() => { const input = document.querySelector('[aria-label="${field}"]'); input.value = '${value}'; input.dispatchEvent(new Event('change')); return input.classList.contains('refused') + ' ' + input.parentElement.textContent; })()`);
+  const runs = Number(await page.value('document.body.dataset.runs'));
+  expect(/^true .*from 0 to 1/.test(await enter('restitution', '7')), 'the number is marked and told of');
+  expect(Number(await page.value('document.body.dataset.runs')) === runs, 'a refused number begins nothing');
+  await enter('restitution', '0.5');
+  await page.until(`Number(document.body.dataset.runs) > ${runs} && tumble.run.length > 2`, 'the changed run');
+  expect(await page.value('tumble.pushes.length') === 2, 'the pushes are kept');
+  expect(await page.value('document.querySelectorAll(".refused").length') === 0, 'the mark has gone');
+  expect(Math.abs(await page.value('document.getElementById("go").getBoundingClientRect().top') - y0) < 0.5, 'no message has moved the buttons');
+  // The menu closes by a key, and by a click beside it.
+  for (const close of ['window.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }))', 'document.getElementById("side").dispatchEvent(new PointerEvent("pointerdown", { bubbles: true }))']) {
+    await page.value('document.getElementById("show").open = true');
+    await page.value(close);
+    expect(await page.value('document.getElementById("show").open') === false, `the menu closes by ${close}`);
+  }
+  await page.value('document.getElementById("save").click()');
+  await page.until('document.body.dataset.unsaved === "false"', 'that it is saved');
+  expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
+  await live.stop();
+});
+
 test('300 bodies', async () => {
   const live = await Live.start('gas', '--n', '300', '--modules', 'reference'), page = await browser.open(live.address, { width: 1280, height: 720 });
   await page.until('tumble.run && tumble.run.length > 30', 'the motion', 120);
@@ -153,7 +238,7 @@ test('poking leaks nothing', async () => {
   for (let round = 0; Date.now() < end; ++round) {
     await page.value('(async () => { const post = c => fetch("do", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(c) }); for (let i = 0; i < 20; ++i) { await post({ do: "aim", body: 0, point_body_m: [0.1, 0.1, 0] }); await post({ do: "push", force_n: [i - 9.5, 0, 0], duration_s: 0.02 }); } })()');
     pokes += 20;
-    if (round % 5 === 4) await page.value('document.getElementById("over").click()');
+    if (round % 5 === 4) await page.value('document.getElementById("bare").click()');
     await sleep(100);
   }
   await sleep(1500);

@@ -33,3 +33,14 @@ const read = origin => {
 };
 for (const [origin, expected] of [[[0, 0, 0], '0.25 -0.5 1 | 0.25 | '], [[1e6, -2e6, 0], '1000000.25 -2000000.5 1 | 0.25 | 1000000']])
   if (read(origin) !== expected) throw new Error(`${read(origin)} instead of ${expected}`);
+
+// What a run asks is sorted, and said where a save has changed nothing; a pull is one line.
+const said = new Script(`${part('framework/live/page/live_scenes.js')}\n${part('framework/live/page/live_panes.js')}\n({ sortAsked, adviceOnSame, foldPushes });`).runInNewContext({ html: () => ({}) });
+const module = { id: 'a1', laws: ['f', 'g'], functions: [['f', 12], ['g', 0], ['h', 0]] };
+const sorted = JSON.stringify(said.sortAsked(module));
+if (sorted !== '{"asked":[["f",12]],"elsewhere":["g"],"testsOnly":["h"]}') throw new Error(sorted);
+if (!said.adviceOnSame([module], 'a1').startsWith('This scene asks a1 only for f: if you changed another function, look at the tests')) throw new Error(said.adviceOnSame([module], 'a1'));
+if (!said.adviceOnSame([module], 'a2').startsWith('This scene asks nothing of a2')) throw new Error(said.adviceOnSame([module], 'a2'));
+const force = (start_s, duration_s, size) => ({ body: 'box', force_n: [size, 0, 0], start_s, duration_s });
+const folded = said.foldPushes([force(0, 0.1, 5), force(1, 1 / 60, 1), force(1 + 1 / 60, 1 / 60, 3), force(1 + 2 / 60, 1 / 60, 2), force(3, 1 / 60, 4)]).map(line => `${line.push.start_s} ${line.count} ${line.most_n}`).join('; ');
+if (folded !== '0 1 5; 1 3 3; 3 1 4') throw new Error(folded);

@@ -14,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/live/session.h"
 
@@ -31,6 +32,7 @@ class LiveSession : public ::testing::Test {
     ::sigaddset(&signals, SIGTERM);
     ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
     code("right");
+    std::ofstream(other_file()) << "right";
     sitting_.name = "box";
     sitting_.recipe.document = R"({"title": "A box", "duration_s": 1, "bodies": []})";
     sitting_.simulator = {TUMBLE_FAKE_SIMULATOR, file().string()};
@@ -43,7 +45,19 @@ class LiveSession : public ::testing::Test {
     sitting_.locate = {"/bin/sh", "-c",
                        "grep -q '^frame .*a1_student.so 0x1234' && "
                        "echo 'a1_impulse.cpp:26: return 1 / n;'"};
-    sitting_.watched = {{file(), "a1"}};
+    sitting_.watched = {{file(), "a1"}, {other_file(), "a2"}};
+    sitting_.offered = [] {
+      return std::vector<live::OfferedScene>{{"box", "A box", "a1", {"a1"}, {}},
+                                             {"ball", "A ball", "a2", {"a1", "a2"}, {"a2"}}};
+    };
+    sitting_.scene_named = [this](const std::string& name) {
+      if (name == "box") return static_cast<live::SceneStart>(sitting_);
+      if (name != "ball") throw UserError(name, "there is no such scene", "");
+      live::SceneStart ball = sitting_;
+      ball.name = "ball";
+      ball.title = "A ball";
+      return ball;
+    };
     sitting_.saves = folder_.path() / "saves";
     std::promise<std::string> address;
     thread_ = std::thread([this, &address] {
@@ -68,6 +82,7 @@ class LiveSession : public ::testing::Test {
   }
 
   fs::path file() const { return folder_.path() / "code.txt"; }
+  fs::path other_file() const { return folder_.path() / "other.txt"; }
   void code(const std::string& what) const { std::ofstream(file()) << what; }
 
   static int connected(int port) {
@@ -220,6 +235,78 @@ TEST_F(LiveSession, WhatIsDoneAfterTheLastSaveIsNotKept) {
   stop();
   EXPECT_TRUE(left_.scenes.empty());
   EXPECT_TRUE(left_.has_unsaved);
+}
+
+TEST_F(LiveSession, TellsWhatARunAsksAndRemembersItByScene) {
+  ASSERT_TRUE(hears("\"kind\":\"scenes\""));
+  EXPECT_TRUE(hears("\"name\":\"ball\""));
+  EXPECT_TRUE(hears("\"unwritten\":[\"a2\"]"));
+  EXPECT_TRUE(hears("\"kind\":\"asked\",\"scene\":\"box\""));
+  EXPECT_TRUE(hears("[\"f\",12]"));
+  post(R"({"do": "scene", "name": "ball"})");
+  ASSERT_TRUE(hears("\"kind\":\"scenes\""));
+  EXPECT_TRUE(hears("\"asked\":{\"a1\":[\"f\"]}"));  // of the box, without g and h
+}
+
+TEST_F(LiveSession, ChosenSceneBeginsAndWhatWasDoneToTheOtherIsKept) {
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "change", "changes": {"restitution": 0.25}})");
+  ASSERT_TRUE(hears("\"reason\":\"change\""));
+  post(R"({"do": "scene", "name": "ball"})");
+  ASSERT_TRUE(hears("\"kind\":\"scene\",\"name\":\"ball\",\"title\":\"A ball\""));
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"scene\""));
+  ASSERT_TRUE(hears("\"has_former\":false,\"changes\":{\"engine\":\"\",\"method\":\"\"}"));
+  EXPECT_TRUE(hears("event: f"));
+  post(R"({"do": "scene", "name": "box"})");
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"scene\""));
+  EXPECT_TRUE(hears("\"restitution\":0.25"));
+  post(R"({"do": "scene", "name": "cube"})");
+  EXPECT_TRUE(hears("there is no such scene"));
+  EXPECT_TRUE(hears("event: f"));
+}
+
+TEST_F(LiveSession, ChosenSceneThatCannotBeginBeginsWithTheNextSave) {
+  ASSERT_TRUE(hears("event: f"));
+  code("refuse");
+  ASSERT_TRUE(hears("\"title\":\"Does not compile\""));
+  post(R"({"do": "scene", "name": "ball"})");
+  ASSERT_TRUE(hears("\"kind\":\"scene\",\"name\":\"ball\""));
+  ASSERT_TRUE(hears("\"title\":\"Does not compile\""));
+  code("right");
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  EXPECT_TRUE(hears("\"scene\":\"ball\""));
+}
+
+TEST_F(LiveSession, EachAssignmentKeepsItsVerdicts) {
+  ASSERT_TRUE(hears("event: f"));
+  code("right");
+  ASSERT_TRUE(hears("\"id\":\"a1\",\"tests\""));
+  std::ofstream(other_file()) << "right again";
+  ASSERT_TRUE(hears("\"id\":\"a2\",\"tests\""));
+  // A page that is opened now is told both.
+  ::close(stream_);
+  heard_.clear();
+  stream_ = connected(std::stoi(host_.substr(host_.find(':') + 1)));
+  write("GET " + path_ + "stream HTTP/1.1\r\nHost: " + host_ + "\r\n\r\n", stream_);
+  EXPECT_TRUE(hears("\"id\":\"a1\",\"tests\""));
+  EXPECT_TRUE(hears("\"id\":\"a2\",\"tests\""));
+}
+
+TEST_F(LiveSession, SaysWhetherAnythingIsUnsavedWhileThereIsTime) {
+  ASSERT_TRUE(hears("\"is_unsaved\":false"));
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "change", "changes": {"gravity_m_s2": [0, 0, -1]}})");
+  ASSERT_TRUE(hears("\"kind\":\"unsaved\",\"is\":true"));
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"change\""));
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "save"})");
+  EXPECT_TRUE(hears("\"kind\":\"unsaved\",\"is\":false"));
+}
+
+TEST_F(LiveSession, RefusedChangeIsToldAsOne) {
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "change", "changes": {"restitution": 7}})");
+  EXPECT_TRUE(hears("\"about\":\"change\""));
 }
 
 TEST_F(LiveSession, EndsBySignalAndLeavesNoProcess) {

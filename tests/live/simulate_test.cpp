@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <thread>
 
@@ -70,8 +71,10 @@ struct Pipe {
 class Running {
  public:
   explicit Running(const live::Recipe& recipe, double speed = 1e30, bool paused = false,
-                   std::shared_ptr<const VirtualTimes> times = nullptr) {
+                   std::shared_ptr<const VirtualTimes> times = nullptr,
+                   std::function<std::string()> asked = {}) {
     simulation_.times = std::move(times);
+    simulation_.asked = std::move(asked);
     simulation_.scene = scene::parse_scene(live::document_of(recipe), "two_boxes.json");
     simulation_.laws = laws_for_hands();
     simulation_.options.engine = "rd";
@@ -366,6 +369,23 @@ TEST(LiveRecords, ComeApartPieceByPiece) {
   EXPECT_EQ(live::pack(live::unpack_frame(packed)), packed);
   EXPECT_EQ(records[1].bytes, "{}");
   EXPECT_THROW(live::unpack_frame(packed.substr(0, 40)), std::runtime_error);
+}
+
+TEST(LiveRun, WhatItHasAskedOfTheModulesIsSentWhenItChangesAndAtTheEnd) {
+  const auto calls = std::make_shared<std::atomic<int>>(7);
+  Running run(recipe_with({}), 1e30, true, nullptr,
+              [calls] { return "[" + std::to_string(*calls) + "]"; });
+  EXPECT_EQ(run.until(RecordKind::kAsked), "[7]");
+  *calls = 8;
+  run.say({{"do", "pace"}, {"speed", 1e30}, {"paused", false}});
+  std::string last;
+  while (auto record = run.next()) {
+    if (record->kind == RecordKind::kEnd) break;
+    if (record->kind != RecordKind::kAsked) continue;
+    EXPECT_TRUE(last.empty()) << "sent twice: " << record->bytes;
+    last = record->bytes;
+  }
+  EXPECT_EQ(last, "[8]");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <random>
 #include <thread>
 
+#include "framework/modules/call_counts.h"
 #include "framework/modules/proxy.h"
 #include "framework/modules/serve.h"
 #include "tests/modules/waist.h"
@@ -168,6 +169,34 @@ class Loop : public modules::Connection {
   std::unique_ptr<Channel> near_;
   std::thread worker_;
 };
+
+TEST(CallCounts, CountCallsByFunctionAlsoThoseWithinACall) {
+  modules::CallCounts counts({"twice", "echo", "call_back", "attack", "missing", "step"});
+  const waist::Module counted = modules::watched(waist::linked_module(), counts);
+  counted.call_back([&](double x) { return counted.twice(x); }, 3);
+  EXPECT_THROW(counted.missing(1.0), NotImplemented);
+  const auto all = [&] {
+    std::vector<std::uint64_t> numbers;
+    for (std::size_t k = 0; k < counts.functions().size(); ++k) numbers.push_back(counts.count(k));
+    return numbers;
+  };
+  EXPECT_EQ(all(), (std::vector<std::uint64_t>{3, 0, 1, 0, 1, 0}));
+  counts.clear();
+  EXPECT_EQ(all(), std::vector<std::uint64_t>(6));
+}
+
+TEST(CallCounts, OnlyFunctionsThatBindingCopiesAreLaws) {
+  const auto bind = [](const waist::Module& module, Laws& laws) {
+    laws.baumgarte_acceleration = [missing = module.missing](double, double, double x) {
+      return missing(x);
+    };
+    laws.ends_in_contact = [twice = module.twice](double, double, double x) {
+      return twice(x) > 0;
+    };
+  };
+  EXPECT_EQ(modules::functions_of_laws<waist::Module>(bind),
+            (std::vector<std::string>{"twice", "missing"}));
+}
 
 TEST(Proxy, AnswersAsTheLinkedModuleDoes) {
   Loop loop;

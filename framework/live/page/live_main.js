@@ -3,7 +3,7 @@
 const byId = id => document.getElementById(id);
 
 const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
-const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null };
+const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false };
 
 // One after the other: a pull that came behind its release would hold the body for ever.
 let posted = Promise.resolve();
@@ -13,23 +13,16 @@ function post(command) {
 }
 
 function say(text, kind = '') {
-  byId('state').textContent = text;
-  byId('state').className = kind;
+  page.status = { text, kind };
+  showState();
 }
 
-// Whether saving a mended file helps: troubles of the user's own code, and those whose line was found in it.
-const kTroublesOfCode = new Set(['Does not compile', 'Not attempted', 'Crashed', 'Out of time']);
-function isOfCode(trouble) { return kTroublesOfCode.has(trouble.title) || /\.cpp:\d+$/.test(trouble.where || ''); }
-
-function showTrouble(trouble) {
-  const box = byId('trouble');
-  box.hidden = !trouble;
-  if (!trouble) return;
-  const [title, text, remedy] = box.querySelectorAll('h2, pre, .remedy');
-  title.textContent = trouble.where ? `${trouble.title}: ${trouble.where}` : trouble.title;
-  text.textContent = trouble.text || '';
-  remedy.textContent = trouble.remedy || (isOfCode(trouble) ? 'The page goes on: mend the file and save it.' : '');
-  document.body.dataset.trouble = `${trouble.title} ${trouble.where || ''} ${trouble.text || ''}`;
+// A run that goes on may be paused, or be looked at at an earlier instant.
+function showState() {
+  const { text, kind } = page.status, isGoing = text === 'running' && page.run && page.run.length > 0;
+  const words = !isGoing ? text : isPast() ? 'paused at an earlier instant' : page.paused ? 'paused' : text;
+  if (byId('state').textContent !== words) byId('state').textContent = words;
+  byId('state').className = kind;
 }
 
 // ---- Time ----
@@ -41,6 +34,8 @@ function goTo(time) {
   showTime();
   showHint();
 }
+
+function isPast() { return Boolean(page.run && page.run.length > 0 && !page.follows && page.time < page.run.end - sameInstant(page.run.times)); }
 
 function newest() {
   page.follows = true;
@@ -61,14 +56,19 @@ function showTime() {
   byId('clock').textContent = `${page.time.toFixed(3)} s`;
   byId('scrub').max = String(Math.max(end, 1e-3));
   byId('scrub').value = String(page.time);
-  byId('go').textContent = page.paused ? 'Go' : 'Pause';
-  const isPast = run && !page.follows && page.time < end - sameInstant(run.times);
-  byId('here').hidden = byId('newest').hidden = !isPast;
+  byId('go').textContent = page.paused || page.ended ? 'Go' : 'Pause';
+  byId('go').disabled = !run || (page.ended && !isPast());
+  byId('go').title = page.ended ? 'The run has ended: start over, or go back to an earlier instant' : 'Go and pause (space)';
+  byId('here').classList.toggle('off', !isPast());
+  byId('newest').classList.toggle('off', !isPast());
   byId('on').disabled = !page.paused;
+  byId('bare').disabled = page.pushes.length === 0;
+  showState();
 }
 
 function toggle() {
-  if (!page.paused) return setPace(true, page.speed);
+  if (!page.run || (page.ended && !isPast())) return;
+  if (!page.paused && !page.ended) return setPace(true, page.speed);
   newest();
   setPace(false, page.speed);
 }
@@ -115,18 +115,19 @@ function drawMarks() {
 
 // ---- The hand ----
 
-// The drag of a push is an arrow; its length is the velocity that it gives, four metres a second a
-// metre, so that light and heavy bodies are pushed alike.
-const kSpeedOfDrag = 4;
+// The drag of a push is an arrow; from the top of the picture to its bottom it is three times the
+// body's weight on Earth, so that bodies of all sizes and masses are pushed alike and stay in sight.
+const kWeightsOfDrag = 3, kEarth = 9.81;
 
-function pushOf(body, way) {
+// way: of the drag [m]; span: metres across the picture there
+function pushOf(body, way, span) {
   const mass = page.run.facts.bodies[body].mass_kg, seconds = Math.min(10, Math.max(0.001, Number(byId('pushTime').value) || 0.1));
-  return { force: way.map(x => x * kSpeedOfDrag * mass / seconds), mass, seconds };
+  return { force: way.map(x => kWeightsOfDrag * kEarth * mass * x / span), mass, seconds };
 }
 
-function wordsOfPush(body, way) {
-  const { force, mass, seconds } = pushOf(body, way), size = Math.hypot(...force);
-  return `${page.run.about.bodies[body].name}: F = ${short(size, 3)} N for ${short(seconds)} s; a = F / m = ${short(size / mass, 3)} m/s² of its centre (m = ${short(mass)} kg)`;
+function wordsOfPush(body, way, span) {
+  const { force, mass, seconds } = pushOf(body, way, span), size = Math.hypot(...force);
+  return `${page.run.about.bodies[body].name}: F = ${short(size, 3)} N, ${short(size / mass / kEarth, 2)} of its weight on Earth, for ${short(seconds)} s: its centre gains ${short(size / mass * seconds, 2)} m/s (m = ${short(mass)} kg)`;
 }
 
 const pullQueue = { last: 0, timer: 0 };
@@ -134,10 +135,10 @@ const hand = {
   tool: () => (page.follows ? page.tool : 'look'),
   choose(body) { page.chosen = body; byId('body').value = String(body); showPanes(true); },
   aim(ray) { post({ do: 'aim', ray }); },
-  showPush(body, way) { byId('aimed').textContent = wordsOfPush(body, way); },
-  push(body, way) {
-    const { force, seconds } = pushOf(body, way);
-    byId('aimed').textContent = wordsOfPush(body, way);
+  showPush(body, way, span) { byId('aimed').textContent = wordsOfPush(body, way, span); },
+  push(body, way, span) {
+    const { force, seconds } = pushOf(body, way, span);
+    byId('aimed').textContent = wordsOfPush(body, way, span);
     post({ do: 'push', force_n: force, duration_s: seconds });
   },
   pull(to) {   // at most 60 times a second
@@ -156,152 +157,30 @@ function setTool(tool) {
 
 function showHint() {
   const run = page.run;
-  if (!run) return;
+  if (!run) { byId('hint').textContent = ''; return; }
   const words = { push: 'Drag from a body and let go: a force pushes it.', pull: run.facts.can_pull ? 'Drag a body: the spring of a3 holds it.' : 'Pulling needs the engine rd and the spring of a3.', look: 'Drag turns the view.' };
   if (page.ended) words.push = words.pull = `The run has ended${run.stopped ? '' : `, because it lasts ${short(run.facts.duration_s)} s`}: start over, or go back to an earlier instant.`;
-  byId('hint').textContent = page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.';
-}
-
-// ---- What the program says ----
-
-function begin(message) {
-  const head = message.head, isBack = head.from_s > 0 && page.run;
-  page.pushes = message.pushes;
-  page.changes = message.changes;
-  if (isBack) {
-    page.run.cut(head.from_s);
-    page.run.facts = head;
-  } else {
-    if (page.run && page.run.length > 1) page.former = page.run;
-    page.run = new LiveRun(head, 'now');
-    page.difference = null;
-    byId('difference').hidden = true;
-    times.clear();
-  }
-  page.run.about.forces = [...head.scene.forces.filter(force => !page.pushes.some(push => Math.abs(force.start - push.start_s) < 1e-9)), ...page.pushes.map(forceOf)];
-  byId('limit').hidden = true;
-  page.needsStage = !isBack;
-  page.follows = true;
-  page.ended = false;
-  if (!isBack) page.time = 0;
-  showTrouble(null);
-  delete document.body.dataset.trouble;
-  byId('title').textContent = head.scene.title;
-  byId('about').textContent = head.scene.about;
-  document.title = `${head.scene.title} – Tumble live`;
-  const list = byId('body');
-  list.textContent = '';
-  list.append(html('option', { value: '-1' }, 'body …'), ...head.scene.bodies.map((body, i) => html('option', { value: String(i) }, body.name)));
-  if (page.chosen >= head.scene.bodies.length) page.chosen = -1;
-  if (page.chosen < 0) page.chosen = head.scene.bodies.findIndex(body => !body.immovable);
-  list.value = String(page.chosen);
-  say('running');
-  showHint();
-  showTime();
-  panes.change.show(page.run, page.changes, page.chosen);
-  document.body.dataset.runs = String(Number(document.body.dataset.runs || 0) + 1);
-  document.body.dataset.reason = message.reason;
-  addTimesTab();
-}
-
-function forceOf(push) {
-  return { body: page.run.about.bodies.findIndex(body => body.name === push.body), force: push.force_n, point: push.point_m.map((x, i) => x - page.run.origin[i]), start: push.start_s, duration: push.duration_s };
-}
-
-const told = {
-  hello(message) {
-    page.canSave = message.can_save;
-    page.paused = message.paused;
-    page.speed = message.speed;
-    byId('save').disabled = !message.can_save;
-    if (!message.can_save) byId('save').title = 'This scene is made by code and has no file to add pushes to';
-    byId('speed').value = String(message.speed);
-    page.run = page.former = null;   // all comes again
-    say('connected');
-  },
-  run: begin,
-  starting(message) { say({ code: 'compiling …', change: 'starting over …' }[message.reason] || 'starting …', 'busy'); },
-  code_saved(message) { say(`${message.file} was saved: compiling …`, 'busy'); document.body.dataset.saved = String(performance.now()); },
-  pace(message) { page.paused = message.paused; page.speed = message.speed; byId('speed').value = String(message.speed); showTime(); },
-  aimed(message) {
-    const run = page.run;
-    if (!run) return;
-    if (message.problem) byId('aimed').textContent = message.problem;
-    else if (message.body < 0) byId('aimed').textContent = 'your ray function hits nothing that can move here';
-    else byId('aimed').textContent = `hit ${run.about.bodies[message.body].name}${message.face !== undefined ? `, face ${message.face}` : ''}, at (${message.point_body_m.map(x => short(x, 3)).join(', ')}) m of its frame, by your ray function`;
-    if (page.picture) page.picture.aimed(message.body, message.point_body_m || [0, 0, 0]);
-    document.body.dataset.aimed = String(message.body);
-  },
-  push(message) {
-    page.pushes.push(message.push);
-    if (page.run) page.run.about.forces.push(forceOf(message.push));
-    document.body.dataset.pushes = String(page.pushes.length);
-  },
-  times(message) { times.add(message); addTimesTab(); },
-  end(message) {
-    page.run.stopped = message.stopped_by;
-    if (message.stopped_by) showTrouble({ title: 'The run stopped', text: message.stopped_by, where: '' });
-    else if (message.faults) showTrouble({ title: 'This run cannot be trusted', text: message.faults, where: '' });
-    say(message.stopped_by ? `stopped at ${short(message.time_s)} s` : `ended at ${short(message.time_s)} s`, message.stopped_by ? 'bad' : '');
-    page.ended = true;
-    showHint();
-  },
-  trouble(message) { showTrouble(message); say(message.title.toLowerCase(), 'bad'); },
-  notice(message) { byId('aimed').textContent = message.text; },
-  limit(message) { byId('limit').hidden = false; byId('limit').textContent = message.text; },
-  judging(message) { panes.verdicts.busy(message.id); },
-  verdicts(message) {
-    panes.verdicts.set(message);
-    document.body.dataset.verdicts = JSON.stringify(Object.fromEntries(message.tests.map(test => [test.test, test.verdict])));
-    document.body.dataset.judged = String(Number(document.body.dataset.judged || 0) + 1);
-  },
-  difference(message) {
-    page.difference = message;
-    const line = byId('difference'), isDifferent = message.time_s !== undefined;
-    line.hidden = false;
-    line.classList.toggle('same', !isDifferent);
-    line.querySelector('button').hidden = !isDifferent;
-    line.querySelector('span').textContent = isDifferent ? `First difference from the run before, at ${short(message.time_s, 6)} s: ${message.what}` : `The same as the run before until ${short(message.same_until_s, 4)} s.`;
-    document.body.dataset.difference = isDifferent ? String(message.time_s) : '';
-  },
-  saved(message) {
-    const line = byId('saved');
-    line.hidden = false;
-    line.classList.toggle('wrong', Boolean(message.wrong));
-    const checked = !message.checked ? 'it is run again to compare …' : message.wrong ? `but it does not run again alike: ${message.wrong}` : `it runs again, the same to the last bit in ${message.frames} frames`;
-    line.textContent = `Saved ${message.file}; ${checked}. ${message.again}`;
-    document.body.dataset.savedScene = message.file;
-    document.body.dataset.savedCheck = message.checked ? message.wrong || `same ${message.frames}` : '';
-  },
-};
-
-function listen() {
-  const stream = new EventSource('stream');
-  stream.addEventListener('say', event => { const message = JSON.parse(event.data); if (told[message.kind]) told[message.kind](message); });
-  stream.addEventListener('f', event => {
-    if (!page.run) return;
-    page.run.addFrame(floatsOf(event.data));
-    ++page.frames;
-    if (page.ended) { page.ended = false; showHint(); }
-  });
-  stream.addEventListener('e', event => { if (page.run) page.run.addEvent(floatsOf(event.data)); });
-  stream.onerror = () => say('the program has ended, or is gone for a moment', 'bad');
+  const lost = page.isLost ? ' All bodies have left the picture: “All” finds them, “Follow” keeps the chosen one in it.' : '';
+  byId('hint').textContent = (page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.') + lost;
 }
 
 // ---- Panes ----
 
 const times = new TimesChart();
+const asked = new AskedBox();
 const panes = {
-  verdicts: new VerdictPane(),
-  change: new ChangePane(changes => post({ do: 'change', changes, keep: panes.change.keep.checked })),
+  verdicts: new VerdictPane(asked.box),
+  scenes: new ScenesPane(name => { if (name !== page.scene) post({ do: 'scene', name }); }),
+  change: new ChangePane(changes => post({ do: 'change', changes, keep: panes.change.keep.checked }), () => page.pushes.length),
   body: new BodyPane((body, point, force, seconds) => {
     if (!page.follows) newest();
     post({ do: 'aim', body, point_body_m: point }).then(() => post({ do: 'push', force_n: force, duration_s: seconds }));
   }),
 };
 const plots = kCurvePlots.map(about => new GrowingPlot(about));
-const tabs = [['Verdicts', panes.verdicts.box], ['Curves', html('div', {}, ...plots.map(plot => plot.box))], ['Change', panes.change.box], ['Body', panes.body.box]];
+const tabs = [['Verdicts', panes.verdicts.box], ['Scenes', panes.scenes.box], ['Curves', html('div', {}, ...plots.map(plot => plot.box))], ['Change', panes.change.box], ['Body', panes.body.box]];
 let opened = 0;
+const isOpen = title => tabs[opened][0] === title, openTabOf = title => openTab(tabs.findIndex(tab => tab[0] === title));
 
 function addTab([title, box], i) {
   const tab = html('button', {}, title), pane = html('div', { className: 'pane', tabIndex: 0 }, box);
@@ -316,14 +195,14 @@ function openTab(at) {
   opened = at;
   [...byId('tabs').children].forEach((tab, i) => tab.setAttribute('aria-selected', String(i === at)));
   [...byId('panes').children].forEach((pane, i) => { pane.hidden = i !== at; });
-  if (at === 2 && page.run) panes.change.show(page.run, page.changes, page.chosen);
+  if (isOpen('Change') && page.run) panes.change.show(page.run, page.changes, page.chosen);
   showPanes(true);
 }
 
 function addTimesTab() {
-  if (tabs.length > 4 || !page.run || page.run.facts.engine !== 'tw') return;
+  if (tabs.some(tab => tab[0] === 'Virtual times') || !page.run || page.run.facts.engine !== 'tw') return;
   tabs.push(['Virtual times', times.box]);
-  addTab(tabs[4], 4);
+  addTab(tabs[tabs.length - 1], tabs.length - 1);
   openTab(opened);
 }
 
@@ -333,9 +212,11 @@ function showPanes(isNow) {
   if (!page.run || page.run.length === 0 || (!isNow && now - panesShown < 180)) return;
   panesShown = now;
   const former = shown.ghost && page.former && page.former.length > 1 ? page.former : null;
-  if (opened === 1) for (const plot of plots) plot.draw(page.run, former, page.time);
-  if (opened === 3) panes.body.show(page.run, page.chosen, page.time, page.pushes);
-  if (opened === 4) times.draw(page.run.end);
+  if (isOpen('Curves')) for (const plot of plots) plot.draw(page.run, former, page.time);
+  if (isOpen('Body')) panes.body.show(page.run, page.chosen, page.time, page.pushes);
+  if (isOpen('Virtual times')) times.draw(page.run.end);
+  const isLost = Boolean(page.picture && page.picture.isLost(page.time));
+  if (isLost !== page.isLost) { page.isLost = isLost; showHint(); }
   drawMarks();
   showScales();
 }
@@ -346,6 +227,8 @@ function showScales() {
     const scale = page.picture.vectors.scaleOf(name), unit = roundDown(0.1 * page.picture.stage.sight / scale);
     return `${about.text}: ${short(unit)} ${about.unit} are ${short(unit * scale, 2)} m long`;
   });
+  if (words.join() === showScales.words) return;
+  showScales.words = words.join();
   byId('scales').textContent = '';
   byId('scales').append(...words.map(text => html('div', {}, text)));
 }
@@ -354,23 +237,27 @@ function addOptions() {
   const options = [...Object.entries(kVectors).map(([name, about]) => [name, about.text, cssColor(about.color)]), ['axes', 'principal axes'], ['centres', 'centres of mass'], ['chosenOnly', 'of the chosen body only'],
     ['ghost', 'the run before, as a ghost', cssColor(kFormerColor)], ['forces', 'forces on points', cssColor(kColors.force)], ['links', 'springs, rods, joints', cssColor(kColors.rod)], ['halo', 'chosen body highlighted', cssColor(kChosen)], ['ground', 'ground and grid'], ['shadows', 'shadows']];
   for (const [name, text, color] of options) {
-    const box = html('input', { type: 'checkbox', checked: shown[name], id: `show_${name}` }), swatch = html('i');
+    const box = html('input', { type: 'checkbox', checked: shown[name], id: `show_${name}` }), swatch = html('i', { className: color ? '' : 'none' });
     if (color) swatch.style.background = color;
     box.addEventListener('change', () => { shown[name] = box.checked; showPanes(true); });
-    byId('options').append(html('label', {}, box, ' ', swatch, text));
+    byId('options').append(html('label', {}, box, swatch, html('span', {}, text)));
   }
 }
 
 function addControls() {
   const click = (id, act) => byId(id).addEventListener('click', act);
-  click('over', () => post({ do: 'begin', keep: false }));
-  click('again', () => post({ do: 'begin', keep: true }));
+  click('over', () => post({ do: 'begin', keep: true }));
+  click('bare', () => post({ do: 'begin', keep: false }));
   click('go', toggle);
   click('back', stepBack);
   click('on', stepOn);
   click('here', () => post({ do: 'back', time_s: page.time }));
   click('newest', newest);
-  click('home', () => page.picture && page.picture.reset());
+  click('home', () => { if (!page.picture || !page.picture.stage) return; if (page.picture.isFollowing) follow(); page.picture.reset(); });
+  click('all', findAll);
+  click('follow', follow);
+  click('toScenes', () => openTabOf('Scenes'));
+  click('closeSaved', () => { byId('saved').hidden = true; });
   click('save', () => post({ do: 'save' }));
   click('closeTrouble', () => showTrouble(null));
   click('toDifference', () => goTo(page.difference.time_s));
@@ -382,16 +269,27 @@ function addControls() {
   byId('speed').value = '1';
   byId('speed').addEventListener('change', event => setPace(page.paused, Number(event.target.value)));
   byId('body').addEventListener('change', event => hand.choose(Number(event.target.value)));
+  document.addEventListener('pointerdown', event => { if (!byId('show').contains(event.target)) byId('show').open = false; });
   window.addEventListener('keydown', event => {
+    if (event.key === 'Escape' && byId('show').open) { byId('show').open = false; byId('show').querySelector('summary').focus(); }
     const target = event.target instanceof Element ? event.target : document.body;
     if (event.ctrlKey || event.metaKey || event.altKey || target.closest('select, input[type=number], input[type=text]')) return;
     const onButton = target.closest('button, summary, input[type=checkbox], a');
-    const acts = { ' ': onButton ? null : toggle, ArrowLeft: target.closest('[type=range]') ? null : stepBack, ArrowRight: target.closest('[type=range]') ? null : stepOn, r: () => post({ do: 'begin', keep: true }), 1: () => setTool('push'), 2: () => setTool('pull'), 3: () => setTool('look') };
+    const acts = { ' ': onButton ? null : toggle, ArrowLeft: target.closest('[type=range]') ? null : stepBack, ArrowRight: target.closest('[type=range]') ? null : stepOn, r: () => post({ do: 'begin', keep: true }), a: findAll, f: follow, 1: () => setTool('push'), 2: () => setTool('pull'), 3: () => setTool('look') };
     const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     act();
     event.preventDefault();
   });
+}
+
+function findAll() { if (page.picture && page.picture.stage) page.picture.findAll(page.time); }
+
+function follow() {
+  if (!page.picture) return;
+  page.picture.isFollowing = !page.picture.isFollowing;
+  page.picture.drawn = '';
+  byId('follow').setAttribute('aria-pressed', String(page.picture.isFollowing));
 }
 
 function tick(now) {
@@ -429,6 +327,19 @@ function noPicture(error) {
   byId('noPicture').textContent = `The motion cannot be drawn here (${error.message}). Curves and verdicts work.`;
   byId('noPicture').hidden = false;
   page.picture = null;
+}
+
+function listen() {
+  const stream = new EventSource('stream');
+  stream.addEventListener('say', event => { const message = JSON.parse(event.data); if (told[message.kind]) told[message.kind](message); });
+  stream.addEventListener('f', event => {
+    if (!page.run) return;
+    page.run.addFrame(floatsOf(event.data));
+    ++page.frames;
+    if (page.ended) { page.ended = false; showHint(); }
+  });
+  stream.addEventListener('e', event => { if (page.run) page.run.addEvent(floatsOf(event.data)); });
+  stream.onerror = () => say('the program has ended, or is gone for a moment', 'bad');
 }
 
 tabs.forEach(addTab);

@@ -4,7 +4,7 @@
 const kVectors = {
   v: { text: 'velocity v', color: 0x00798c, unit: 'm/s' },
   omega: { text: 'angular velocity ω', color: 0x8a5a00, unit: 'rad/s' },
-  L: { text: 'angular momentum L', color: 0x9a4f86, unit: 'kg m²/s' },
+  L: { text: 'angular momentum L', color: 0x5f7a00, unit: 'kg m²/s' },
   impulse: { text: 'impulses of impacts', color: 0xc14d00, unit: 'N s' },
   contact: { text: 'contact forces', color: 0x007a57, unit: 'N' },
   constraint: { text: 'forces of springs and rods', color: 0x4a5bbf, unit: 'N' },
@@ -155,7 +155,7 @@ function drawnBySoftware() {
 
 // The canvas, the camera, and the pointer.
 class LivePicture {
-  // hand: {aim(ray), push(body, force), pull(to), release(), choose(body), tool()}
+  // hand: {aim(ray), showPush(body, way, span), push(body, way, span), pull(to), release(), choose(body), tool()}
   constructor(canvas, box, shown, hand) {
     this.canvas = canvas;
     this.box = box;
@@ -170,8 +170,17 @@ class LivePicture {
     this.ratio = Math.min(2, window.devicePixelRatio || 1);
     this.drag = null;
     this.dark = window.matchMedia('(prefers-color-scheme: dark)');
+    this.isFollowing = false;
+    this.followed = null;   // {body, place}: where the view has followed it to
     this.addPointer();
     new ResizeObserver(() => this.resize()).observe(box);
+  }
+
+  // Nothing is shown until another scene has begun.
+  clear() {
+    if (this.stage) this.dispose(this.stage.scene);
+    this.stage = this.run = this.ghost = this.drag = this.followed = null;
+    this.canvas.classList.add('empty');
   }
 
   setRun(run, former, keepsCamera) {
@@ -183,6 +192,8 @@ class LivePicture {
     this.ghost = former && former.length > 1 && former.about.bodies.length === run.about.bodies.length ? new Ghost(this.stage, former) : null;
     this.vectors = new Vectors(this.stage, run);
     this.drawn = '';
+    this.time = undefined;
+    this.followed = null;
     this.handArrow = new Pool(this.stage.scene, arrowGeometry(), kHandColor);
     this.handLine = new Pool(this.stage.scene, rodGeometry(8), kHandColor);
     this.handBall = new Pool(this.stage.scene, ballGeometry(false, 12), kHandColor);
@@ -218,6 +229,57 @@ class LivePicture {
     this.renderer.setSize(width, height, false);
     this.width = width;
     this.height = height;
+    if (this.stage && this.time !== undefined) this.draw(this.time, this.stage.chosen);   // the new canvas is blank
+  }
+
+  // ---- The view ----
+
+  // The view goes by as much as the body has gone; to the body, where it begins to follow.
+  follow(t, chosen) {
+    const place = new THREE.Vector3(), turn = new THREE.Quaternion();
+    if (!this.isFollowing || !this.run.moving.has(chosen) || !this.run.pose(chosen, this.run.frameAt(t), place, turn)) { this.followed = null; return; }
+    const way = place.clone().sub(this.followed && this.followed.body === chosen ? this.followed.place : this.orbit.target);
+    this.camera.position.add(way);
+    this.orbit.target.add(way);
+    this.followed = { body: chosen, place };
+  }
+
+  // Places of movable bodies, of many some.
+  placesAt(t) {
+    const at = this.run.frameAt(t), turn = new THREE.Quaternion(), all = [...this.run.moving.keys()].filter(i => !this.run.about.bodies[i].immovable), stride = Math.ceil(all.length / 400) || 1, places = [];
+    for (let k = 0; k < all.length; k += stride) {
+      const place = new THREE.Vector3();
+      if (this.run.pose(all[k], at, place, turn)) places.push({ place, radius: this.run.about.bodies[all[k]].radius || 0.02 * this.stage.sight });
+    }
+    return places;
+  }
+
+  // Turns nothing: the view moves, so that all movable bodies are in it.
+  findAll(t) {
+    const box = new THREE.Box3();
+    for (const { place, radius } of this.placesAt(t)) box.expandByPoint(place.clone().addScalar(radius)).expandByPoint(place.clone().addScalar(-radius));
+    if (box.isEmpty()) return;
+    const centre = box.getCenter(new THREE.Vector3()), reach = 0.5 * box.getSize(new THREE.Vector3()).length();
+    const half = Math.min(Math.tan(this.camera.fov * Math.PI / 360), Math.tan(this.camera.fov * Math.PI / 360) * this.camera.aspect), back = this.camera.position.clone().sub(this.orbit.target).normalize();
+    this.orbit.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(back, Math.max(1.15 * reach / Math.sin(Math.atan(half)), 0.3 * this.stage.sight));
+    this.orbit.update();
+  }
+
+  // Whether no movable body is in the picture.
+  isLost(t) {
+    if (!this.stage || !this.camera) return false;
+    this.camera.updateMatrixWorld();
+    const places = this.placesAt(t);
+    return places.length > 0 && places.every(({ place }) => { const p = place.clone().project(this.camera); return Math.abs(p.x) > 1.03 || Math.abs(p.y) > 1.03 || p.z > 1; });
+  }
+
+  // The grid goes with the view by whole meshes, and the camera reaches as far as it stands away.
+  moveGround() {
+    const { stage, camera } = this, way = this.orbit.target.clone().sub(stage.target), distance = camera.position.distanceTo(this.orbit.target);
+    camera.near = 0.01 * Math.min(distance, 10 * stage.sight);
+    camera.far = 200 * Math.max(distance, stage.sight);
+    if (stage.ground) stage.ground.position.set(Math.round(way.x / stage.spacing) * stage.spacing, Math.round(way.y / stage.spacing) * stage.spacing, 0);
   }
 
   // Whether anything has changed since the last picture.
@@ -238,6 +300,9 @@ class LivePicture {
 
   draw(t, chosen) {
     const { stage, camera } = this;
+    this.canvas.classList.remove('empty');
+    this.follow(t, chosen);
+    this.moveGround();
     const half = Math.tan(this.run.about.camera.fov * Math.PI / 360), aspect = this.width / this.height;
     camera.fov = 2 * Math.atan(half * Math.max(1, 4 / 3 / aspect)) * 180 / Math.PI;
     camera.aspect = aspect;
@@ -310,6 +375,11 @@ class LivePicture {
     return this.rayOf(event).intersectPlane(plane, new THREE.Vector3());
   }
 
+  // Metres across the picture, from top to bottom, at the depth of a point.
+  spanAt(point) {
+    return 2 * Math.tan(this.camera.fov * Math.PI / 360) * Math.max(1e-9, point.clone().sub(this.camera.position).dot(this.camera.getWorldDirection(new THREE.Vector3())));
+  }
+
   addPointer() {
     const canvas = this.canvas;
     canvas.addEventListener('pointerdown', event => {
@@ -336,7 +406,7 @@ class LivePicture {
       this.drag.to = to;
       this.drag.way = to.clone().sub(point);
       if (this.drag.tool === 'pull') this.hand.pull(this.inWorld(to));
-      else this.hand.showPush(this.drag.body, this.drag.way.toArray());
+      else this.hand.showPush(this.drag.body, this.drag.way.toArray(), this.spanAt(point));
     });
     const end = event => {
       if (this.downAt && Math.hypot(event.clientX - this.downAt[0], event.clientY - this.downAt[1]) < 4) this.hand.choose(this.downAt[2]);
@@ -347,7 +417,7 @@ class LivePicture {
       this.orbit.enabled = true;
       canvas.classList.remove('held');
       if (drag.tool === 'pull') this.hand.release();
-      else if (event.type === 'pointerup' && drag.to && drag.way.length() > 1e-3 * this.stage.sight) this.hand.push(drag.body, drag.way.toArray());
+      else if (event.type === 'pointerup' && drag.to && drag.way.length() > 1e-3 * this.stage.sight) this.hand.push(drag.body, drag.way.toArray(), this.spanAt(drag.to));
     };
     canvas.addEventListener('pointerup', end);
     canvas.addEventListener('pointercancel', end);
