@@ -95,6 +95,9 @@ TEST_F(CommandLine, LiveRefusesInTheTerminalWhatItsPageCouldNotDo) {
     ASSERT_TRUE(terminal.shows(part)) << words << ": " << terminal.said;
     EXPECT_EQ(terminal.exit_code(), 2) << words;
   }
+  Terminal unknown(folder_, "live a77");
+  EXPECT_TRUE(unknown.shows("Known: a1, a2")) << unknown.said;
+  EXPECT_EQ(unknown.exit_code(), 2);
   EXPECT_TRUE(left_nothing());
 }
 
