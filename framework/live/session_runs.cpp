@@ -247,7 +247,7 @@ void Session::hand_acted(const std::string& text) {
   if (!runs_again) {
     recipe_.pushes.push_back(dumped(push));
     tell({{"kind", "push"}, {"push", push}});
-    tell_unsaved(!recipe_.document.empty());
+    if (!recipe_.document.empty()) tell_unsaved(true);
     return;
   }
   // The run that is shown goes on without the push: it belongs to the one that is begun. A second

@@ -57,7 +57,7 @@ void Session::choose_scene(const std::string& name) {
   former_has_ended_ = has_difference_ = false;
   compared_until_ = 0.0;
   times_.clear();
-  for (std::string* told : {&trouble_, &difference_, &end_, &saved_, &asked_}) told->clear();
+  for (std::string* told : {&trouble_, &difference_, &end_, &asked_}) told->clear();
   is_paused_ = false;
   tell(scene_words());
   if (sitting_.offered) tell(scenes_words());
