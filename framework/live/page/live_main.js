@@ -92,9 +92,10 @@ function stepOn() {
 
 function drawMarks() {
   const canvas = byId('marks'), width = canvas.clientWidth, height = canvas.clientHeight, run = page.run, ratio = window.devicePixelRatio || 1;
-  if (!run || !width) return;
-  canvas.width = width * ratio;
+  if (!width) return;
+  canvas.width = width * ratio;   // clears it
   canvas.height = height * ratio;
+  if (!run) return;
   const g = canvas.getContext('2d'), inset = 8, end = run.end || 1, x = t => inset + t / end * (width - 2 * inset), style = getComputedStyle(document.body);
   g.scale(ratio, ratio);
   g.fillStyle = style.getPropertyValue('--before');

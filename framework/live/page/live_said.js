@@ -119,9 +119,13 @@ const told = {
     if (page.picture) page.picture.clear();
     byId('about').textContent = byId('aimed').textContent = '';
     byId('saved').hidden = true;
+    byId('body').textContent = '';
     times.clear();
+    asked.show(null);
     showTrouble(null);
     delete document.body.dataset.trouble;
+    delete document.body.dataset.asked;
+    drawMarks();
     showDifference();
     showHint();
     showTime();
