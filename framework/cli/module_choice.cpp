@@ -368,10 +368,14 @@ void expect_module_files(const Context& context, const ModuleWords& words) {
 }
 
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
-                       const std::string& engine, const InPlaceOf& asked_in_place_of) {
-  const InPlaceOf in_place_of = asked_in_place_of ? asked_in_place_of
-                                                  : [](const ModuleKind&, const std::string&,
-                                                       const AnyModule& module) { return module; };
+                       const std::string& engine) {
+  return choose_laws(
+      context, scene, words, engine,
+      [](const ModuleKind&, const std::string&, const AnyModule& module) { return module; });
+}
+
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
+                       const std::string& engine, const InPlaceOf& in_place_of) {
   const auto kinds = context.registry.all();
   refuse_unknown_needs(scene, kinds);
   const bool has_home = std::any_of(kinds.begin(), kinds.end(),

@@ -56,17 +56,19 @@ std::filesystem::path module_file(const Context& context, const modules::ModuleK
 /// @throws UserError
 void expect_module_files(const Context& context, const ModuleWords& words);
 
+/// @param engine  of the run; empty: the scene's own. In a tree without a fast scheduler, timewarp
+///   (or a list of engines with "tw") needs a scheduler's module, as a scene about it does.
+/// @throws UserError for a word that names nothing that can be loaded, with a remedy
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
+                       const std::string& engine = "");
+
 /// What is bound in place of a module: the same one with calls that are counted, for example.
 /// @param word  that has chosen it
 using InPlaceOf = std::function<modules::AnyModule(
     const modules::ModuleKind& kind, const std::string& word, const modules::AnyModule& module)>;
-
-/// @param engine  of the run; empty: the scene's own. In a tree without a fast scheduler, timewarp
-///   (or a list of engines with "tw") needs a scheduler's module, as a scene about it does.
-/// @param in_place_of  empty: modules are bound as they are
-/// @throws UserError for a word that names nothing that can be loaded, with a remedy
+/// The same, with other modules in place of those that are chosen.
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words,
-                       const std::string& engine = "", const InPlaceOf& in_place_of = {});
+                       const std::string& engine, const InPlaceOf& in_place_of);
 
 /// Whose each law is: "impulses by a1 student", "motion by Boost.Odeint"; and, of a scene that asks
 /// them, "springs, rods and contact by a3 student, where it rubs, is linked or is one of many by

@@ -32,8 +32,6 @@ struct NamedMethod {
 /// Everything that the framework can do with a module without its header.
 struct ModuleKind : ModuleName {
   std::vector<std::string> functions;  // in header order
-  // those that become laws: only these can the run of a scene ask
-  std::function<std::vector<std::string>()> functions_of_laws;
   // sets laws of a world to the module's functions
   std::function<void(const AnyModule&, Laws&)> bind;
   std::function<void(const AnyModule&, Channel&)> serve;  // on the worker's side
@@ -54,6 +52,9 @@ struct ModuleKind : ModuleName {
     return found == notes.end() ? Note{} : *std::any_cast<Note>(&found->second);
   }
   std::map<std::type_index, std::any> notes;
+
+  // those functions that become laws: only these can the run of a scene ask
+  std::function<std::vector<std::string>()> functions_of_laws;
 };
 
 class Registry {
