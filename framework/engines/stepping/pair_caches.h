@@ -18,9 +18,11 @@ class PairCaches {
   collision::PairCache* of(int a, int b) {
     const std::uint64_t pair =
         (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
+    if (!slots_.empty())
+      if (const Slot* known = find(pair); known->cache != nullptr) return known->cache;
     if (2 * caches_.size() >= slots_.size()) make_room();
     Slot* slot = find(pair);
-    if (slot->cache == nullptr) *slot = {pair, &caches_.emplace_back()};
+    *slot = {pair, &caches_.emplace_back()};
     return slot->cache;
   }
 
