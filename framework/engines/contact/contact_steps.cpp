@@ -340,8 +340,8 @@ bool PersistentContacts::activates(const std::vector<StepContact>& contacts,
 }
 
 // Where the island's bodies come out with these impulses: ends_.
-// @param inertia_at_ends  the problem took the inertia of the bodies where ends_ has had them so far;
-// else at the end of their free paths
+// @param inertia_at_ends  the problem took the inertia of the bodies where ends_ has had them so
+// far; else at the end of their free paths
 void PersistentContacts::find_ends(const ContactIsland& island, const ContactProblem& problem,
                                    const ContactSolution& solution, double h, bool activation,
                                    bool inertia_at_ends) {

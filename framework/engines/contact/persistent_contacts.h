@@ -228,8 +228,9 @@ class PersistentContacts {
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
-  // By body, of the island whose step is taken: where it comes out, and the middle of the way there.
-  // Others stand where the step began; those of islands whose steps have been taken are stale.
+  // By body, of the island whose step is taken: where it comes out, and the middle of the way
+  // there. Others stand where the step began; those of islands whose steps have been taken are
+  // stale.
   std::vector<RigidBodyState> ends_, midway_;
   BodyPlaces places_;                   // in the problem that is being set up
   std::vector<RigidBodyState> middle_;  // of a linked island's step, by body; others are stale

@@ -1,5 +1,5 @@
-/// Where bodies of a world stand in a problem that holds some of them. Kept from problem to problem:
-/// to begin anew costs what the last one held, however many bodies the world has.
+/// Where bodies of a world stand in a problem that holds some of them. Kept from problem to
+/// problem: to begin anew costs what the last one held, however many bodies the world has.
 #pragma once
 
 #include <vector>
