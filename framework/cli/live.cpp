@@ -264,11 +264,12 @@ void live_verb(Context& context, LiveWords& words) {
   sitting.judge = [words](const std::string& judged) {
     return words_of_part(words, "judge", judged);
   };
-  // The assignment that was named, or the one that the scene stands in.
-  sitting.first_judged = id;
+  // The assignment that was named, or the one that the scene stands in, where its code is the
+  // user's own: a run on the reference says nothing of the file beside it.
   for (const live::Watched& one : sitting.watched) {
     const fs::path folder = context.root / "assignments" / context.registry.find(one.id).folder;
-    if (id.empty() && fs::absolute(scene.file).parent_path().parent_path() == fs::absolute(folder))
+    if (id.empty() ? fs::absolute(scene.file).parent_path().parent_path() == fs::absolute(folder)
+                   : one.id == id)
       sitting.first_judged = one.id;
   }
   sitting.saves = words.saves.value_or(kSaves);

@@ -11,7 +11,7 @@ import { Browser } from './browser.mjs';
 
 const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
 function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
-const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // two tests of seconds; all take minutes
+const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // three tests of seconds; all take minutes
 try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
 if (!existsSync(tumble)) skip(`${tumble} is not built`);
 const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
@@ -47,7 +47,7 @@ class Live {
   }
 }
 
-const tests = [], kQuick = ['a push', 'another origin'];
+const tests = [], kQuick = ['a push', 'another origin', 'judges nobody'];
 const test = (name, run, needsReference = true) => tests.push({ name, run, needsReference });
 const browser = new Browser();
 
@@ -75,6 +75,15 @@ test('a push accelerates a body as F / m says', async () => {
   expect(existsSync(await page.value('document.body.dataset.savedScene')), 'the scene is a file');
   if (pictures) await page.picture(join(pictures, 'push.png'));
   expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
+  await live.stop();
+});
+
+test('a run on the reference judges nobody', async () => {
+  const live = await Live.start('a1', '--modules', 'reference'), page = await browser.open(live.address);
+  await page.until('tumble.run && tumble.run.length > 5', 'the motion');
+  await page.until('document.body.innerText.includes("This run asks a1 (reference) for")', 'what the reference is asked');
+  await sleep(3000);   // verdicts of a starter's file take 2 s
+  expect(!await page.value('document.body.dataset.verdicts'), 'the file beside the reference was judged');
   await live.stop();
 });
 
