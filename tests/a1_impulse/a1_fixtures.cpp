@@ -62,9 +62,9 @@ bool is_something(double x) { return std::isfinite(x) && x != 0.0; }
 bool is_something(const Vector3d& v) { return v.allFinite() && v != Vector3d::Zero(); }
 
 bool asked_first(bool came, const std::string& scene, const std::string& expected,
-                 const std::string& n) {
+                 const std::string& found, const std::string& n) {
   expect_true(
-      came, expected, "nothing of the kind",
+      came, expected, found,
       {.scene = "this test's own answer is \"nothing\", so this is asked before it: " + scene,
        .slip =
            "the function gives nothing (0, NaN, a miss, its own argument) where there is an answer",
@@ -84,22 +84,28 @@ const Contact kUnderIt{{0, 0, 0}, Vector3d::UnitZ()};
 bool gives_hits() {
   const Triangle triangle{{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};
   bool came = false;
+  std::string found;
   for (const double side : {1.0, -1.0}) {  // either side of the triangle
     const auto hit =
         student().intersect_ray_triangle({{0.5, 0.75, 2 * side}, {0, 0, -side}}, triangle);
     came = came || (hit && std::isfinite(hit->t) && is_something(hit->barycentric));
+    found += (found.empty() ? "from above " : ", from below ") +
+             (hit ? "a hit at t = " + show(hit->t) + ", weights " + show(hit->barycentric)
+                  : std::string("a miss"));
   }
-  return asked_first(came, "a ray through the middle of a triangle", "a hit", "1");
+  return asked_first(came, "a ray through the middle of a triangle", "a hit", found, "1");
 }
 
 bool gives_linear_acceleration() {
-  return asked_first(is_something(student().linear_acceleration(block({5, 3, 1}), {2, 0, -8})),
-                     "(2, 0, -8) N on a movable block", "an acceleration other than 0", "3");
+  const Vector3d found = student().linear_acceleration(block({5, 3, 1}), {2, 0, -8});
+  return asked_first(is_something(found), "(2, 0, -8) N on a movable block",
+                     "an acceleration other than 0", show(found), "3");
 }
 
 bool gives_angular_acceleration() {
-  return asked_first(is_something(student().angular_acceleration(block({5, 3, 1}), {1, 4, 2})),
-                     "(1, 4, 2) N m on a movable block", "an acceleration other than 0", "4");
+  const Vector3d found = student().angular_acceleration(block({5, 3, 1}), {1, 4, 2});
+  return asked_first(is_something(found), "(1, 4, 2) N m on a movable block",
+                     "an acceleration other than 0", show(found), "4");
 }
 
 bool gives_relative_velocities() {
@@ -110,34 +116,38 @@ bool gives_relative_velocities() {
   const double fast = student().relative_normal_velocity(kUnderIt, faster, wall({0, 0, -1}));
   return asked_first(is_something(slow) && is_something(fast - slow),
                      "a ball falls on a resting wall at 3 and at 6 m/s",
-                     "two velocities other than 0", "5");
+                     "two velocities other than 0, and other than each other",
+                     show(slow) + " and " + show(fast), "5");
 }
 
 bool tells_motions_apart() {
   return asked_first(student().classify_relative_motion(-2.0, 0.001) !=
                          student().classify_relative_motion(2.0, 0.001),
-                     "u_n = -2 and 2 m/s, tolerance 0.001 m/s", "two different cases", "6");
+                     "u_n = -2 and 2 m/s, tolerance 0.001 m/s", "two different cases",
+                     "the same for both", "6");
 }
 
 bool gives_impulses() {
-  return asked_first(
-      is_something(student().collision_impulse(kUnderIt, falling_ball(), wall({0, 0, -1}), 0.5)),
-      "a 2 kg ball hits a wall at 3 m/s, e = 0.5", "an impulse other than 0", "9");
+  const double found = student().collision_impulse(kUnderIt, falling_ball(), wall({0, 0, -1}), 0.5);
+  return asked_first(is_something(found), "a 2 kg ball hits a wall at 3 m/s, e = 0.5",
+                     "an impulse other than 0", show(found), "9");
 }
 
 bool gives_impulses_without_rotation() {
-  return asked_first(is_something(student().collision_impulse_without_rotation(
-                         kUnderIt, falling_ball(), wall({0, 0, -1}), 0.5)),
-                     "a 2 kg ball hits a wall at 3 m/s, e = 0.5", "an impulse other than 0", "8");
+  const double found =
+      student().collision_impulse_without_rotation(kUnderIt, falling_ball(), wall({0, 0, -1}), 0.5);
+  return asked_first(is_something(found), "a 2 kg ball hits a wall at 3 m/s, e = 0.5",
+                     "an impulse other than 0", show(found), "8");
 }
 
 bool moves_a_struck_body() {
   Body body = block({5, 3, 1});
   body.velocity_world = {1, 0, 0};
-  const Vector3d change =
-      student().apply_impulse(body, {0, 0, 6}, {5, 3, 1}).linear_world - body.velocity_world;
-  return asked_first(is_something(change), "6 N s through the centre of a movable block",
-                     "another velocity than before", "10");
+  const Vector3d after = student().apply_impulse(body, {0, 0, 6}, {5, 3, 1}).linear_world;
+  return asked_first(
+      is_something(Vector3d(after - body.velocity_world)),
+      "6 N s through the centre of a movable block at " + show(body.velocity_world) + " m/s",
+      "another velocity than before", show(after), "10");
 }
 
 bool moves_colliding_bodies() {
@@ -145,8 +155,10 @@ bool moves_colliding_bodies() {
   const a1::CollisionOutcome after = student().resolve_collision(kUnderIt, a, b, 0.5);
   const bool came = is_something(Vector3d(after.a.linear_world - a.velocity_world)) ||
                     is_something(Vector3d(after.b.linear_world - b.velocity_world));
-  return asked_first(came, "a 2 kg ball falls at 3 m/s on another that rests, e = 0.5",
-                     "other velocities than before", "11");
+  return asked_first(
+      came, "a 2 kg ball falls at 3 m/s on another that rests, e = 0.5",
+      "another velocity of A, " + show(a.velocity_world) + ", or of B, " + show(b.velocity_world),
+      show(after.a.linear_world) + " and " + show(after.b.linear_world), "11");
 }
 
 Vector3d random_vector(Random& random, double size) {
@@ -242,15 +254,15 @@ std::vector<Units> changes_of_unit() {
           {1, kLarge, 1}, {1, 1, kSmall}, {1, 1, kLarge}};
 }
 
-std::string slip_of_units(bool right_in_plain_units, const std::string& slip) {
-  return right_in_plain_units ? slip
+Mistake slip_of_units(bool right_in_plain_units, const std::string& slip) {
+  return right_in_plain_units ? shown(slip)
                               : "the same question in plain units is answered wrongly, too: see "
                                 "the tests before this one";
 }
 
 std::string show(const Units& units) {
   const auto times = [](double x, const char* what) {
-    return x == 1.0 ? "" : std::string(what) + " times " + show(x);
+    return x == 1.0 ? "" : std::string(what) + " times " + show_scale(x);
   };
   return times(units.length, "lengths") + times(units.mass, "masses") + times(units.time, "times");
 }

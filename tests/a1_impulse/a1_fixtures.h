@@ -64,20 +64,22 @@ inline const std::string kNotANumber =
 
 inline constexpr double kSameAnswer = 1e-9;  // relative: far above rounding, far below any mistake
 
-/// The name of the mistake whose answer was found; `otherwise` for none.
-inline std::string likely(double found, const Slips<double>& slips, const std::string& otherwise) {
+/// The name of the mistake whose answer was found, as one that the answer shows; `otherwise`, which
+/// is only something to look at, for none.
+inline Mistake likely(double found, const Slips<double>& slips, const Mistake& otherwise) {
   for (const auto& [gives, words] : slips) {
     if (std::abs(found - gives) <= kSameAnswer * std::max(std::abs(found), std::abs(gives)))
-      return words;
+      return shown(words);
   }
   return std::isfinite(found) ? otherwise : kNotANumber;
 }
 
 template <int n>
-std::string likely(const Eigen::Matrix<double, n, 1>& found,
-                   const Slips<Eigen::Matrix<double, n, 1>>& slips, const std::string& otherwise) {
+Mistake likely(const Eigen::Matrix<double, n, 1>& found,
+               const Slips<Eigen::Matrix<double, n, 1>>& slips, const Mistake& otherwise) {
   for (const auto& [gives, words] : slips) {
-    if ((found - gives).norm() <= kSameAnswer * std::max(found.norm(), gives.norm())) return words;
+    if ((found - gives).norm() <= kSameAnswer * std::max(found.norm(), gives.norm()))
+      return shown(words);
   }
   return found.allFinite() ? otherwise : kNotANumber;
 }
@@ -131,9 +133,9 @@ struct Units {
 };
 std::vector<Units> changes_of_unit();
 std::string show(const Units& units);
-/// The slip where an answer is wrong in other units. Where the same question in plain units is
-/// answered wrongly too, no threshold is to blame.
-std::string slip_of_units(bool right_in_plain_units, const std::string& slip);
+/// The slip where an answer is wrong in other units: shown, where the same question in plain units
+/// is answered rightly. Where that is wrong too, no threshold is to blame.
+Mistake slip_of_units(bool right_in_plain_units, const std::string& slip);
 
 // ---- (A1.5) and (A1.9) with a slip in them -----------------------------------------------------
 

@@ -224,26 +224,37 @@ TEST(ContactNormal2d, IsRightInEveryUnit) {
       const Vector2d start = size * Vector2d(1, -2), end = size * Vector2d(4, 2),
                      expected = side * Vector2d(0.8, -0.6);
       const Vector2d off = start + size * (0.25 * Vector2d(3, 4) + side * 0.125 * Vector2d(4, -3));
-      const auto story = [&](const std::string& scene, const Vector2d& found) {
+      const std::string either_side =
+          "the wrong side: the sign tells which side it is, however near the line is (one way to "
+          "such an answer is an absolute threshold)";
+      const auto story = [&](const std::string& scene, const Vector2d& found, const Vector2d& right,
+                             const std::string& opposite) {
         return Story{
-            .scene = scene + ", lengths times " + show(size),
+            .scene = scene + ", lengths times " + show_scale(size),
             .slip = likely<2>(found,
-                              {{-expected,
-                                "an absolute threshold: which side is told by the sign, however "
-                                "near the line is"}},
-                              "an absolute threshold: no length is too short to have a direction"),
+                              {{-right, opposite},
+                               {5 * size * right, kNotUnit},
+                               {-5 * size * right, kNotUnit + ", and it points the other way"},
+                               {{0, 0},
+                                "an absolute threshold: no length is too short to have a "
+                                "direction"}},
+                              "the direction of a line of any length; one way to a wrong one is an "
+                              "absolute threshold: no length is too short to have a direction"),
             .handout = equation("7")};
       };
-      const Vector2d corner = student().contact_normal_vertex_edge(off, start, end),
-                     edge = student().contact_normal_edge_edge(start, end, off);
+      // Each function is judged before the next is asked: the story then belongs to the last call.
+      const Vector2d corner = student().contact_normal_vertex_edge(off, start, end);
       expect_near(corner, expected, kRoundoff, "(unit)",
-                  story("edge (1, -2) -> (4, 2) of B, a corner of A beside it", corner));
+                  story("edge (1, -2) -> (4, 2) of B, a corner of A beside it", corner, expected,
+                        either_side));
+      const Vector2d edge = student().contact_normal_edge_edge(start, end, off);
       expect_near(edge, expected, kRoundoff, "(unit)",
-                  story("edge (1, -2) -> (4, 2) of B, the centre of A beside it", edge));
+                  story("edge (1, -2) -> (4, 2) of B, the centre of A beside it", edge, expected,
+                        either_side));
       const Vector2d line =
           student().contact_normal_vertex_vertex(size * Vector2d(5, 6), size * Vector2d(1, 9));
       expect_near(line, Vector2d(0.8, -0.6), kRoundoff, "(unit)",
-                  story("centres of A and B at (5, 6) and (1, 9)", line));
+                  story("centres of A and B at (5, 6) and (1, 9)", line, {0.8, -0.6}, kFromAToB));
     }
   }
 }

@@ -19,7 +19,7 @@ void expect_hit(const std::optional<RayHit>& found, double t, const Vector3d& we
     report_failure(tell(story, "a hit at t = " + show(t), "a miss", ""));
     return;
   }
-  const std::string words = story.slip;
+  const Mistake words = story.slip;
   story.slip = likely(found->t, t_slips, words);
   expect_near(found->t, t, kRayRoundoff * std::abs(t), "lengths of d", story);
   story.slip = likely(found->barycentric, weight_slips, words);

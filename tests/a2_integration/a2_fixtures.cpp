@@ -106,9 +106,12 @@ bool rk4_rounds_as_float() {
 
 }  // namespace
 
-std::string rk4_slip(const std::string& otherwise) {
+namespace {
+
+/// What the step under test does, read off; empty where weights and stages are right, or not seen.
+std::string words_of_rk4() {
   const SeenRk4 seen = look_at_rk4();
-  if (seen.calls != 4 || !seen.sixths.allFinite()) return otherwise;
+  if (seen.calls != 4 || !seen.sixths.allFinite()) return "";
   if (rk4_keeps_something()) return kKept;
   const auto is = [&](double a, double b, double c, double d) {
     return (seen.sixths - Eigen::Vector4d(a, b, c, d)).norm() < 1e-5;
@@ -143,7 +146,7 @@ std::string rk4_slip(const std::string& otherwise) {
   stage(3, 2) = 1;
   if (!((seen.stage - stage).norm() < 1e-5)) {
     const auto of = [&](int i) { return seen.stage.row(i); };
-    if (!seen.stage.allFinite()) return otherwise;
+    if (!seen.stage.allFinite()) return "";
     if (seen.stage.norm() < 1e-9)
       return "all slopes are taken at the start: 1 / 2 in integers is 0";
     if (std::abs(of(1)[0] - 1) < 1e-5 && std::abs(of(2)[1] - 1) < 1e-5)
@@ -161,7 +164,14 @@ std::string rk4_slip(const std::string& otherwise) {
         return "stage " + std::to_string(i + 1) + " is taken at y + h times " + show(of(i)) +
                " of k1 to k4: it belongs at " + show(stage.row(i));
   }
-  return rk4_rounds_as_float() ? kFloat : otherwise;
+  return rk4_rounds_as_float() ? kFloat : "";
+}
+
+}  // namespace
+
+Mistake rk4_slip(const Mistake& otherwise) {
+  const std::string read_off = words_of_rk4();
+  return read_off.empty() ? otherwise : shown(read_off);
 }
 
 VectorXd logistic(double, const VectorXd& y) {
@@ -372,7 +382,7 @@ void expect_finder_looks_at_the_bracket(const Finder& find, int most) {
     const Approach approach{
         "a ball of radius 0.5 units is thrown up at 2 units/s from 5 units: gap = 4.5 + 2 t - "
         "4.905 t^2 units, looked for in [0, 3] s; a unit is " +
-            show(unit) + " m",
+            show_scale(unit) + " m",
         [=](double t) { return unit * ball.gap(t); },
         [=](double t) { return unit * ball.gap_rate(t); },
         ball.t_low,
@@ -380,8 +390,8 @@ void expect_finder_looks_at_the_bracket(const Finder& find, int most) {
         ball.time_of_impact};
     Looks looks;
     expect_impact(find(approach, 1e-9, looks), approach, looks, 1e-9, 1e-15,
-                  "the size of the gap ends the search: the tolerance is a time, and the bracket "
-                  "must be smaller than it",
+                  "what ends the search: the tolerance is a time, and the bracket must be smaller "
+                  "than it. One way to such an answer: the size of the gap ends the search",
                   10);
     expect_true(looks.calls <= most, "at most " + std::to_string(most) + " calls of the gap",
                 std::to_string(looks.calls) + " calls",
@@ -415,19 +425,33 @@ void expect_finder_refuses_overlap(const Finder& find) {
 
 namespace {
 
+constexpr const char* kGivesNothing =
+    "the function gives nothing (0, NaN, no impact, its own argument) where there is an answer, or "
+    "its status says so";
+
 bool asked_first(bool came, const std::string& scene, const std::string& expected,
-                 int equation_number) {
+                 const std::string& found, int equation_number,
+                 const Mistake& slip = kGivesNothing) {
   expect_true(
-      came, expected, "nothing of the kind",
+      came, expected, found,
       {.scene = "before this test a simpler case is asked, which must have an answer: " + scene,
-       .slip = "the function gives nothing (0, NaN, no impact, its own argument) where there is an "
-               "answer, or its status says so",
+       .slip = slip,
        .handout = equation(equation_number)});
   return came;
 }
 
-bool found_something(const RootResult& found, const Looks& looks) {
-  return found.status == RootStatus::kConverged && found.time > 0.0 && looks.calls > 2;
+bool found_something(const RootResult& found, const Looks& looks, const Approach& approach,
+                     int equation_number) {
+  const bool is_converged = found.status == RootStatus::kConverged, is_later = found.time > 0.0;
+  return asked_first(is_converged && is_later && looks.calls > 2, approach.scene,
+                     "status kConverged with a time after 0 s, by more than 2 calls of the gap",
+                     "status " + show(found.status) + ", time " + show(found.time) + " s, by " +
+                         std::to_string(looks.calls) + (looks.calls == 1 ? " call" : " calls"),
+                     equation_number,
+                     !is_converged ? kGivesNothing
+                     : !is_later
+                         ? "the time lies outside the interval in which it is looked for"
+                         : "the search ends at once, although the ends do not tell the time");
 }
 
 }  // namespace
@@ -437,8 +461,7 @@ bool bisection_finds_something() {
   const Approach ball = dropped_ball();
   const RootResult found =
       a2_module().impact_time_bisection(noting(looks, ball.gap), ball.t_low, ball.t_high, 1e-3);
-  return asked_first(found_something(found, looks), ball.scene,
-                     "status kConverged with a time, and calls of the gap", 11);
+  return found_something(found, looks, ball, 11);
 }
 
 bool newton_finds_something() {
@@ -446,8 +469,7 @@ bool newton_finds_something() {
   const Approach ball = thrown_ball();
   const RootResult found = a2_module().impact_time_newton(noting(looks, ball.gap), ball.gap_rate,
                                                           ball.t_low, ball.t_high, 1e-3);
-  return asked_first(found_something(found, looks), ball.scene,
-                     "status kConverged with a time, and calls of the gap", 12);
+  return found_something(found, looks, ball, 12);
 }
 
 bool a_body_moves() {
@@ -457,7 +479,7 @@ bool a_body_moves() {
   const bool came = rate.size() == kStateSize && rate.allFinite() &&
                     rate != VectorXd::Zero(rate.size()) && rate != pack(state);
   return asked_first(came, "a 2 kg block with momentum (2, 4, 6) kg m/s",
-                     "a derivative other than 0 and other than the state", 4);
+                     "a derivative other than 0 and other than the state", show(rate), 4);
 }
 
 bool rk4_moves() {
@@ -465,7 +487,8 @@ bool rk4_moves() {
   const VectorXd found =
       a2_module().rk4_step([](double, const VectorXd& at) { return VectorXd(-at); }, 0.0, y, 0.5);
   return asked_first(found.size() == 2 && found.allFinite() && found != y,
-                     "y' = -y, y = (1, 2), one step of 0.5 s", "another y than before", 2);
+                     "y' = -y, y = (1, 2), one step of 0.5 s", "another y than before", show(found),
+                     2);
 }
 
 }  // namespace tumble::a2_testing

@@ -45,11 +45,12 @@ double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() ? (a - b).norm() : INFINITY;
 }
 
-/// The words of the slip whose answer was found; `otherwise` when it is none of them.
+/// The words of the slip whose answer was found, as one that the answer shows; `otherwise`, which
+/// is only something to look at, when it is none of them.
 template <class Found, class Value = Found>
-std::string likely(const Found& found, const Slips<Value>& slips, const std::string& otherwise) {
+Mistake likely(const Found& found, const Slips<Value>& slips, const Mistake& otherwise) {
   for (const auto& [gives, words] : slips)
-    if (distance(found, gives) <= 1e-9) return words;
+    if (distance(found, gives) <= 1e-9) return shown(words);
   return otherwise;
 }
 
@@ -96,7 +97,7 @@ VectorXd free_top(double t, const VectorXd& omega_body);
 /// What is wrong with the rk4_step under test, read off it: asked with slopes of which one is 1 and
 /// the others 0, it shows the weight of each slope and where each stage is taken. `otherwise` where
 /// weights and stages are right.
-std::string rk4_slip(const std::string& otherwise);
+Mistake rk4_slip(const Mistake& otherwise);
 
 // ---- Rigid bodies ------------------------------------------------------------------------------
 

@@ -74,7 +74,7 @@ TEST(ImpactTimeNewton, FindsTheThrownBallInFewSteps) {
   Looks looks;
   const Approach ball = thrown_ball();
   expect_impact(newton(ball, 1e-12, looks), ball, looks, 1e-12, kRoundOffTime,
-                "t - g / g', and the sign in front of it", 12);
+                "each step: t - g / g', kept inside a bracket whose ends have different signs", 12);
   // Newton doubles the digits with each step: from t = 3 s the error is 1.8, 0.6, 0.1, 6e-3, 2e-5,
   // 1e-10 s. Sometimes rounding makes the last step return to its start, and a safeguard that then
   // halves the bracket takes as long as bisection: so balls are counted together.

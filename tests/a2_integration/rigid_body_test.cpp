@@ -182,9 +182,9 @@ TEST(RigidBodyDerivative, ProductsOfInertiaCountInEveryUnit) {
                    expected = rate(R * (body.inverse_inertia_body * L_body));
     const std::string scene =
         "a lopsided body, I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2 times " +
-        show(inertia_unit) +
+        show_scale(inertia_unit) +
         ", in a skew pose; P = (6, -2, 4) kg m/s and L = (3, -2, 1) kg m^2/s times " +
-        show(momentum_unit);
+        show_scale(momentum_unit);
     const bool in_plain_units = inertia_unit == 1.0 && momentum_unit == 1.0;
     const std::string unit_slip =
         in_plain_units ? "q' = 1/2 (0, w) q with w = R I^-1 R^T L"

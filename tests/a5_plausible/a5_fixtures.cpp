@@ -4,9 +4,10 @@
 
 namespace tumble::a5_testing {
 
-std::string likely(double found, const Slips& slips, const std::string& otherwise) {
+Mistake likely(double found, const Slips& slips, const Mistake& otherwise) {
   for (const auto& [gives, words] : slips)
-    if (std::abs(found - gives) <= 1e-9 * (1 + std::abs(gives)) || found == gives) return words;
+    if (std::abs(found - gives) <= 1e-9 * (1 + std::abs(gives)) || found == gives)
+      return shown(words);
   return otherwise;
 }
 
@@ -38,7 +39,7 @@ LogDensity noting(Calls& calls, LogDensity density) {
   };
 }
 
-std::string acceptance_slip(const std::string& otherwise) {
+Mistake acceptance_slip(const Mistake& otherwise) {
   const auto a = [](double from, double to, double forth, double back) {
     return student().log_acceptance(from, to, forth, back);
   };
@@ -46,20 +47,21 @@ std::string acceptance_slip(const std::string& otherwise) {
                hard_forth = a(0, 0, -1, 0);
   const auto is = [](double found, double expected) { return std::abs(found - expected) < 1e-9; };
   if (is(downhill, std::exp(-1.0)))
-    return "the probability itself is returned where its logarithm belongs";
+    return shown("the probability itself is returned where its logarithm belongs");
   if (is(downhill, 0) && is(uphill, -1))
-    return "pi(x) and pi(x') are exchanged: what is more probable is to be accepted";
-  if (is(uphill, 1)) return "the min with 0 is forgotten: no probability is above 1";
-  if (is(downhill, -0.5)) return "a square-root rule: ln a is the whole difference";
+    return shown("pi(x) and pi(x') are exchanged: what is more probable is to be accepted");
+  if (is(uphill, 1)) return shown("the min with 0 is forgotten: no probability is above 1");
+  if (is(downhill, -0.5)) return shown("a square-root rule: ln a is the whole difference");
   if (is(downhill, -std::log1p(std::exp(1.0))))
-    return "Barker's rule, pi' / (pi + pi'): ln a is the difference, and never above 0";
+    return shown("Barker's rule, pi' / (pi + pi'): ln a is the difference, and never above 0");
   if (is(hard_back, 0) && is(hard_forth, 0))
-    return "Hastings' correction is forgotten: ln q(x | x') - ln q(x' | x)";
+    return shown("Hastings' correction is forgotten: ln q(x | x') - ln q(x' | x)");
   if (is(hard_back, 0) && is(hard_forth, -1))
-    return "Hastings' correction has the wrong sign: the way back counts up, the way forth down";
+    return shown(
+        "Hastings' correction has the wrong sign: the way back counts up, the way forth down");
   if (is(hard_forth, 0) && is(a(0, -1, -1, 0), -1))
-    return "the way forth is forgotten: ln q(x' | x) is subtracted";
-  if (is(hard_back, 0)) return "the way back is forgotten: ln q(x | x') is added";
+    return shown("the way forth is forgotten: ln q(x' | x) is subtracted");
+  if (is(hard_back, 0)) return shown("the way back is forgotten: ln q(x | x') is added");
   return otherwise;
 }
 

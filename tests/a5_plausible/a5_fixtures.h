@@ -36,8 +36,9 @@ inline std::string equation(int n) { return "handouts/a5_plausible.md#eq-a5-" + 
 
 /// A wrong answer, and the slip that gives it.
 using Slips = std::vector<std::pair<double, std::string>>;
-/// The words of the slip whose answer was found; `otherwise` when it is none of them.
-std::string likely(double found, const Slips& slips, const std::string& otherwise);
+/// The words of the slip whose answer was found, as one that the answer shows; `otherwise`, which
+/// is only something to look at, when it is none of them.
+Mistake likely(double found, const Slips& slips, const Mistake& otherwise);
 
 inline VectorXd vector(std::initializer_list<double> numbers) {
   return Eigen::Map<const VectorXd>(numbers.begin(), static_cast<Eigen::Index>(numbers.size()));
@@ -46,12 +47,12 @@ inline VectorXd vector(std::initializer_list<double> numbers) {
 /// As testing::expect_near; where no number came, the test's own slip is the likely one.
 inline void expect_answer(double found, double expected, double tolerance, const std::string& unit,
                           Story story) {
-  if (story.no_number.empty()) story.no_number = story.slip;
+  if (story.no_number.empty()) story.no_number = story.slip.words;
   testing::expect_near(found, expected, tolerance, unit, story);
 }
 inline void expect_answer(const VectorXd& found, const VectorXd& expected, double tolerance,
                           const std::string& unit, Story story) {
-  if (story.no_number.empty()) story.no_number = story.slip;
+  if (story.no_number.empty()) story.no_number = story.slip.words;
   testing::expect_near(found, expected, tolerance, unit, story);
 }
 
@@ -85,7 +86,7 @@ LogDensity noting(Calls& calls, LogDensity density);
 
 /// What is wrong with the log_acceptance under test, read off plain cases. `otherwise` where they
 /// are right.
-std::string acceptance_slip(const std::string& otherwise);
+Mistake acceptance_slip(const Mistake& otherwise);
 
 // ---- Chains of a known law ---------------------------------------------------------------------
 

@@ -6,7 +6,7 @@ namespace {
 
 TEST(LogAcceptance, AcceptsWhatIsMoreProbable) {
   const auto a = [](double from, double to) { return student().log_acceptance(from, to, 0, 0); };
-  const std::string slip = acceptance_slip("min(0, ln pi(x') - ln pi(x))");
+  const Mistake slip = acceptance_slip("min(0, ln pi(x') - ln pi(x))");
   expect_answer(a(-5, -3), 0, 0, "",
                 {.scene = "ln pi rises from -5 to -3, as probable forth as back",
                  .slip = slip,
@@ -19,7 +19,7 @@ TEST(LogAcceptance, AcceptsWhatIsMoreProbable) {
 
 TEST(LogAcceptance, PaysForAnAsymmetricProposal) {
   // The way forth was found with e^-1, the way back would be with e^-3.
-  const std::string slip = acceptance_slip("ln q(x | x') - ln q(x' | x) is added");
+  const Mistake slip = acceptance_slip("ln q(x | x') - ln q(x' | x) is added");
   expect_answer(student().log_acceptance(-4, -4, -1, -3), -2, kRoundoff * 3, "",
                 {.scene = "ln pi is the same; ln q is -1 forth and -3 back",
                  .slip = slip,

@@ -347,7 +347,7 @@ TEST(SplitRHat, OfChainsThatStandStill) {
 
 TEST(MonteCarloAnswer, OfTwoShortChains) {
   const Answer found = student().monte_carlo_answer(short_chains());
-  const auto story = [](const std::string& slip) {
+  const auto story = [](const Mistake& slip) {
     return Story{.scene = "chains 0, 1, 3, 2, 4, 3, 5, 2 and 1, 2, 2, 4, 6, 5, 3, 4",
                  .slip = slip,
                  .handout = equation(10)};

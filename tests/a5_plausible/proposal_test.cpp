@@ -42,7 +42,7 @@ TEST(Propose, TakesWideStepsWithTheirShare) {
     return x.size() == 2 ? x[number] : kUnset;
   };
   const auto step = [&](double choice) { return step_of(choice, 0); };
-  const auto story = [](const std::string& choice, const std::string& slip) {
+  const auto story = [](const std::string& choice, const Mistake& slip) {
     return Story{.scene =
                      "x = 1, size 0.5, z = 2; wide steps of 10 times the size have the share "
                      "0.25; choice = " +

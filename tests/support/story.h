@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -15,12 +16,29 @@ namespace tumble::testing {
 
 inline constexpr double kEps = 2.220446049250313e-16;  // spacing of doubles at 1
 
+/// What a story says of the mistake. Words alone say what holds here or what may be wrong, and are
+/// told as "look at:". Only where the answer that came shows the mistake it is told as "likely:".
+struct Mistake {
+  std::string words;
+  bool is_shown = false;
+
+  Mistake(const char* text) : words(text) {}
+  Mistake(std::string text) : words(std::move(text)) {}
+  bool empty() const { return words.empty(); }
+};
+/// A mistake that the answer shows: it gives this number, or leaves this trace.
+inline Mistake shown(std::string words) {
+  Mistake mistake(std::move(words));
+  mistake.is_shown = true;
+  return mistake;
+}
+
 struct Story {
   std::string scene = "";    // what was set up, with numbers and units
   std::string steps = "";    // what was done to it, where more than one call
-  std::string slip = "";     // the mistake that gives such an answer most often
+  Mistake slip = "";         // what to look at; the mistake itself where the answer shows it
   std::string handout = "";  // file and anchor
-  // the mistake where NaN or infinity came; empty: nothing special to this scene
+  // what to look at where NaN or infinity came; empty: nothing special to this scene
   std::string no_number = "";
   // the answer comes from an iteration, whose error may have any size: see slip_in_the_digits
   bool iterates = false;
@@ -46,12 +64,15 @@ inline constexpr const char* kKept =
     "something is kept between calls (a static or global variable, or a reference to one): the "
     "first call is answered rightly, and a later one with what the first one left";
 
-/// The story with another slip; as it is where that is empty.
-Story with_slip(Story story, const std::string& slip);
+/// The story with another slip; as it is where that is empty, or where the story has one that its
+/// answer shows and this is none.
+Story with_slip(Story story, const Mistake& slip);
 std::string tell(const Story& story, const std::string& expected, const std::string& found,
                  const std::string& unit, const std::string& difference = "");
 
 std::string show(double x);
+/// A scale: powers of two as such ("2^-60"), other numbers in three digits.
+std::string show_scale(double x);
 std::string show(const Numbers& m);
 template <class Derived>
 std::string show(const Eigen::MatrixBase<Derived>& m) {
@@ -59,15 +80,15 @@ std::string show(const Eigen::MatrixBase<Derived>& m) {
 }
 
 /// Fails the test with this story. The first three say it; more of them would only hide the next
-/// test's.
+/// test's. A story that has been told is not told again.
 void report_failure(const std::string& told);
 
 /// What the digits of a wrong answer alone say: no number, or float. Empty where they say neither.
-/// Float is named where every component is a float exactly and near the expected one, which is not;
-/// or where the error is a few of float's roundings (2^-24) and the test allows none of that size.
-/// The error of an iteration proves nothing: there only the bits do.
-std::string slip_in_the_digits(const Numbers& found, const Numbers& expected, double tolerance,
-                               const Story& story);
+/// Float is shown where every component is a float exactly and near the expected one, which is not.
+/// Where only the error is a few of float's roundings (2^-24), and the test allows none of that
+/// size, float is one way to such an answer. The error of an iteration does not say even that.
+Mistake slip_in_the_digits(const Numbers& found, const Numbers& expected, double tolerance,
+                           const Story& story);
 
 /// Absolute comparison. NaN never passes.
 void expect_near(double found, double expected, double tolerance, const std::string& unit,

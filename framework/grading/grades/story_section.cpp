@@ -15,9 +15,9 @@ namespace tumble::grading {
 namespace {
 
 // What tests/support/story.h, a crash and an x-ray say; all else is text.
-constexpr std::array<std::string_view, 10> kNames = {"scene",       "steps",  "expected", "found",
-                                                     "off by",      "likely", "read",     "more",
-                                                     "called with", "x-ray"};
+constexpr std::array<std::string_view, 11> kNames = {"scene",  "steps",       "expected", "found",
+                                                     "off by", "likely",      "look at",  "read",
+                                                     "more",   "called with", "x-ray"};
 constexpr std::string_view kXray = "x-ray", kMark = "<-";
 constexpr std::size_t kTermIndent = 12;  // blanks before a term; a value that goes on has fewer
 

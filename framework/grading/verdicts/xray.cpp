@@ -26,6 +26,7 @@ bool is_near(const VectorXd& a, const VectorXd& b) {
 }
 
 std::string digits_of(double x, int digits) {
+  if (std::isnan(x)) return "nan";  // its sign says nothing
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, x == 0.0 ? 0.0 : x);
   return text;

@@ -1,0 +1,80 @@
+// What a failing test tells (tests/support/story.h).
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/story.h"
+
+namespace tumble::testing {
+namespace {
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// The message of the one failure that a comparison makes.
+template <class Check>
+std::string told_by(const Check& check) {
+  ::testing::TestPartResultArray parts;
+  {
+    const ::testing::ScopedFakeTestPartResultReporter reporter(
+        ::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &parts);
+    check();
+  }
+  return parts.size() == 1 ? parts.GetTestPartResult(0).message() : "";
+}
+
+TEST(Told, OnlyAnAnswerThatShowsTheMistakeIsCalledLikely) {
+  const std::string shown_one = tell({.slip = shown("the sign")}, "1", "-1", "m"),
+                    other = tell({.slip = "v' = v + J / m"}, "1", "7", "m");
+  EXPECT_TRUE(holds(shown_one, "\n  likely:   the sign")) << shown_one;
+  EXPECT_TRUE(holds(other, "\n  look at:  v' = v + J / m")) << other;
+  EXPECT_FALSE(holds(other, "likely")) << other;
+}
+
+TEST(Told, WhatTheAnswerShowsGivesWayOnlyToWhatItShows) {
+  const Story story{.slip = shown("the sign")};
+  EXPECT_EQ(with_slip(story, "float, perhaps").slip.words, "the sign");
+  EXPECT_EQ(with_slip(story, shown(kKept)).slip.words, kKept);
+  EXPECT_EQ(with_slip({.slip = "the law"}, "no number").slip.words, "no number");
+}
+
+TEST(Told, NothingIsSubtractedFromWhatIsNoNumber) {
+  const double nan = std::copysign(std::numeric_limits<double>::quiet_NaN(), -1.0);
+  const std::string told = told_by([&] { expect_near(nan, 1.0, 0.0, "s", {}); }),
+                    of_vector = told_by([&] {
+                      expect_near(Eigen::Vector2d(nan, 1), Eigen::Vector2d(0, 1), 0.0, "s", {});
+                    });
+  for (const std::string& text : {told, of_vector}) {
+    EXPECT_FALSE(holds(text, "off by")) << text;
+    EXPECT_FALSE(holds(text, "-nan")) << text;
+    EXPECT_TRUE(holds(text, "nan")) << text;
+  }
+  EXPECT_TRUE(holds(told_by([] { expect_near(1.5, 1.0, 0.0, "s", {}); }), "off by:   0.5"));
+}
+
+// An error of float's size is what many methods leave: only bits of float show float.
+TEST(Told, FloatIsShownByItsBitsAndNotByTheSizeOfAnError) {
+  const Eigen::Vector2d expected(1.0 / 3, 2.0 / 3), near = expected * (1 + 2e-7),
+                                                    rounded = expected.cast<float>().cast<double>();
+  const Mistake by_size = slip_in_the_digits(numbers_of(near), numbers_of(expected), 1e-15, {}),
+                by_bits = slip_in_the_digits(numbers_of(rounded), numbers_of(expected), 1e-15, {});
+  EXPECT_FALSE(by_size.is_shown) << by_size.words;
+  EXPECT_TRUE(holds(by_size.words, "one way to get such an answer: float")) << by_size.words;
+  EXPECT_TRUE(by_bits.is_shown);
+  EXPECT_EQ(by_bits.words, kFloat);
+  EXPECT_TRUE(slip_in_the_digits(numbers_of(near), numbers_of(expected), 1e-15, {.iterates = true})
+                  .empty());
+}
+
+TEST(Told, AScaleIsAPowerOfTwoOrThreeDigits) {
+  EXPECT_EQ(show_scale(0x1p-60), "2^-60");
+  EXPECT_EQ(show_scale(0x1p60), "2^60");
+  EXPECT_EQ(show_scale(4.0), "4");
+  EXPECT_EQ(show_scale(5e-8 / 3), "1.67e-08");
+}
+
+}  // namespace
+}  // namespace tumble::testing
