@@ -85,6 +85,18 @@ TEST(NamesInDeclaration, AreNoneWhereAParameterHasNoName) {
   EXPECT_EQ(names_in_declaration("double f(double t", "f"), Names{}) << "cut short";
 }
 
+TEST_F(ParameterNames, AndHintsAreInTheCommentOfTheFunctionItself) {
+  const std::string header =
+      "/// Hints: handouts/x.md#one\ndouble f(int a);\n/// No hint.\ndouble g(int a);\n";
+  EXPECT_EQ(hints_in_declaration(header, "f"), "handouts/x.md#one");
+  EXPECT_EQ(hints_in_declaration(header, "g"), "") << "of the function before";
+  EXPECT_EQ(hints_in_declaration(header, "h"), "");
+  EXPECT_EQ(hints_to_read("a1", "intersect_ray_triangle"),
+            "\n  read:     handouts/a1_impulse.md#hint-ray");
+  EXPECT_EQ(hints_to_read("a1", "contact_normal_vertex_vertex"),
+            "\n  read:     handouts/a1_impulse.md#hint-normals");
+}
+
 TEST(WithNames, ValuesStandAloneWhereNamesDoNotFit) {
   EXPECT_EQ(with_names({"(0, 0, 5)", "\"a, b\""}, {"x", "what"}), "x = (0, 0, 5), what = \"a, b\"");
   EXPECT_EQ(with_names({"1", "{a: 2, b: 3}"}, {"x"}), "1, {a: 2, b: 3}");
@@ -109,7 +121,8 @@ TEST_F(ParameterNames, StandInTheStoryOfAFailedCall) {
   EXPECT_THROW(module.rk4_step(decay, 0.0, Eigen::Vector2d(1.0, -2.0), 0.01), std::runtime_error);
   EXPECT_EQ(std::string(call_log().story),
             "rk4_step threw an exception: no such element\n"
-            "  called with: f = a function, t = 0, y = (1, -2), h = 0.01");
+            "  called with: f = a function, t = 0, y = (1, -2), h = 0.01\n"
+            "  read:     handouts/a2_integration.md#hint-rk4");
 }
 
 // Its derivative is a function of the same module: the story is about the step.
@@ -122,7 +135,9 @@ TEST_F(ParameterNames, AreOfTheOuterCallWhenTheInnerOneHasReturned) {
                std::runtime_error);
   EXPECT_STREQ(call_log().last_call, "rk4_step");
   EXPECT_EQ(call_log().calls, 2);
-  EXPECT_EQ(call_log().asked(), "f = a function, t = 2, y = (1, 0), h = 0.5");
+  EXPECT_EQ(call_log().asked(),
+            "f = a function, t = 2, y = (1, 0), h = 0.5\n"
+            "  read:     handouts/a2_integration.md#hint-rk4");
 }
 
 }  // namespace

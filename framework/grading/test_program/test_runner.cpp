@@ -59,6 +59,7 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
   void OnTestPartResult(const ::testing::TestPartResult& part) override {
     if (part.skipped()) skipped = true;
     if (!part.failed()) return;
+    call_log().failed();
     // A story (tests/support/story.h) starts a new line. A plain EXPECT has no story: its file and
     // line are added.
     std::string message = part.message();
@@ -252,6 +253,10 @@ void CallLog::begin(const char* function) {
   argument_bytes = 0;
 }
 
+void CallLog::failed() {
+  if (failed_call[0] == '\0') std::snprintf(failed_call, sizeof failed_call, "%s", last_call);
+}
+
 namespace {
 
 std::vector<detail::Describer>& describers() {
@@ -365,7 +370,8 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
     }
     if (owner == Process::kStudents) result.printed = read_printed(printed);
   }
-  result.last_call = log.last_call;
+  const bool is_wrong = result.verdict == Verdict::kWrong && !log.noted;
+  result.last_call = is_wrong && log.failed_call[0] != '\0' ? log.failed_call : log.last_call;
   result.calls = log.calls;
   ::close(answer_pipe[0]);
   ::close(printed);

@@ -23,6 +23,7 @@ struct CallLog {
   static constexpr std::size_t kStory = 4096;      // bytes: longer exception texts are cut
   static constexpr std::size_t kArguments = 8192;  // bytes in the wire format
   char last_call[96] = "";
+  char failed_call[96] = "";  // the last one before the test's first failure; empty: none
   unsigned char arguments[kArguments] = {};
   std::size_t argument_bytes = 0;  // 0: none kept
   // converts the arguments to words: see add_describer
@@ -38,7 +39,10 @@ struct CallLog {
   void begin(const char* function);
   void end() { in_call = false; }
   void keep(const modules::Bytes& bytes, std::size_t describer);
-  /// The arguments of the last call in words; empty where they were not kept.
+  /// The test has failed: what was called last is what it failed in. Later calls change nothing.
+  void failed();
+  /// The arguments of the last call in words, and where its function's hints are; empty where they
+  /// were not kept.
   std::string asked() const;
   /// Only the first note is kept: later ones are its consequences.
   void note(Verdict verdict, const std::string& story);
@@ -57,7 +61,8 @@ std::size_t add_describer(Describer describer);
 template <class Module, class... A>
 std::string described(const std::string& function, const modules::Bytes& arguments) {
   return with_names(modules::show_written_arguments<A...>(arguments),
-                    parameter_names(Module::kId, function));
+                    parameter_names(Module::kId, function)) +
+         hints_to_read(Module::kId, function);
 }
 
 // Initialised before main, and so in the parent.

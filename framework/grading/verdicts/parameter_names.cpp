@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include "framework/core/code_text.h"
 #include "framework/core/files.h"
@@ -49,24 +50,59 @@ fs::path header_of(const std::string& id) {
   return {};
 }
 
+// Where a function is declared in the code of a header: its name, its brackets.
+struct Declaration {
+  std::size_t name = std::string::npos, open = 0, end = 0;
+};
+
+Declaration declaration_of(const std::string& code, const std::string& function) {
+  for (std::size_t at = code.find(function); at != code.npos && !function.empty();
+       at = code.find(function, at + 1)) {
+    const std::size_t open = code.find_first_not_of(" \t\n", at + function.size());
+    if (open == code.npos || code[open] != '(') continue;
+    const std::size_t end = behind_bracket(code, open);
+    if (is_declaration(code, at, end)) return {at, open, end};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> names_in_declaration(const std::string& header,
                                               const std::string& function) {
   const std::string text = code_of(header);
-  for (std::size_t at = text.find(function); at != text.npos; at = text.find(function, at + 1)) {
-    const std::size_t open = text.find_first_not_of(" \t\n", at + function.size());
-    if (open == text.npos || text[open] != '(') continue;
-    const std::size_t end = behind_bracket(text, open);
-    if (!is_declaration(text, at, end)) continue;
-    std::vector<std::string> names;
-    for (const std::string& parameter : at_commas(text.substr(open + 1, end - open - 2))) {
-      names.push_back(name_in(parameter));
-      if (names.back().empty()) return {};
-    }
-    return names;
+  const Declaration found = declaration_of(text, function);
+  if (found.name == text.npos) return {};
+  std::vector<std::string> names;
+  for (const std::string& parameter :
+       at_commas(text.substr(found.open + 1, found.end - found.open - 2))) {
+    names.push_back(name_in(parameter));
+    if (names.back().empty()) return {};
   }
-  return {};
+  return names;
+}
+
+std::string hints_in_declaration(const std::string& header, const std::string& function) {
+  const std::string code = code_of(header);  // comments are blanked: places are the same
+  const Declaration found = declaration_of(code, function);
+  if (found.name == code.npos) return "";
+  const std::size_t before = code.find_last_of(";}", found.name),
+                    begin = before == code.npos ? 0 : before;
+  constexpr std::string_view kMark = "Hints: ";
+  const std::string comment = header.substr(begin, found.name - begin);
+  const std::size_t at = comment.rfind(kMark);
+  if (at == comment.npos) return "";
+  const std::size_t from = at + kMark.size();
+  return comment.substr(from, comment.find_first_of(" \n", from) - from);
+}
+
+std::string hints_to_read(const std::string& id, const std::string& function) {
+  try {
+    const std::string place = hints_in_declaration(text_of(header_of(id)), function);
+    return place.empty() ? "" : "\n  read:     " + place;
+  } catch (const std::exception&) {  // a tree that cannot be found, or read
+    return "";
+  }
 }
 
 std::vector<std::string> parameter_names(const std::string& id, const std::string& function) {

@@ -1,5 +1,5 @@
-/// Names of the parameters of a module's functions, read from its header when a story needs them:
-/// no other file has them.
+/// Names of the parameters of a module's functions, and where their hints are, read from its header
+/// when a story needs them: no other file has them.
 #pragma once
 
 #include <string>
@@ -17,6 +17,15 @@ std::vector<std::string> names_in_declaration(const std::string& header,
 /// @param id  of the module, "a1"
 /// @return nothing where there is no such header: a story goes without names
 std::vector<std::string> parameter_names(const std::string& id, const std::string& function);
+
+/// Where the comment of a function says that its hints are: "handouts/a1_impulse.md#hint-ray".
+/// @return empty where the header does not declare the function, or its comment has no hints
+std::string hints_in_declaration(const std::string& header, const std::string& function);
+
+/// "\n  read:     handouts/a1_impulse.md#hint-ray", for the end of a story.
+/// @param id  of the module, "a1"
+/// @return empty where there is no such header, or it says nothing
+std::string hints_to_read(const std::string& id, const std::string& function);
 
 /// "t = 0, h = 0.01"; without names, "0, 0.01", where there are not as many names as values.
 std::string with_names(const std::vector<std::string>& values,

@@ -37,7 +37,7 @@ struct TestResult {
   Verdict verdict = Verdict::kGraderFault;
   // what went wrong, for the student; empty when right
   std::string story;
-  // the last function of the module that was called
+  // the last function of the module that was called; of a wrong answer: before the first failure
   std::string last_call;
   long calls = 0;  // of the module's functions
   // output of the student's code to stdout and stderr, cut short
@@ -48,6 +48,12 @@ struct TestResult {
   bool not_run = false;  // the budget of all tests together was used up
   double wall_s = 0.0;   // never part of compared output
 };
+
+/// Whether the test was not run because the time of all tests together was used up before it. It
+/// counts as out of time; but nothing is known of what it asks.
+inline bool is_cut_off(const TestResult& result) {
+  return result.not_run && result.verdict == Verdict::kOutOfResources;
+}
 
 /// Exit code of a test program: 3 for a fault of the grader or a machine too busy, 1 when something
 /// is wrong, 4 when some tests are not attempted and the others right, else 0.

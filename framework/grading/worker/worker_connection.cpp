@@ -192,7 +192,8 @@ void WorkerConnection::end_call() {
 }
 
 void WorkerConnection::note_arguments(const char* function, const std::vector<std::string>& words) {
-  arguments_ = with_names(words, parameter_names(options_.id, function));
+  arguments_ = with_names(words, parameter_names(options_.id, function)) +
+               hints_to_read(options_.id, function);
 }
 
 // For the story of a wrong answer, or of none. Long ones are not kept: nobody reads a thousand
