@@ -55,7 +55,8 @@ void print_warnings(const fs::path& file, const std::string& said) {
 
 ExitCode run_tests(const Command& command, const CheckWords& words,
                    std::vector<std::string> program) {
-  program.insert(program.end(), {"--rubric", public_rubric(command, words).string()});
+  program.insert(program.end(), {"--rubric", public_rubric(command, words).string(), "--source",
+                                 checked_file(command, words).string()});
   if (!words.results.empty()) program.insert(program.end(), {"--json", words.results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);

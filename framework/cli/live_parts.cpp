@@ -22,6 +22,8 @@
 #include "framework/core/not_implemented.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/core/run_program.h"
+#include "framework/grading/verdicts/mend_order.h"
+#include "framework/grading/verdicts/own_functions.h"
 #include "framework/grading/verdicts/rubric.h"
 #include "framework/grading/worker/guarded_calls.h"
 #include "framework/live/records.h"
@@ -141,22 +143,6 @@ void refuse(int records, const std::string& where, const std::string& problem,
                              {"not_attempted", not_attempted}}));
 }
 
-/// The line of a file on which a function is defined: the first at which its name stands before a
-/// bracket and behind a type. 0: none
-int line_of_function(const std::string& text, const std::string& function) {
-  if (function.empty() || !std::all_of(function.begin(), function.end(),
-                                       [](unsigned char c) { return std::isalnum(c) || c == '_'; }))
-    return 0;
-  const std::regex definition(R"(^[A-Za-z_:<>&\* 0-9]+[ &\*])" + function + R"(\()");
-  std::istringstream lines(text);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (std::regex_search(line, definition) && !line.starts_with("  return")) return number;
-  }
-  return 0;
-}
-
 /// A user's file among the modules, with the functions that it has to have.
 struct OwnSource {
   std::string id;
@@ -228,13 +214,29 @@ int line_of_offset(const Context& context, const fs::path& source, const fs::pat
   return 0;
 }
 
-void print_line(const fs::path& file, int number) {
+std::string line_in(const fs::path& file, int number) {
   std::ifstream in(file);
   std::string text;
   for (int k = 0; k < number && std::getline(in, text); ++k) {
   }
-  text.erase(0, text.find_first_not_of(" \t"));
-  fmt::print("{}:{}: {}\n", file.filename().string(), number, text);
+  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+}
+
+/// The line in which a call of the module ended, where its story names it; 0: it does not.
+int exact_line_of(const grading::TestResult& result) {
+  const std::string place = grading::exact_place_of(result);
+  return place.empty() ? 0 : std::atoi(place.c_str() + place.rfind(':') + 1);
+}
+
+/// With the place of the hints where other stories have what to read.
+std::string story_for_page(const grading::TestResult& result) {
+  constexpr std::string_view kHints = "theory and hints: ";
+  const std::size_t at = result.story.find(kHints);
+  if (result.verdict != grading::Verdict::kNotAttempted || at == std::string::npos)
+    return result.story;
+  const std::size_t begin = at + kHints.size();
+  return result.story + "\n  read:     " +
+         result.story.substr(begin, result.story.find_first_of(" \n", begin) - begin);
 }
 
 }  // namespace
@@ -257,16 +259,22 @@ void locate_for_page(Context& context, const RunWords& words) {
     for (const OwnSource& source : sources) {
       const std::string name = fs::path(object).filename().string();
       if (name != source.id + "_student.so" && name != source.id + ".so") continue;
-      if (const int number = line_of_offset(context, source.file, object, offset); number > 0)
-        return print_line(source.file, number);
+      if (const int number = line_of_offset(context, source.file, object, offset); number > 0) {
+        fmt::print("{}:{}: {}\n", source.file.filename().string(), number,
+                   line_in(source.file, number));
+        return;
+      }
     }
   }
   for (const OwnSource& source : sources)
     for (const std::string& function : source.functions) {
       const std::regex named("\\b" + function + "\\b");
       if (!std::regex_search(said, named)) continue;
-      if (const int number = line_of_function(text_of(source.file), function); number > 0)
-        return print_line(source.file, number);
+      const int number = grading::line_of_definition(text_of(source.file), function);
+      if (number == 0) continue;
+      fmt::print("in {}, which begins in line {} of {}: {}\n", function, number,
+                 source.file.filename().string(), line_in(source.file, number));
+      return;
     }
 }
 
@@ -285,7 +293,9 @@ void simulate_for_page(Context& context, const RunWords& words) {
   } catch (const UserError& error) {
     refuse(records, error.where(), error.problem(), error.remedy(), false);
   } catch (const NotImplemented& missing) {
-    refuse(records, missing.function(), missing.what(), "", true);
+    refuse(records, missing.function(), missing.what(),
+           "Nothing is wrong with it: it is yet to be written. The page goes on when you save it.",
+           true);
   } catch (const std::exception& error) {
     refuse(records, "tumble live", error.what(), "", false);
   }
@@ -303,19 +313,35 @@ void judge_for_page(Context& context, const RunWords& words, const std::string& 
   const grading::Rubric rubric =
       grading::read_rubric(context.root / "assignments" / name.folder / "rubric.json");
   const std::string source = text_of(file);
+  const std::vector<std::string> headings = grading::headings_of(checked.results, source);
+  const auto follows = grading::what_follows(checked.results, source);
+  const std::string used_up = grading::what_used_the_time(checked.results);
   Json tests = Json::array();
-  for (const grading::TestResult& result : checked.results) {
+  for (std::size_t i = 0; i < checked.results.size(); ++i) {
+    const grading::TestResult& result = checked.results[i];
+    const bool is_cut_off = grading::is_cut_off(result);
+    const std::string& function = is_cut_off ? used_up : result.last_call;
     const grading::RubricItem* item = rubric.find(result.test);
     Json one{{"test", result.test},
              {"group", result.test.substr(0, result.test.find('.'))},
              {"title", item != nullptr ? item->title : result.test},
              {"points", item != nullptr ? item->points : 0.0},
-             {"verdict", grading::words(result.verdict)}};
+             {"verdict", is_cut_off ? "not run" : grading::words(result.verdict)}};
     if (result.verdict != grading::Verdict::kRight) {
-      one["story"] = result.story;
+      const int line = exact_line_of(result);
+      const bool is_written = result.verdict != grading::Verdict::kNotAttempted;
+      one["story"] = story_for_page(result);
       one["printed"] = result.printed;
-      one["function"] = result.last_call;
-      one["line"] = line_of_function(source, result.last_call);
+      // The one line that is known: where the call ended, or else where its function begins.
+      one["line"] = line;
+      one["function"] =
+          line == 0 && is_written ? grading::with_its_line(source, function) : function;
+      one["heading"] = headings[i];
+      const auto other = follows.find(result.last_call);
+      if (other != follows.end()) one["follows_from"] = other->second;
+      // Before all others: what kept tests from running.
+      const std::string& root = other != follows.end() ? other->second : function;
+      one["is_first"] = !used_up.empty() && root == used_up;
     }
     tests.push_back(std::move(one));
   }

@@ -153,6 +153,58 @@ TEST(Check, AnEndlessLoopIsKnownWithinSeconds) {
   EXPECT_LT(took_s, 20.0);
 }
 
+// The stub with normals in the plane: of a corner on an edge as given, of an edge on an edge by that
+// function, and of a corner on a corner without unit length.
+std::string with_normals(const std::string& of_edge) {
+  std::string text = stub();
+  const auto write = [&](const std::string& function, const std::string& rest) {
+    const std::string head = "Vector2d contact_normal_" + function + "(";
+    const std::size_t begin = text.find(head);
+    text.replace(begin, text.find("}\n", begin) + 2 - begin, head + rest + "\n}\n");
+  };
+  write("vertex_edge",
+        "const Vector2d& x, const Vector2d& a, const Vector2d& b) {\n  const Vector2d e = (b - "
+        "a).normalized();\n  " +
+            of_edge);
+  write("edge_edge",
+        "const Vector2d& a, const Vector2d& b, const Vector2d& x) {\n  return "
+        "contact_normal_vertex_edge(x, a, b);");
+  write("vertex_vertex", "const Vector2d& a, const Vector2d& b) {\n  return a - b;");
+  return text;
+}
+
+int count(const std::string& text, const std::string& part) {
+  int n = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(Check, AStoryIsToldOnceAndNamesTheMistakeThatTheAnswerShows) {
+  SKIP_UNLESS_UNTOUCHED();
+  const File file(with_normals(
+      "const Vector2d n(e.y(), -e.x());\n  return n.dot(x - a) < 0 ? Vector2d(-n) : n;"));
+  const std::string printed = check({file.path.string(), "ContactNormal2d.*"}).printed;
+  // one of its own test, one in each of two units: for either side of an edge it is the same
+  EXPECT_EQ(count(printed, "likely:   normal not unit: divide by its length"), 3) << printed;
+  EXPECT_EQ(count(printed, "absolute threshold"), 0) << printed;
+  EXPECT_EQ(count(printed, "\nmend first\n    wrong in contact_normal_vertex_vertex (which begins"),
+            1)
+      << printed;
+}
+
+TEST(Check, WhatAsksAWrongFunctionFollowsFromItAndNothingIsCalledLikelyWithoutReason) {
+  SKIP_UNLESS_UNTOUCHED();
+  const File file(with_normals("return Vector2d(1.5 * e.y(), x.x() + e.x());"));
+  const std::string printed = check({file.path.string(), "ContactNormal2d.*Edge*"}).printed;
+  EXPECT_EQ(count(printed, "likely:"), 0) << printed;
+  EXPECT_GT(count(printed, "look at:"), 0) << printed;
+  EXPECT_GT(
+      count(printed, "probably follows from contact_normal_vertex_edge (which begins in line"), 0)
+      << printed;
+  EXPECT_EQ(count(printed, "\nmend first\n    contact_normal_vertex_edge (which begins in line"), 1)
+      << printed;
+}
+
 // What the module's header brings is there for own tests, too, whether or not the fixtures use it.
 TEST(Check, OwnTestsMayCallWhateverTheModulesHeaderDeclares) {
   SKIP_UNLESS_UNTOUCHED();

@@ -72,6 +72,20 @@ TEST_F(MendFirst, ACauseWithoutANumberThatAgreesIsOnlyPossible) {
   EXPECT_NE(html.find("though with other answers"), std::string::npos);
 }
 
+TEST_F(MendFirst, SaysWhatFollowsAndWhatWasNotRunWithoutNamesOfHiddenTests) {
+  grade.causes[0].tests = {"Open.Hit"};
+  grade.causes[0].following = {"Secret.Seam"};
+  const std::string follows = page(for_student(grade));
+  EXPECT_NE(follows.find("One more test fails, of functions that ask hit"), std::string::npos)
+      << follows;
+  EXPECT_NE(follows.find("(9 points)"), std::string::npos);
+  EXPECT_EQ(follows.find("Secret"), std::string::npos);
+  std::swap(grade.causes[0].following, grade.causes[0].not_run);
+  const std::string not_run = page(for_student(grade));
+  EXPECT_NE(not_run.find("One more test was not run"), std::string::npos) << not_run;
+  EXPECT_EQ(not_run.find("Secret"), std::string::npos);
+}
+
 TEST_F(MendFirst, WhatIsRightIsFolded) {
   const std::string html = page(grade);
   const auto fold = html.find("1 test right: 3 points</summary>");

@@ -144,6 +144,40 @@ TEST(Causes, EveryTestThatIsNotRightHasOneAndTheCostliestIsFirst) {
   EXPECT_EQ(causes[2].kind, Cause::Kind::kNotWritten);
 }
 
+// e_forgotten explains the first; the second asks the first, the third is of its own.
+TEST(Causes, WhatAsksAFailingFunctionStandsUnderItsCause) {
+  const std::string source =
+      "double collision_impulse(int a) { return a; }\n"
+      "double resolve_collision(int a) { return collision_impulse(a); }\n"
+      "double wrench_of_point_force(int a) { return a; }\n";
+  const std::vector<ScoredTest> tests = {
+      scored("Impulse.Central", 5, Verdict::kWrong, "collision_impulse", "found: 6 N s"),
+      scored("Resolve.Gap", 3, Verdict::kWrong, "resolve_collision", "found: 17 m/s"),
+      scored("Force.Other", 2, Verdict::kWrong, "wrench_of_point_force", "found: 8 N m")};
+  const auto causes = causes_of(tests, slips(), "a1.cpp", source);
+  ASSERT_EQ(causes.size(), 2u);
+  EXPECT_EQ(causes[0].says, "the (1 + e) is missing");
+  EXPECT_EQ(causes[0].tests, std::vector<std::string>{"Impulse.Central"});
+  EXPECT_EQ(causes[0].following, std::vector<std::string>{"Resolve.Gap"});
+  EXPECT_EQ(points_lost(causes[0], tests), 8.0);
+  EXPECT_EQ(causes[1].tests, std::vector<std::string>{"Force.Other"});
+}
+
+TEST(Causes, TestsThatWereNotRunBelongToWhatUsedTheTimeWhichIsFirst) {
+  std::vector<ScoredTest> tests = {
+      scored("Force.Torque", 1, Verdict::kOutOfResources, "linear_acceleration", "no answer"),
+      scored("Ray.Hit", 4, Verdict::kWrong, "intersect_ray_triangle", "found: a miss"),
+      scored("Resolve.Both", 2, Verdict::kOutOfResources, "", "not run: used up")};
+  tests[0].result.timed_out_s = 2.0;
+  tests[2].result.not_run = true;
+  const auto causes = causes_of(tests, {}, "a1.cpp", "");
+  ASSERT_EQ(causes.size(), 2u);
+  EXPECT_EQ(causes[0].says, "linear_acceleration takes too much time or memory");
+  EXPECT_EQ(causes[0].tests, std::vector<std::string>{"Force.Torque"});
+  EXPECT_EQ(causes[0].not_run, std::vector<std::string>{"Resolve.Both"});
+  EXPECT_EQ(points_lost(causes[0], tests), 3.0);
+}
+
 TEST(Causes, TheLineOfACrashIsMarked) {
   std::string source;
   for (int i = 1; i <= 9; ++i) source += "line " + std::to_string(i) + "\n";

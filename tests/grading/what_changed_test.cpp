@@ -39,6 +39,19 @@ TEST(WhatChanged, SaysThatNothingHas) {
   EXPECT_EQ(what_changed(same, same, rubric()), "no verdict has changed");
 }
 
+// A loop in one function takes nothing from the tests that were not run for it.
+TEST(WhatChanged, ATestThatWasNotRunIsNoLoss) {
+  TestResult cut_off = verdict_of("Ray.Hits", Verdict::kOutOfResources);
+  cut_off.not_run = true;
+  const std::vector<TestResult> right = {verdict_of("Ray.Hits", Verdict::kRight)};
+  EXPECT_EQ(what_changed(right, {cut_off}, rubric()),
+            "no verdict has changed; 1 test not run, for want of time");
+  EXPECT_EQ(what_changed({cut_off}, right, rubric()), "no verdict has changed");
+  EXPECT_EQ(
+      what_comes_next({cut_off, verdict_of("Impulse.Rotates", Verdict::kOutOfResources)}, rubric()),
+      "Rotation [Impulse.Rotates]: out of time or memory");
+}
+
 // Another choice of tests on the command line is no change of the code.
 TEST(WhatChanged, LeavesOutTestsThatOnlyOneRunHas) {
   EXPECT_EQ(what_changed({verdict_of("Ray.Hits", Verdict::kWrong)},

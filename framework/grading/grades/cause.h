@@ -18,6 +18,10 @@ struct Cause {
   std::vector<std::string> code;
   std::vector<std::string> tests;  // that it explains, in the rubric's order
   std::size_t same_numbers = 0;    // of these
+  // whose functions ask one of these, and give wrong answers that no other cause explains
+  std::vector<std::string> following = {};
+  // that were not run because this used up the time of all tests together
+  std::vector<std::string> not_run = {};
 };
 
 }  // namespace tumble::grading

@@ -1,7 +1,6 @@
 #include "framework/grading/grades/causes.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -10,11 +9,10 @@
 #include <fmt/format.h>
 
 #include "framework/core/code_text.h"
+#include "framework/grading/verdicts/mend_order.h"
 
 namespace tumble::grading {
 namespace {
-
-bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 bool is_failure(Verdict verdict) {
   return verdict == Verdict::kWrong || verdict == Verdict::kCrashed ||
@@ -73,19 +71,53 @@ Cause cause_without_slip(Verdict verdict, const std::string& function) {
   return cause;
 }
 
-// The rest: one cause a function and verdict, in the order of the tests.
-void add_rest(const std::vector<ScoredTest>& tests, std::vector<Cause>& causes) {
+std::vector<TestResult> results_of(const std::vector<ScoredTest>& tests) {
+  std::vector<TestResult> results;
+  for (const ScoredTest& test : tests) results.push_back(test.result);
+  return results;
+}
+
+// The rest: one cause a function and verdict, in the order of the tests. A test that was not run
+// belongs to the function that used up the time. A wrong answer that no slip explains belongs to
+// the cause of the function that it probably follows from.
+void add_rest(const std::vector<ScoredTest>& tests, const std::string& source,
+              std::vector<Cause>& causes) {
   std::set<std::string> explained;
-  for (const Cause& cause : causes) explained.insert(cause.tests.begin(), cause.tests.end());
+  std::map<std::string, std::size_t> cause_of_function;  // the first; slips before all others
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    explained.insert(causes[i].tests.begin(), causes[i].tests.end());
+    for (const std::string& function : causes[i].functions) cause_of_function.emplace(function, i);
+  }
+  const std::vector<TestResult> results = results_of(tests);
+  const std::string used_up = what_used_the_time(results);
+  const auto follows = what_follows(results, source);
   std::map<std::pair<Verdict, std::string>, std::size_t> place;
+  const auto without_slip = [&](Verdict verdict, const std::string& function) -> Cause& {
+    const auto [it, is_new] = place.emplace(std::make_pair(verdict, function), causes.size());
+    if (is_new) causes.push_back(cause_without_slip(verdict, function));
+    if (is_new && !function.empty()) cause_of_function.emplace(function, it->second);
+    return causes[it->second];
+  };
+  std::vector<const ScoredTest*> followers;
   for (const ScoredTest& test : tests) {
-    const Verdict verdict = test.result.verdict;
+    const TestResult& result = test.result;
     if (explained.contains(test.item.test)) continue;
-    if (!is_failure(verdict) && verdict != Verdict::kNotAttempted) continue;
-    const auto [it, is_new] =
-        place.emplace(std::make_pair(verdict, test.result.last_call), causes.size());
-    if (is_new) causes.push_back(cause_without_slip(verdict, test.result.last_call));
-    causes[it->second].tests.push_back(test.item.test);
+    if (is_cut_off(result)) {
+      const auto its = cause_of_function.find(used_up);
+      (its != cause_of_function.end() ? causes[its->second] : without_slip(result.verdict, used_up))
+          .not_run.push_back(test.item.test);
+    } else if (result.verdict == Verdict::kWrong && follows.contains(result.last_call)) {
+      followers.push_back(&test);
+    } else if (is_failure(result.verdict) || result.verdict == Verdict::kNotAttempted) {
+      without_slip(result.verdict, result.last_call).tests.push_back(test.item.test);
+    }
+  }
+  for (const ScoredTest* test : followers) {
+    const auto root = cause_of_function.find(follows.at(test->result.last_call));
+    if (root != cause_of_function.end())
+      causes[root->second].following.push_back(test->item.test);
+    else  // a slip explains that function's tests, and names another
+      without_slip(test->result.verdict, test->result.last_call).tests.push_back(test->item.test);
   }
 }
 
@@ -124,26 +156,6 @@ std::string place_of_crash(const Cause& cause, const std::string& function,
 
 }  // namespace
 
-int line_of_definition(const std::string& source, const std::string& function) {
-  const std::string code = code_of(source);
-  for (std::size_t at = code.find(function); at != std::string::npos && !function.empty();
-       at = code.find(function, at + 1)) {
-    std::size_t next = at + function.size();
-    if ((at > 0 && is_name(code[at - 1])) || (next < code.size() && is_name(code[next]))) continue;
-    next = code.find_first_not_of(" \t\n", next);
-    if (next == std::string::npos || code[next] != '(') continue;
-    next = behind_bracket(code, next);
-    if (next == std::string::npos) continue;
-    next = code.find_first_not_of(" \t\n", next);
-    if (next != std::string::npos && code.compare(next, 8, "noexcept") == 0)
-      next = code.find_first_not_of(" \t\n", next + 8);
-    if (next == std::string::npos || code[next] != '{') continue;  // a call or a declaration
-    return 1 +
-           static_cast<int>(std::count(code.begin(), code.begin() + static_cast<long>(at), '\n'));
-  }
-  return 0;
-}
-
 std::string lines_of_function(const std::string& source, int line) {
   const std::string code = code_of(source);
   std::size_t at = 0;
@@ -167,8 +179,10 @@ std::string lines_around(const std::string& source, int line) {
 
 double points_lost(const Cause& cause, const std::vector<ScoredTest>& tests) {
   double lost = 0.0;
-  for (const std::string& name : cause.tests)
-    if (const ScoredTest* test = test_called(tests, name)) lost += test->item.points - test->score;
+  for (const auto& names : {cause.tests, cause.following, cause.not_run})
+    for (const std::string& name : names)
+      if (const ScoredTest* test = test_called(tests, name))
+        lost += test->item.points - test->score;
   return lost;
 }
 
@@ -178,13 +192,14 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
   std::vector<Failure> failures;
   std::map<std::string, std::string> passed;
   for (const ScoredTest& test : tests) {
-    if (is_failure(test.result.verdict)) failures.push_back(failure_of(test.result));
+    if (is_failure(test.result.verdict) && !is_cut_off(test.result))
+      failures.push_back(failure_of(test.result));
     if (test.result.verdict == Verdict::kRight) passed[test.item.test] = test.result.last_call;
   }
   std::vector<Cause> causes;
   for (const LikelySlip& likely : likely_slips(failures, passed, known))
     causes.push_back(cause_of(likely, known));
-  add_rest(tests, causes);
+  add_rest(tests, source, causes);
   for (Cause& cause : causes)
     for (const std::string& function : cause.functions) {
       const int line = line_of_definition(source, function);
@@ -200,6 +215,7 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
                                                                   : "");
     }
   std::stable_sort(causes.begin(), causes.end(), [&](const Cause& a, const Cause& b) {
+    if (a.not_run.empty() != b.not_run.empty()) return b.not_run.empty();
     return points_lost(a, tests) > points_lost(b, tests);
   });
   return causes;

@@ -7,11 +7,12 @@
 #include "framework/grading/grades/cause.h"
 #include "framework/grading/grades/grade.h"
 #include "framework/grading/grades/likely_slips.h"
+#include "framework/grading/verdicts/own_functions.h"
 
 namespace tumble::grading {
 
 /// Every test without full points belongs to one cause. The one that costs the most points is
-/// first.
+/// first; before it only the one that kept tests from running.
 /// @param source  text of the submission, to find the functions in; `file` is its name
 std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
                              const std::vector<AuditedSlip>& known, const std::string& file,
@@ -19,9 +20,6 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
 
 /// The points that a cause costs.
 double points_lost(const Cause& cause, const std::vector<ScoredTest>& tests);
-
-/// The line, from 1, where a function is defined; 0 where it is not found.
-int line_of_definition(const std::string& source, const std::string& function);
 
 /// A function's lines with their numbers, from the line where it is defined to its last bracket, at
 /// most forty.

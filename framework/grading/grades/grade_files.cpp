@@ -136,17 +136,25 @@ Json json_of_causes(const std::vector<Cause>& causes) {
                     {"places", c.places},
                     {"code", c.code},
                     {"tests", c.tests},
-                    {"same_numbers", c.same_numbers}});
+                    {"same_numbers", c.same_numbers},
+                    {"following", c.following},
+                    {"not_run", c.not_run}});
   return list;
 }
 
 std::vector<Cause> causes_in(const Json& json) {
   std::vector<Cause> causes;
   for (const Json& c : json) {
-    Cause cause{Cause::Kind::kUnknown, c.at("says"),
-                c.at("or_else"),       c.at("functions"),
-                c.at("places"),        c.value("code", std::vector<std::string>()),
-                c.at("tests"),         c.at("same_numbers")};
+    Cause cause{Cause::Kind::kUnknown,
+                c.at("says"),
+                c.at("or_else"),
+                c.at("functions"),
+                c.at("places"),
+                c.value("code", std::vector<std::string>()),
+                c.at("tests"),
+                c.at("same_numbers"),
+                c.value("following", std::vector<std::string>()),
+                c.value("not_run", std::vector<std::string>())};
     for (std::size_t i = 0; i < kCauseKinds.size(); ++i)
       if (c.at("kind") == kCauseKinds[i]) cause.kind = static_cast<Cause::Kind>(i);
     causes.push_back(std::move(cause));

@@ -35,6 +35,12 @@ bool has_story(const ScoredTest& test) {
   return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted;
 }
 
+std::size_t cut_off(const Grade& grade) {
+  return static_cast<std::size_t>(
+      std::count_if(grade.tests.begin(), grade.tests.end(),
+                    [](const ScoredTest& test) { return is_cut_off(test.result); }));
+}
+
 void add_tiles(report::Page& page, const Grade& grade) {
   std::vector<std::pair<std::string, Cell>> tiles;
   const Look look = !grade.is_final()               ? Look::kWarning
@@ -47,8 +53,12 @@ void add_tiles(report::Page& page, const Grade& grade) {
       Verdict::kRight,          Verdict::kWrong,       Verdict::kNotAttempted, Verdict::kCrashed,
       Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
   for (const Verdict verdict : kShown)
-    if (const std::size_t n = grade.count(verdict); n > 0)
+    if (const std::size_t n =
+            grade.count(verdict) - (verdict == Verdict::kOutOfResources ? cut_off(grade) : 0);
+        n > 0)
       tiles.push_back({words(verdict), {std::to_string(n), "", look_of(verdict)}});
+  if (const std::size_t n = cut_off(grade); n > 0)
+    tiles.push_back({"not run", {std::to_string(n), "", Look::kMuted}});
   page.tiles(tiles);
 }
 
@@ -57,7 +67,7 @@ report::Table table_of_tests(const Grade& grade, const std::vector<const ScoredT
   table.columns = {{"Test"}, {"Verdict"}, {"Points", true}, {"of", true}, {""}};
   for (const ScoredTest* test : tests) {
     const Verdict verdict = test->result.verdict;
-    const bool is_judged = grade.state == GradeState::kJudged;
+    const bool is_judged = grade.state == GradeState::kJudged && !is_cut_off(test->result);
     const std::string link = has_story(*test) && is_judged && !test->result.story.empty()
                                  ? "#" + anchor_of_story(test->item.test)
                                  : "";
@@ -168,13 +178,16 @@ void add_stories(report::Page& page, const Grade& grade, const PageView& view) {
     if (test.result.verdict == Verdict::kNotAttempted)
       missing[test.result.story] += "\n    " + test.item.title;
     if (!has_story(test) || test.result.story.empty()) continue;
-    page.heading(fmt::format("{}: {}", words(test.result.verdict), test.item.title), 3,
-                 anchor_of_story(test.item.test));
+    page.heading(
+        fmt::format("{}: {}", is_cut_off(test.result) ? "not run" : words(test.result.verdict),
+                    test.item.title),
+        3, anchor_of_story(test.item.test));
     std::string facts = test.item.test + (test.item.hidden ? " (hidden)" : "");
     if (test.result.calls > 0)
-      facts += fmt::format(": {}, the last to {}",
-                           counted(static_cast<std::size_t>(test.result.calls), "call"),
-                           test.result.last_call);
+      facts += fmt::format(
+          ": {}, {} {}", counted(static_cast<std::size_t>(test.result.calls), "call"),
+          test.result.verdict == Verdict::kWrong ? "wrong first after one of" : "the last to",
+          test.result.last_call);
     page.paragraph(facts, Look::kMuted);
     add_story(page, test.result.story, view);
   }
@@ -333,8 +346,9 @@ Grade for_student(Grade grade) {
                 [&](const TestChange& change) { return hidden.contains(change.test); });
   // a cause keeps its words, which say nothing of a test
   for (Cause& cause : grade.causes)
-    for (std::string& test : cause.tests)
-      if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
+    for (auto* tests : {&cause.tests, &cause.following, &cause.not_run})
+      for (std::string& test : *tests)
+        if (const auto it = hidden.find(test); it != hidden.end()) test = it->second;
   grade.remarks.clear();
   grade.own_tests.names.clear();
   grade.faults.clear();

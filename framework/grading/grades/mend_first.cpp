@@ -8,6 +8,7 @@
 
 #include "framework/core/text.h"
 #include "framework/grading/grades/causes.h"
+#include "framework/grading/grades/scoring.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -20,7 +21,7 @@ std::size_t failing(const Grade& grade) {
   return static_cast<std::size_t>(
       std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& test) {
         return test.result.verdict == Verdict::kWrong || test.result.verdict == Verdict::kCrashed ||
-               test.result.verdict == Verdict::kOutOfResources;
+               (test.result.verdict == Verdict::kOutOfResources && !is_cut_off(test.result));
       }));
 }
 
@@ -124,7 +125,7 @@ void add_cause(report::Page& page, const Cause& cause, std::size_t number, const
                    {},
                    scene->title + ": submission left, reference right",
                    ""}});
-  page.paragraph(evidence_of(cause, failing(grade)));
+  if (!cause.tests.empty()) page.paragraph(evidence_of(cause, failing(grade)));
   if (!cause.or_else.empty())
     page.paragraph(fmt::format("As well possible: {}.", fmt::join(cause.or_else, "; or ")));
   if (const std::string places = places_of(cause); !places.empty())
@@ -137,15 +138,27 @@ void add_cause(report::Page& page, const Cause& cause, std::size_t number, const
     page.preformatted(plain_text(cause.code[i]));
     if (!is_short) page.end();
   }
+  if (const std::size_t n = cause.not_run.size(); n > 0)
+    page.paragraph(fmt::format("{} not run, because the time of all tests together was used up.",
+                               n == 1 ? "One more test was" : counted(n, "more test") + " were"));
+  if (const std::size_t n = cause.following.size(); n > 0)
+    page.paragraph(fmt::format(
+        "{} functions that ask {}: what they give probably follows from it. Mend this first.",
+        n == 1 ? "One more test fails, of" : counted(n, "more test") + " fail, of",
+        cause.functions.empty() ? "this one" : plain_name(cause.functions.front())));
   const ScoredTest* shown = test_to_show(cause, grade);
   if (shown != nullptr && !shown->result.story.empty() && cause.kind != Cause::Kind::kNotWritten) {
     page.paragraph("For example, " + shown->item.title + ":", Look::kMuted);
     add_story(page, shown->result.story, view);
   }
   std::vector<report::Cell> others;
+  const auto is_of_cause = [&](const ScoredTest& test) {
+    const std::string& name = test.item.test;
+    return std::find(cause.tests.begin(), cause.tests.end(), name) != cause.tests.end() ||
+           std::find(cause.following.begin(), cause.following.end(), name) != cause.following.end();
+  };
   for (const ScoredTest& test : grade.tests)
-    if (std::find(cause.tests.begin(), cause.tests.end(), test.item.test) != cause.tests.end() &&
-        &test != shown)
+    if (is_of_cause(test) && &test != shown)
       others.push_back({test.item.title, test.result.story.empty()
                                              ? "#tests"
                                              : "#" + anchor_of_story(test.item.test)});
@@ -170,7 +183,8 @@ void add_mend_first(report::Page& page, const Grade& grade, const PageView& view
   page.begin(report::Part::kBox, "", "mend-first");
   page.heading("Mend first");
   page.paragraph(
-      "What costs the most points stands first. A cause that is called likely was found by "
+      "What costs the most points stands first, before it only what kept tests from running. A "
+      "cause that is called likely was found by "
       "comparing the tests that fail, and the answers that came, with known slips: read it as a "
       "hint, not as a verdict.",
       Look::kMuted);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/files.h"
 #include "framework/core/terminal.h"
 #include "framework/grading/test_program/test_words.h"
 #include "framework/grading/test_program/time_budget.h"
@@ -24,7 +25,7 @@ constexpr double kSuspectOwn = 0.2;  // s, for a call to a function that has tim
 constexpr double kBudget = 4.0;      // s, of all tests together
 
 struct Words {
-  std::string json, rubric;
+  std::string json, rubric, source;
   bool debug = false;
   TestLimits limits{.own_s = kTestOwn};
   TimeRules time{.budget_s = kBudget, .full_timeouts = 1, .suspect_own_s = kSuspectOwn};
@@ -40,6 +41,8 @@ Words read_words(int argc, char** argv) {
       words.json = value();
     else if (word == "--rubric")
       words.rubric = value();
+    else if (word == "--source")
+      words.source = value();
     else if (word == "--wall-s")
       words.limits.own_s = number_word(word, value());
     else if (word == "--budget-s")
@@ -50,7 +53,8 @@ Words read_words(int argc, char** argv) {
       continue;  // already read by GoogleTest
     else if (word.starts_with("-"))
       throw UserError(word, "is not known here",
-                      "Known: --json FILE, --rubric FILE, --wall-s S, --budget-s S, --debug, and "
+                      "Known: --json FILE, --rubric FILE, --source FILE, --wall-s S, --budget-s S, "
+                      "--debug, and "
                       "patterns of test names.");
     else
       words.filter += (words.filter.empty() ? "" : ":") + word;
@@ -76,7 +80,8 @@ int run(int argc, char** argv) {
   }
   const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);
   if (!words.json.empty()) write_results(words.json, results);
-  print_verdicts(std::cout, results, rubric, shows_colours(STDOUT_FILENO));
+  const std::string source = words.source.empty() ? "" : text_of(words.source);
+  print_verdicts(std::cout, results, rubric, shows_colours(STDOUT_FILENO), source);
   return static_cast<int>(exit_code(results));
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <map>
 
+#include "framework/core/text.h"
+
 namespace tumble::grading {
 namespace {
 
@@ -38,9 +40,15 @@ std::pair<std::size_t, std::size_t> place_of(const std::string& test, const Rubr
 std::string what_changed(const std::vector<TestResult>& before, const std::vector<TestResult>& now,
                          const Rubric& rubric) {
   std::map<std::string, Verdict> earlier;
-  for (const TestResult& result : before) earlier[result.test] = result.verdict;
+  for (const TestResult& result : before)
+    if (!is_cut_off(result)) earlier[result.test] = result.verdict;
   std::vector<std::string> gained, lost, other;
+  std::size_t not_run = 0;
   for (const TestResult& result : now) {
+    if (is_cut_off(result)) {  // it may be right: nothing has been seen of it
+      ++not_run;
+      continue;
+    }
     const auto found = earlier.find(result.test);
     if (found == earlier.end() || found->second == result.verdict) continue;
     const std::string title = title_of(result.test, rubric);
@@ -58,13 +66,16 @@ std::string what_changed(const std::vector<TestResult>& before, const std::vecto
   add("now right: ", gained);
   add("no longer right: ", lost);
   add("now: ", other);
-  return text.empty() ? "no verdict has changed" : text;
+  if (text.empty()) text = "no verdict has changed";
+  return not_run == 0 ? text
+                      : text + "; " + counted(not_run, "test") + " not run, for want of time";
 }
 
 std::string what_comes_next(const std::vector<TestResult>& results, const Rubric& rubric) {
   const TestResult* next = nullptr;
   const auto rank = [&](const TestResult& result) {
-    return std::pair{result.verdict == Verdict::kNotAttempted, place_of(result.test, rubric)};
+    const int kind = is_cut_off(result) ? 2 : result.verdict == Verdict::kNotAttempted ? 1 : 0;
+    return std::pair{kind, place_of(result.test, rubric)};
   };
   for (const TestResult& result : results)
     if (result.verdict != Verdict::kRight && (next == nullptr || rank(result) < rank(*next)))

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/files.h"
 #include "framework/core/terminal.h"
 #include "framework/grading/test_program/test_runner.h"
 #include "framework/grading/test_program/test_words.h"
@@ -38,7 +39,7 @@ TestResult not_run_for_busy(const std::string& test) {
 
 struct Words {
   WorkerOptions worker;
-  std::string json, filter;
+  std::string json, filter, source;
   bool list = false;
   Rubric rubric;
   TimeRules time;
@@ -62,6 +63,8 @@ Words read_words(const char* id, int argc, char** argv) {
       words.json = value();
     else if (word == "--budget-s")
       words.time.budget_s = number_word(word, value());
+    else if (word == "--source")
+      words.source = value();
     else if (word == "--list")
       words.list = true;
     else if (word == "--plain")
@@ -72,9 +75,10 @@ Words read_words(const char* id, int argc, char** argv) {
       const Rubric more = read_rubric(value());
       words.rubric.items.insert(words.rubric.items.end(), more.items.begin(), more.items.end());
     } else if (word.starts_with("-")) {
-      throw UserError(word, "is not known here",
-                      "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, "
-                      "--plain, --quick, --list, and patterns of test names.");
+      throw UserError(
+          word, "is not known here",
+          "Known: --submission FILE.so, --json FILE, --rubric FILE, --source FILE, --budget-s S, "
+          "--plain, --quick, --list, and patterns of test names.");
     } else {
       words.filter += (words.filter.empty() ? "" : ":") + word;
     }
@@ -118,7 +122,8 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
   while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {
   }
   if (!words.json.empty()) write_results(words.json, results);
-  print_verdicts(std::cout, results, words.rubric, shows_colours(STDOUT_FILENO));
+  const std::string source = words.source.empty() ? "" : text_of(words.source);
+  print_verdicts(std::cout, results, words.rubric, shows_colours(STDOUT_FILENO), source);
   return static_cast<int>(exit_code(results));
 }
 

@@ -1,0 +1,34 @@
+/// In which order the failing functions of a submission are to be mended. Pure functions of data.
+///
+/// A function that asks another of the same file is wrong where that one is wrong. So where both
+/// fail, the failures of the first probably follow from the second, and are no mistake of its own.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/grading/verdicts/verdict.h"
+
+namespace tumble::grading {
+
+/// By function that fails a test and probably only because of another: that other, which fails
+/// tests of its own (a quarter of them at least) and follows from none.
+/// @param source  text of the submission
+std::map<std::string, std::string> what_follows(const std::vector<TestResult>& results,
+                                                const std::string& source);
+
+/// The function that used up the time or memory of all tests together, where tests were not run
+/// for it; empty: none, or it cannot be told.
+std::string what_used_the_time(const std::vector<TestResult>& results);
+
+/// "a1_impulse.cpp:108", the line in which a call ended, where the story names it; else empty.
+std::string exact_place_of(const TestResult& result);
+
+/// What a test stands under, in words for its author: one heading for all that one function
+/// explains. Empty for a test that is right, or is not judged.
+///   "out of time or memory in linear_acceleration (which begins in line 53): mend this first"
+std::vector<std::string> headings_of(const std::vector<TestResult>& results,
+                                     const std::string& source);
+
+}  // namespace tumble::grading
