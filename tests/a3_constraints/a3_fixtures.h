@@ -43,12 +43,13 @@ double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() ? (a - b).norm() : INFINITY;
 }
 
-/// The words of the slip whose answer was found, to 1e-9 of its size; `otherwise` when it is none
-/// of them.
+/// The words of the slip whose answer was found, to 1e-9 of its size, as one that the answer shows;
+/// `otherwise`, which is only something to look at, when it is none of them.
 template <class Found, class Value = Found>
-std::string likely(const Found& found, const Slips<Value>& slips, const std::string& otherwise) {
+Mistake likely(const Found& found, const Slips<Value>& slips, const Mistake& otherwise) {
   for (const auto& [gives, words] : slips)
-    if (distance(found, gives) <= 1e-9 * (1 + distance(gives, Value(0 * gives)))) return words;
+    if (distance(found, gives) <= 1e-9 * (1 + distance(gives, Value(0 * gives))))
+      return shown(words);
   return otherwise;
 }
 

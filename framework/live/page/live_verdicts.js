@@ -1,6 +1,6 @@
 // What the tests say of each assignment.
 
-const kVerdictClass = { right: 'right', wrong: 'wrong', crashed: 'wrong', 'out of time or memory': 'wrong', 'not attempted': 'todo' };
+const kVerdictClass = { right: 'right', wrong: 'wrong', crashed: 'wrong', 'out of time or memory': 'wrong', 'not attempted': 'todo', 'not run': 'todo' };
 
 // Text with a link for every passage of a handout that it names.
 function withHandoutLinks(text) {
@@ -88,7 +88,7 @@ class VerdictPane {
     if (v.said) { box.append(html('h2', { className: 'bad' }, `${v.file || v.id}: no test ran`), html('pre', {}, v.said)); return; }
     const right = v.tests.filter(test => test.verdict === 'right'), before = this.before.get(v.id) || new Map();
     const mended = v.tests.filter(test => before.has(test.test) && test.verdict === 'right' && before.get(test.test) !== 'right').length;
-    const broken = v.tests.filter(test => before.get(test.test) === 'right' && test.verdict !== 'right').length;
+    const broken = v.tests.filter(test => before.get(test.test) === 'right' && test.verdict !== 'right' && test.verdict !== 'not run').length;
     box.append(html('p', { className: 'count' }, this.countInWords(v)));
     if (mended + broken > 0 && !(this.note && this.note.id === v.id)) box.append(html('p', {}, html('span', { className: 'good' }, `${mended} mended`), ', ', html('span', { className: broken ? 'bad' : '' }, `${broken} broken`), ' by this save.'));
     const choice = html('select', { ariaLabel: 'Grouping of the stories' }, html('option', { value: 'cause' }, 'by likely cause'), html('option', { value: 'group' }, 'by subject of the test'));
@@ -115,12 +115,12 @@ class VerdictPane {
     for (const test of tests) {
       const isTodo = test.verdict === 'not attempted', likely = lineOf(test.story, 'likely');
       const where = test.function ? `${test.function}${test.line ? ` (line ${test.line})` : ''}` : test.group;
-      const cause = isTodo ? `not attempted: ${test.function || test.group}` : likely || `${test.verdict} in ${where}`;
+      const cause = test.heading || (isTodo ? `not attempted: ${test.function || test.group}` : likely || `${test.verdict} in ${where}`);
       const name = this.by === 'cause' ? cause : test.group;
       if (!groups.has(name)) groups.set(name, []);
       groups.get(name).push(test);
     }
-    const weight = ([, list]) => list.reduce((sum, test) => sum + test.points, 0) + (list.every(test => test.verdict === 'not attempted') ? -1e6 : 0);
+    const weight = ([, list]) => list.reduce((sum, test) => sum + test.points, 0) + (list.every(test => test.verdict === 'not attempted') ? -1e6 : 0) + (list.some(test => test.is_first) ? 1e6 : 0);
     return [...groups].sort((a, b) => weight(b) - weight(a));
   }
 
