@@ -5,10 +5,6 @@
 #include <cstdlib>
 #include <set>
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include "framework/cli/sandboxed_module.h"
@@ -36,36 +32,13 @@ fs::path built(const Context& context, const std::string& id, const std::string&
   return context.build / "modules" / (id + '_' + word + ".so");
 }
 
-/// Compiles as the build does (assignments/CMakeLists.txt: tumble_module_object). The compiler's
-/// output goes to stderr.
+/// Compiles as a submission is compiled, with its precompiled header. The compiler's output goes to
+/// stderr.
 void compile(const Context& context, const fs::path& source, const fs::path& object) {
-  std::vector<std::string> words = {"g++",
-                                    "-std=c++20",
-                                    "-O2",
-                                    "-fPIC",
-                                    "-shared",
-                                    "-ffp-contract=off",
-                                    "-fno-finite-loops",
-                                    "-fno-gnu-unique",
-                                    "-Wl,-z,defs",
-                                    "-DTUMBLE_BUILDING_MODULE",
-                                    "-I",
-                                    context.root.string(),
-                                    "-isystem",
-                                    TUMBLE_EIGEN_INCLUDE,
-                                    source.string(),
-                                    "-o",
-                                    object.string()};
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  pid_t child = 0;
-  int status = 0;
-  if (::posix_spawnp(&child, "g++", nullptr, nullptr, argv.data(), environ) != 0)
-    throw UserError("g++", "the compiler cannot be started", "Install g++.");
-  while (::waitpid(child, &status, 0) < 0) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  const auto words = grading::own_compilation(context.root, context.build, source, object);
+  const int code = run_program(words, Output::kOurs).code;
+  if (code == 127) throw UserError("g++", "the compiler cannot be started", "Install g++.");
+  if (code != 0)
     throw UserError(source.string(), "does not compile; the compiler says why above",
                     "Correct it, or name another file after --modules.");
 }
