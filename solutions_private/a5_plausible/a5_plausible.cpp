@@ -207,15 +207,19 @@ double effective_sample_size(const std::vector<VectorXd>& chains) {
   const Variances variances = variances_of(halves);
   if (!(variances.all > 0.0)) return kUnset;
 
-  // Correlation at each lag, of all halves together.
-  VectorXd covariance = VectorXd::Zero(length);
-  for (const VectorXd& half : halves) covariance += autocovariance(half, length - 1);
-  covariance *= n / (n - 1.0) / static_cast<double>(halves.size());
-  const VectorXd rho = 1.0 - (variances.within - covariance.array()) / variances.all;
+  // Correlation at each lag, of all halves together. The sum asks for few: all take n^2.
+  const auto correlation = [&](Eigen::Index lags) -> VectorXd {
+    VectorXd covariance = VectorXd::Zero(lags);
+    for (const VectorXd& half : halves) covariance += autocovariance(half, lags - 1);
+    covariance *= n / (n - 1.0) / static_cast<double>(halves.size());
+    return 1.0 - (variances.within - covariance.array()) / variances.all;
+  };
+  VectorXd rho = correlation(std::min<Eigen::Index>(length, 64));
 
   // Geyer's initial monotone sequence of sums of pairs.
   double tau = -1.0, last = kInfinity;
   for (Eigen::Index t = 0; t + 1 < length; t += 2) {
+    if (t + 1 >= rho.size()) rho = correlation(std::min(2 * rho.size(), length));
     const double pair = rho[t] + rho[t + 1];
     if (!(pair > 0.0)) break;
     last = std::min(last, pair);
