@@ -6,6 +6,7 @@
 
 #include "framework/collision/ellipsoid.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/core/error.h"
 #include "framework/core/numbers.h"
 
 namespace tumble::collision {
@@ -49,6 +50,10 @@ Gap gap_to_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& p
   gap.point_a_world = pose_a.com_world + arm - a.radius() * n;
   gap.point_b_world = gap.point_a_world - gap.distance * n;
   return gap;
+}
+
+Vector3d upward(const Pose& half_space) {
+  return half_space.world_from_body.toRotationMatrix().col(2);
 }
 
 Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
@@ -147,6 +152,47 @@ bool is_within(const CollisionShape& a, const Pose& pose_a, const CollisionShape
     if (between.norm() - radii <= reach - kCertain * size) return true;
   }
   return gap_distance(a, pose_a, b, pose_b, cache, reach) <= reach;
+}
+
+bool has_separations(const CollisionShape& a, const CollisionShape& b) {
+  if (a.is_half_space() && b.is_half_space()) return false;
+  const auto is_convex = [](const CollisionShape& shape) {
+    return !shape.is_closed_surface() && shape.ellipsoid() == nullptr;
+  };
+  return is_convex(a) && is_convex(b);
+}
+
+std::optional<Separation> largest_separation(const CollisionShape& a, const Pose& pose_a,
+                                             const CollisionShape& b, const Pose& pose_b,
+                                             PairCache* cache, double limit) {
+  require(has_separations(a, b), "largest_separation is of convex solids and half-spaces");
+  Separation found;
+  if (a.is_half_space() || b.is_half_space()) {
+    found.normal_b_to_a_world = b.is_half_space() ? upward(pose_b) : Vector3d(-upward(pose_a));
+    found.distance = separation_along(a, pose_a, b, pose_b, found.normal_b_to_a_world);
+  } else {
+    const Query query(a, pose_a, b, pose_b);
+    const double radii = a.radius() + b.radius();
+    const PolytopeGap gap =
+        nearest_pieces(query, std::max(limit, 0.0) + radii + kRounding * query.size, cache,
+                       Points::kUnwanted)
+            .gap;
+    found = {gap.distance - radii, gap.normal_b_to_a};
+  }
+  if (!(found.distance <= limit)) return std::nullopt;
+  return found;
+}
+
+double separation_along(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                        const Pose& pose_b, const Vector3d& normal_b_to_a_world) {
+  const Vector3d& n = normal_b_to_a_world;
+  // how far a solid reaches from its centre against a direction, < 0; a half-space ends there
+  const auto lowest = [](const CollisionShape& shape, const Pose& pose, const Vector3d& direction) {
+    if (shape.is_half_space()) return 0.0;
+    return shape.corners().lowest_height(pose.world_from_body.conjugate() * direction) -
+           shape.radius();
+  };
+  return n.dot(pose_a.com_world - pose_b.com_world) + lowest(a, pose_a, n) + lowest(b, pose_b, -n);
 }
 
 bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,

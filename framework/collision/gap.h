@@ -50,6 +50,24 @@ double gap_distance(const CollisionShape& a, const Pose& pose_a, const Collision
 bool is_within(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
                const Pose& pose_b, double reach, PairCache* cache);
 
+/// Whether both are convex and have corners, or are half-spaces: separations along directions are
+/// known of such.
+bool has_separations(const CollisionShape& a, const CollisionShape& b);
+/// A direction and how far two solids are apart along it. World frame.
+struct Separation {
+  double distance;               // [m]
+  Vector3d normal_b_to_a_world;  // unit
+};
+/// The gap of compute_gap and its normal. @return nothing where it is above the limit [m]
+/// @pre has_separations(a, b)
+std::optional<Separation> largest_separation(const CollisionShape& a, const Pose& pose_a,
+                                             const CollisionShape& b, const Pose& pose_b,
+                                             PairCache* cache, double limit);
+/// Along one direction: a lower bound of the gap, unless that is negative. [m]
+/// @pre has_separations(a, b)
+double separation_along(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
+                        const Pose& pose_b, const Vector3d& normal_b_to_a_world);
+
 /// Whether the interiors of two solids intersect, also when one lies entirely inside the other. For
 /// initial states.
 /// @param allowance  a penetration up to this depth counts as touching [m]

@@ -9,9 +9,11 @@
 /// The members are internal to collision.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/collision/collision_shape.h"
+#include "framework/collision/polytope_gap.h"
 #include "framework/core/math.h"
 #include "framework/core/numbers.h"
 
@@ -29,12 +31,21 @@ struct PairCache {
   Vector3d b_in_a = Vector3d::Zero(), a_in_b = Vector3d::Zero();  // [m]
   // queries answered from it; queries to wait until it is filled again
   int served = 0, unused = 0;
-  // Of two convex solids: the separating axis of the last query, and how far they were apart along
-  // it; not known before the first, when this is 0 [m]
-  Vector3d apart_along_body_a = Vector3d::Zero();
+  // Of two convex solids: the separating axis of the last query, in the world, where it stays while
+  // one rolls on the other, and how far they were apart along it; 0 before the first [m]
+  Vector3d apart_along_world = Vector3d::Zero();
   double apart_by = 0.0;
   // of two convex solids: a point of each that were nearest when last looked for; NaN: not known
   Vector3d near_body_a = Vector3d::Constant(kUnset), near_body_b = near_body_a;
+  // The last gap of two convex solids that were within reach, and where that was: the same instant
+  // is often asked for again, as a step's end and the next one's start.
+  struct Placed {
+    Matrix3d rotation_a, rotation_b;
+    Vector3d offset;  // centre of A minus centre of B [m]
+    PolytopeGap gap;
+    bool has_points;
+  };
+  std::optional<Placed> last;
   // the last gap_distance and its limit [m]; limit < 0: none yet
   double measured = 0.0, measured_up_to = -1.0;
   Pose measured_a, measured_b;  // the poses of the last gap_distance

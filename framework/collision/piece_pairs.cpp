@@ -176,10 +176,22 @@ bool search_cache(const Query& query, double limit, PairCache& cache, Nearest& n
   return std::min(limit, nearest.best().gap.distance) + rounding(query) < certain;
 }
 
+// Whether the last answer holds for these poses. Where it is at the limit to rounding, a search may
+// end at its lower bound.
+bool is_known(const Query& query, double limit, Points points, const PairCache& cache) {
+  return cache.last && cache.last->offset == query.offset &&
+         std::abs(cache.last->gap.distance - limit) > rounding(query) &&
+         cache.last->rotation_a == query.rotation_a && cache.last->rotation_b == query.rotation_b &&
+         (cache.last->has_points || points == Points::kUnwanted);
+}
+
 // What the next query of two convex solids begins with.
-void keep(const PlacedPolytope& a, const PlacedPolytope& b, const PolytopeGap& gap,
-          PairCache& cache) {
-  cache.apart_along_body_a = a.in_body(gap.normal_b_to_a);
+void keep(const Query& query, const PlacedPolytope& a, const PlacedPolytope& b,
+          const PolytopeGap& gap, Points points, PairCache& cache) {
+  if (!gap.beyond)
+    cache.last = {query.rotation_a, query.rotation_b, query.offset, gap,
+                  points == Points::kWanted || gap.point_a != gap.point_b};
+  cache.apart_along_world = gap.normal_b_to_a;
   cache.apart_by = gap.distance;
   if (gap.beyond || gap.point_a == gap.point_b) return;  // points that were not looked for
   cache.near_body_a = a.in_body(gap.point_a - a.translation);
@@ -189,18 +201,19 @@ void keep(const PlacedPolytope& a, const PlacedPolytope& b, const PolytopeGap& g
 }  // namespace
 
 PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Points points) {
+  if (cache && is_known(query, limit, points, *cache)) return cache->last->gap;
   const PlacedPolytope a = query.piece_of_a(0), b = query.piece_of_b(0);
   // Above the limit by more than rounding: without the cached axis the answer would be the same.
   // Where the two were nearer than that along it, it would hardly be.
   const double certain = std::max(limit, 0.0) + rounding(query);
   if (cache && cache->apart_by > certain) {
-    const Vector3d axis = query.rotation_a * cache->apart_along_body_a;
+    const Vector3d& axis = cache->apart_along_world;
     cache->apart_by = separation_along(a, b, axis);
     if (cache->apart_by > certain)
       return {cache->apart_by, Vector3d::Zero(), Vector3d::Zero(), axis, true};
   }
   const PolytopeGap gap = polytope_gap(a, b, query.size, limit, points);
-  if (cache) keep(a, b, gap, *cache);
+  if (cache) keep(query, a, b, gap, points, *cache);
   return gap;
 }
 
