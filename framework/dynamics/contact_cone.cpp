@@ -75,7 +75,8 @@ LocalContact prepare_local(const Matrix3d& w) {
   local.sine = std::sin(angle);
   local.coupling_1 = local.cosine * w(1, 0) + local.sine * w(2, 0);
   local.coupling_2 = -local.sine * w(1, 0) + local.cosine * w(2, 0);
-  local.coupling = std::hypot(local.coupling_1, local.coupling_2);
+  local.coupling =
+      std::sqrt(local.coupling_1 * local.coupling_1 + local.coupling_2 * local.coupling_2);
   return local;
 }
 
@@ -91,7 +92,7 @@ Vector3d solve_local(LocalContact& local, const Vector3d& free, double friction)
   if (!(p.length > friction * p.normal)) {
     local.slide = 0;
   } else {
-    const double c = std::hypot(problem.c1, problem.c2);
+    const double c = std::sqrt(problem.c1 * problem.c1 + problem.c2 * problem.c2);
     // there |p_t| < mu p_n for certain
     const double high = c * (local.w_nn + friction * local.coupling) / (friction * -free[0]);
     p = slide(problem, friction, high, local.slide);

@@ -28,8 +28,9 @@ double largest_gain(const ContactBlock& block) {
 
 }  // namespace
 
-Sweeper::Sweeper(const System& system)
+Sweeper::Sweeper(const System& system, double negligible)
     : system_(system),
+      negligible_(negligible),
       locals_(system.contacts.size()),
       ways_(system.root_inverse_mass.size() + 1, 0.0) {
   gates_.reserve(system.contacts.size());
@@ -38,7 +39,7 @@ Sweeper::Sweeper(const System& system)
 }
 
 void Sweeper::begin() {
-  for (Gate& gate : gates_) gate.open_until = kAtOnce;
+  for (Gate& gate : gates_) gate.alone_until = kAtOnce;
 }
 
 LocalContact& Sweeper::local_of(std::size_t i) {
@@ -63,18 +64,16 @@ void Sweeper::note_push(int body_a, int body_b, double length) {
 
 void Sweeper::relax_contact(std::size_t i, Impulses& impulses, Swept& swept) {
   Gate& gate = gates_[i];
-  const double way =
-      ways_[static_cast<std::size_t>(gate.body_a)] + ways_[static_cast<std::size_t>(gate.body_b)];
-  if (way < gate.open_until) return;
+  const double way = way_of(gate);
   const ContactBlock& block = system_.contacts[i];
   if (!(block.inverse_effective_mass > 0)) return;
   Vector3d& impulse = impulses.contacts[i];
   std::vector<Vector6d>& y = impulses.y;
-  gate.open_until = kAtOnce;
+  gate.alone_until = kAtOnce;
   if (impulse[0] == 0) {
     if (const double v = normal_velocity(block, y); v >= 0) {  // open, and stays so
       if (v > kSlowlyOpen * system_.speed)
-        gate.open_until = way + kSurelyOpen * v / largest_gain(block);
+        gate.alone_until = way + kSurelyOpen * v / largest_gain(block);
       return;
     }
   }
@@ -93,7 +92,9 @@ void Sweeper::relax_contact(std::size_t i, Impulses& impulses, Swept& swept) {
     push(block, by, y);
     change = by.norm();
   }
-  note_push(block.body_a, block.body_b, largest_gain(block) * change);
+  const double gain = largest_gain(block);
+  note_push(block.body_a, block.body_b, gain * change);
+  if (negligible_ > 0) gate.alone_until = way_of(gate) + negligible_ / gain;
   swept.change = std::max(swept.change, block.inverse_effective_mass * change);
   swept.rounding =
       std::max(swept.rounding, block.inverse_effective_mass * impulse.cwiseAbs().maxCoeff());
@@ -119,7 +120,7 @@ Sweeper::Swept Sweeper::sweep(bool forward, Impulses& impulses) {
   const auto relax = [&](std::size_t i) {
     if (i < rows)
       relax_row(i, impulses, swept);
-    else
+    else if (!(way_of(gates_[i - rows]) < gates_[i - rows].alone_until))
       relax_contact(i - rows, impulses, swept);
   };
   for (std::size_t i = 0; i < rows + contacts; ++i) relax(forward ? i : rows + contacts - 1 - i);

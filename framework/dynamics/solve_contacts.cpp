@@ -35,7 +35,10 @@ using contacts::System;
 // from the warm start: at rest two or three do; where they wander, sweeps are cheaper
 constexpr int kFirstNewtonSteps = 8;
 constexpr int kNewtonSteps = 30;  // later
-constexpr int kSweepRounds = 2;   // each of four times as many sweeps as the one before
+// of the violation that is asked for: what others add to a solved contact before a sweep solves it
+// again. Together with what the sweep itself leaves it stays below what is asked for
+constexpr double kNegligible = 0.1;
+constexpr int kSweepRounds = 2;  // each of four times as many sweeps as the one before
 constexpr int kFewSoftRounds = 10, kManySoftRounds = 200, kFinishEvery = 5;
 // where one pace ends in a fold, another does not
 constexpr contacts::Sharpening kPaces[] = {{0.1, 0.6, 80}, {0.1, 0.2, 80}, {0.01, 0.75, 120}};
@@ -83,7 +86,7 @@ class Turns {
   Turns(const Goal& goal, double enough, contacts::BodyMatrix& matrix, Progress& progress)
       : goal_(goal),
         enough_(enough),
-        sweeper_(goal.system),
+        sweeper_(goal.system, kNegligible * goal.violation),
         matrix_(matrix),
         now_(progress),
         best_(progress) {}
@@ -212,7 +215,7 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
   const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
   // one contact: the first sweep is exact
   if (static_cast<int>(size) > options.largest_direct || size == 1) {
-    contacts::Sweeper sweeper(goal.system);
+    contacts::Sweeper sweeper(goal.system, kNegligible * goal.violation);
     sweep_until(goal, sweeper, options.most_sweeps_alone, progress);
     return;
   }
