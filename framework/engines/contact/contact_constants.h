@@ -30,6 +30,10 @@ struct ContactConstants {
   /// of the smaller body: points farther away are not looked at in a step. Larger: slower.
   /// Smaller: corners are missed that come near within the step.
   double reach = 0.25;
+  /// of what neighbours' impacts bend a body's path by: how far that may bring it nearer to
+  /// others, whose points are at the ends of levers. Larger: slower. Smaller: impacts of a heap are
+  /// met at their instants.
+  double levers = 2.0;
   /// of the smaller body: no step leads deeper, save in large islands, so a deeper point gets a
   /// second look. Larger: points of the far side pass. Smaller: many second looks.
   double deep = 0.01;

@@ -12,6 +12,15 @@
 namespace tumble::engines {
 namespace {
 
+// Nothing touches.
+ContactSolution unpushed(const ContactProblem& problem) {
+  ContactSolution solution;
+  for (const PushedBody& body : problem.bodies)
+    solution.velocities.push_back({body.velocity_world, body.omega_world});
+  solution.converged = true;
+  return solution;
+}
+
 Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega,
                      const Vector3d& point) {
   return velocity + omega.cross(point - body.com_world);
@@ -116,6 +125,7 @@ void PersistentContacts::warm_start(const std::vector<StepContact>& contacts,
 
 ContactSolution PersistentContacts::solve(const ContactIsland& island,
                                           const ContactProblem& problem, double h) {
+  if (problem.contacts.empty() && problem.rows.empty()) return unpushed(problem);
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
   const auto smooth = [](const PushingContact& c) { return c.friction == 0.0; };
@@ -432,6 +442,7 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway
   for (const Pair& pair : island.pairs) {
     std::size_t to = from;
     while (to < contacts.size() && contacts[to].pair == pair) ++to;
+    if (to == from) continue;
     double farthest = 0.0;  // no point of the contact can be farther off by the step's end
     for (std::size_t i = from; i < to; ++i)
       farthest = std::max({farthest, contacts[i].start_gap, contacts[i].point.gap});

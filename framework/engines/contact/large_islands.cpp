@@ -79,19 +79,20 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_lar
     const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h) {
   std::vector<StepContact> contacts;
   for (const Pair& pair : island.pairs) {
+    if (!reach_of_.contains(pair)) continue;
     const double margin = geometry_.large_island_margin(pair), within = reach(pair);
     ContactManifold points = geometry_.points_at(pair, middle, within);
     const bool passed = std::any_of(points.begin(), points.end(),
                                     [](const collision::ManifoldPoint& p) { return p.gap < 0; });
     if (passed) points = geometry_.points_at(pair, moving_.states(), within);
-    const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
     for (const collision::ManifoldPoint& p : points) {
+      // from the middle the half of the way is left
+      if (!may_close(pair, p, passed ? h : 0.5 * h)) continue;
       double target = (margin - p.gap) / h;
       if (!passed) {
         const Vector3d point = geometry_.point_of(pair, p);
-        const Vector3d v = a.velocity_world + a.omega_world.cross(point - a.com_world) -
-                           b.velocity_world - b.omega_world.cross(point - b.com_world);
-        target += 0.5 * p.normal_b_to_a_world.dot(v);
+        target += 0.5 * p.normal_b_to_a_world.dot(velocity_of_point(pair.first, point) -
+                                                  velocity_of_point(pair.second, point));
       }
       // not / h: in a step cut short that would be an impact
       if (target > 0)

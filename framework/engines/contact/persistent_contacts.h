@@ -133,6 +133,13 @@ class PersistentContacts {
   bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
   double reach(Pair pair);
   std::vector<double> speeds_about(const std::vector<Pair>& candidates);
+  double farthest_reach(Pair pair);
+  Vector3d velocity_of_point(int body, const Vector3d& point_world) const;
+  double bend(Pair pair) const;
+  double way(Pair pair, const Vector3d& normal_b_to_a_world) const;
+  std::vector<Pair> near_pairs(const std::vector<Pair>& candidates);
+  double chord_depth(int body) const;
+  bool may_close(Pair pair, const collision::ManifoldPoint& point, double time) const;
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
   void require_progress();
@@ -225,6 +232,10 @@ class PersistentContacts {
   std::map<Pair, ContactManifold> points_;
   // by body, where impacts are solved in steps: how fast it or what it meets is [m/s]
   std::vector<double> reaches_;
+  // the same: how far the path of the step may be from where it leads without contacts [m]
+  std::vector<double> bends_;
+  std::vector<Velocity> velocities_;  // the same: at the step's start
+  std::map<Pair, double> reach_of_;   // the same, of pairs that may meet [m]
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
