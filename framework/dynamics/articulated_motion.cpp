@@ -24,20 +24,54 @@ Matrix3d times_cross(const Matrix3d& M, const Vector3d& d) {
   product.col(2) = d.y() * M.col(0) - d.x() * M.col(1);
   return product;
 }
-/// [d]x^T M
-Matrix3d cross_transposed_times(const Vector3d& d, const Matrix3d& M) {
-  Matrix3d product;
-  for (int column = 0; column < 3; ++column) product.col(column) = M.col(column).cross(d);
-  return product;
+/// J + sign (H^T D + D^T Hp), D = [d]x: symmetric, as its three terms are together.
+Matrix3d moved(const Matrix3d& J, double sign, const Matrix3d& H, const Matrix3d& Hp,
+               const Vector3d& d) {
+  const double x = sign * d.x(), y = sign * d.y(), z = sign * d.z();
+  // (H^T D)_ij = (D^T H)_ji: rows of [d]x^T
+  const auto entry = [&](int i, int j) {
+    const auto row = [&](const Matrix3d& M, int k, int column) {
+      return k == 0   ? z * M(1, column) - y * M(2, column)
+             : k == 1 ? x * M(2, column) - z * M(0, column)
+                      : y * M(0, column) - x * M(1, column);
+    };
+    return J(i, j) + (row(H, j, i) + row(Hp, i, j));
+  };
+  Matrix3d sum;
+  sum(0, 0) = entry(0, 0);
+  sum(1, 1) = entry(1, 1);
+  sum(2, 2) = entry(2, 2);
+  sum(0, 1) = sum(1, 0) = entry(0, 1);
+  sum(0, 2) = sum(2, 0) = entry(0, 2);
+  sum(1, 2) = sum(2, 1) = entry(1, 2);
+  return sum;
 }
-/// Adds X + X^T.
-void add_with_transposed(const Matrix3d& X, double sign, Matrix3d& sum) {
+/// M - factor a a^T of a symmetric M
+Matrix3d without(const Matrix3d& M, double factor, const Vector3d& a) {
+  const Vector3d b = factor * a;
+  Matrix3d rest;
+  rest(0, 0) = M(0, 0) - b.x() * a.x();
+  rest(1, 1) = M(1, 1) - b.y() * a.y();
+  rest(2, 2) = M(2, 2) - b.z() * a.z();
+  rest(0, 1) = rest(1, 0) = M(0, 1) - b.x() * a.y();
+  rest(0, 2) = rest(2, 0) = M(0, 2) - b.x() * a.z();
+  rest(1, 2) = rest(2, 1) = M(1, 2) - b.y() * a.z();
+  return rest;
+}
+
+/// R I R^T, which is symmetric: R I first, then six of its entries.
+Matrix3d turned_inertia(const Matrix3d& R, const Matrix3d& inertia_body, bool is_principal) {
+  Matrix3d half;
+  if (is_principal)
+    half.noalias() = R * inertia_body.diagonal().asDiagonal();
+  else
+    half.noalias() = R * inertia_body;
+  Matrix3d turned;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) sum(i, j) += sign * (X(i, j) + X(j, i));
-}
-/// Takes factor a b^T away.
-void take_product(double factor, const Vector3d& a, const Vector3d& b, Matrix3d& from) {
-  for (int j = 0; j < 3; ++j) from.col(j) -= (factor * b[j]) * a;
+    for (int j = 0; j <= i; ++j)
+      turned(i, j) = turned(j, i) =
+          half(i, 0) * R(j, 0) + half(i, 1) * R(j, 1) + half(i, 2) * R(j, 2);
+  return turned;
 }
 
 }  // namespace
@@ -49,7 +83,11 @@ void ArticulatedTree::factor() {
     held.M = node.mass * Matrix3d::Identity();
     held.coupled = false;
     if (!node.is_point) held.H.setZero();
-    if (!node.turns_evenly) held.J = motions_[static_cast<std::size_t>(place)].inertia;
+    if (node.turns_evenly) continue;
+    Motion& motion = motions_[static_cast<std::size_t>(place)];
+    motion.inertia = node.is_even ? node.inertia_body
+                                  : turned_inertia(motion.R, node.inertia_body, node.is_principal);
+    held.J = motion.inertia;
   }
   for (auto place = order_.rbegin(); place != order_.rend(); ++place) {
     factor_joint(*place);
@@ -65,34 +103,38 @@ void ArticulatedTree::factor_joint(int place) {
   Matrix3d Jp;
   if (!node.turns_evenly) Jp = held.J;
   bool coupled = held.coupled;
-  if (coupled) held.Hp = held.H;
-  if (!node.at_own_centre && node.kind != TreeJoint::kFree) {
-    const Vector3d& d = motion.arm_own;
-    const Matrix3d MD = times_cross(held.M, d);
-    if (coupled) add_with_transposed(times_cross(held.H.transpose(), d), 1.0, Jp);
-    Jp += cross_transposed_times(d, MD);
-    if (coupled)
-      held.Hp += MD;
-    else
-      held.Hp = MD;
+  const bool has_arm = !node.at_own_centre && node.kind != TreeJoint::kFree;
+  if (has_arm) {
+    const Matrix3d H = coupled ? held.H : Matrix3d::Zero().eval();
+    const Matrix3d Hp = H + times_cross(held.M, motion.arm_own);
+    Jp = moved(held.J, 1.0, H, Hp, motion.arm_own);
+    held.Hp = Hp;
     coupled = true;
+  } else if (coupled) {
+    held.Hp = held.H;
   }
   held.coupled = coupled;
   // A hinge frees one turning, a weld none: what is left goes up whole.
-  held.M_up = held.M;
   if (node.kind == TreeJoint::kHinge || node.kind == TreeJoint::kWeld) {
     if (!coupled) held.Hp.setZero();
-    held.H_up = held.Hp;
-    held.J_up = held.Jp = Jp;
-    if (node.kind == TreeJoint::kWeld) return;
-    held.h = held.Hp * motion.axis;
-    held.j = Jp * motion.axis;
-    held.along = 1.0 / motion.axis.dot(held.j);
-    take_product(held.along, held.h, held.h, held.M_up);
-    take_product(held.along, held.h, held.j, held.H_up);
-    take_product(held.along, held.j, held.j, held.J_up);
+    held.Jp = Jp;
+    if (node.kind == TreeJoint::kWeld) {
+      held.M_up = held.M;
+      held.H_up = held.Hp;
+      held.J_up = Jp;
+      return;
+    }
+    const Vector3d h = held.Hp * motion.axis, j = Jp * motion.axis;
+    const double along = 1.0 / motion.axis.dot(j);
+    held.M_up = without(held.M, along, h);
+    held.H_up = held.Hp - h * (along * j).transpose();
+    held.J_up = without(Jp, along, j);
+    held.h = h;
+    held.j = j;
+    held.along = along;
     return;
   }
+  held.M_up = held.M;
   // All others free all turning.
   if (!node.turns_evenly) held.Jp_inverse = Jp.inverse();
   if (coupled) {
@@ -113,25 +155,24 @@ void ArticulatedTree::add_to_parent(int place) {
   const Articulated& held = held_[static_cast<std::size_t>(place)];
   const bool whole = node.kind == TreeJoint::kHinge || node.kind == TreeJoint::kWeld;
   Articulated& parent = held_[static_cast<std::size_t>(node.parent)];
-  Matrix3d along_rod;
-  if (node.kind == TreeJoint::kRod) {
-    along_rod.setZero();
-    take_product(-held.along, motion.u, motion.u, along_rod);
-  }
-  const Matrix3d& M = node.kind == TreeJoint::kRod ? along_rod : held.M_up;
+  const Matrix3d M = node.kind == TreeJoint::kRod
+                         ? Matrix3d(motion.u * (held.along * motion.u).transpose())
+                         : held.M_up;
   parent.M += M;
-  if (whole) {
+  if (node.at_parent_centre) {
+    if (!whole) return;
     parent.H += held.H_up;
     parent.J += held.J_up;
     parent.coupled = true;
+    return;
   }
-  if (node.at_parent_centre) return;
+  // About the parent's centre: (R.2) moved by the other way.
   const Vector3d& d = motion.arm_parent;
-  const Matrix3d MD = times_cross(M, d);
-  parent.H -= MD;
-  parent.J += cross_transposed_times(d, MD);
+  const Matrix3d H = whole ? held.H_up : Matrix3d::Zero().eval();
+  const Matrix3d at_centre = H - times_cross(M, d);
+  parent.H += at_centre;
+  parent.J += moved(whole ? held.J_up : Matrix3d::Zero().eval(), -1.0, H, at_centre, d);
   parent.coupled = true;
-  if (whole) add_with_transposed(times_cross(held.H_up.transpose(), d), -1.0, parent.J);
 }
 
 // From the leaves to the roots: f and n of (R.2).

@@ -20,29 +20,22 @@ Vector3d omega_body_of(const RigidBodyState& state, const Matrix3d& inertia_body
   return omega_body + inverse_inertia_body * (momentum_body - inertia_body * omega_body);
 }
 
-/// q times the turn about z by this angle.
-Quaterniond turned_about_z(const Quaterniond& q, double angle) {
-  const double c = std::cos(0.5 * angle), s = std::sin(0.5 * angle);
-  return {q.w() * c - q.z() * s, q.x() * c + q.y() * s, q.y() * c - q.x() * s,
-          q.z() * c + q.w() * s};
+/// Of a turn about z: cosine and sine of half its angle.
+struct Twist {
+  double c, s;
+};
+
+/// q times the turn.
+Quaterniond twisted_about_z(const Quaterniond& q, Twist by) {
+  return {q.w() * by.c - q.z() * by.s, q.x() * by.c + q.y() * by.s, q.y() * by.c - q.x() * by.s,
+          q.z() * by.c + q.w() * by.s};
 }
 
 /// The part of a turn that is about z.
-Quaterniond twist_about_z(const Quaterniond& turn) {
-  const double length = std::hypot(turn.w(), turn.z());
-  if (length == 0.0) return Quaterniond::Identity();
-  return {turn.w() / length, 0.0, 0.0, turn.z() / length};
-}
-
-/// R I R^T, which is symmetric: R I first, then six of its entries.
-Matrix3d turned_inertia(const Matrix3d& R, const Matrix3d& inertia_body) {
-  const Matrix3d half = R * inertia_body;
-  Matrix3d turned;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j <= i; ++j)
-      turned(i, j) = turned(j, i) =
-          half(i, 0) * R(j, 0) + half(i, 1) * R(j, 1) + half(i, 2) * R(j, 2);
-  return turned;
+Twist twist_about_z(const Quaterniond& turn) {
+  const double length = std::sqrt(turn.w() * turn.w() + turn.z() * turn.z());
+  if (length == 0.0) return {1.0, 0.0};
+  return {turn.w() / length, turn.z() / length};
 }
 
 Quaterniond turn_of(const Vector3d& rotation) {
@@ -53,9 +46,14 @@ Quaterniond turn_of(const Vector3d& rotation) {
 
 }  // namespace
 
-void ArticulatedTree::set_fixed(const std::vector<FixedEnd>& fixed) {
+/// @return whether one of them stood or moved in another way before
+bool ArticulatedTree::set_fixed(const std::vector<FixedEnd>& fixed) {
+  bool is_new = false;
   for (std::size_t k = 0; k < fixed.size(); ++k) {
     Motion& motion = motions_[nodes_.size() + k];
+    is_new = is_new || motion.q.coeffs() != fixed[k].world_from_body.coeffs() ||
+             motion.c != fixed[k].com_world || motion.v != fixed[k].velocity_world ||
+             motion.a != fixed[k].acceleration_world;
     motion.q = fixed[k].world_from_body;
     motion.R = motion.q.toRotationMatrix();
     motion.c = fixed[k].com_world;
@@ -63,6 +61,7 @@ void ArticulatedTree::set_fixed(const std::vector<FixedEnd>& fixed) {
     motion.a = fixed[k].acceleration_world;
     motion.w.setZero();
   }
+  return is_new;
 }
 
 // The joint's point on the parent becomes the body's place, for now.
@@ -83,9 +82,10 @@ void ArticulatedTree::move_parent_point(const Node& node, Motion& motion) const 
 void ArticulatedTree::turn_by_joint(const Node& node, double angle, double rate,
                                     Motion& motion) const {
   const Motion& parent = motions_[static_cast<std::size_t>(node.parent)];
-  const Quaterniond parent_from_own =
-      node.kind == TreeJoint::kHinge ? turned_about_z(node.at_begin, angle) * node.joint_from_own
-                                     : node.at_begin * node.joint_from_own;
+  const Quaterniond parent_from_joint =
+      angle == 0.0 ? node.at_begin
+                   : twisted_about_z(node.at_begin, {std::cos(0.5 * angle), std::sin(0.5 * angle)});
+  const Quaterniond parent_from_own = parent_from_joint * node.joint_from_own;
   motion.q = parent.q * parent_from_own;
   motion.w = parent.w;
   motion.angle_rate = rate;
@@ -98,12 +98,8 @@ void ArticulatedTree::turn_by_joint(const Node& node, double angle, double rate,
 void ArticulatedTree::settle_arms(const Node& node, Motion& motion) const {
   motion.arm_own.setZero();
   motion.centripetal_own.setZero();
-  if (node.turns_evenly) {
-    motion.inertia = node.inertia_body;
-    return;
-  }
+  if (node.turns_evenly) return;
   motion.R = motion.q.toRotationMatrix();
-  motion.inertia = node.is_even ? node.inertia_body : turned_inertia(motion.R, node.inertia_body);
   if (node.at_own_centre) return;
   motion.arm_own = motion.R * node.point_own;
   const Vector3d turning = motion.w.cross(motion.arm_own);
@@ -126,46 +122,54 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
   for (Node& node : nodes_) node.turns_evenly = turns_freely && node.may_turn_evenly;
   assign_numbers();
   set_fixed(fixed);
+  is_factored_ = false;
   VectorXd y = VectorXd::Zero(2 * half_);
   const Index half = half_;
+  Misfit misfit;
   for (const int place : order_) {
     Node& node = nodes_[static_cast<std::size_t>(place)];
     Motion& motion = motions_[static_cast<std::size_t>(place)];
     const RigidBodyState& state = states[static_cast<std::size_t>(place)];
     motion.q = state.world_from_body.normalized();
+    motion.q_length = 1.0;
     const Vector3d omega_body = omega_body_of(state, node.inertia_body, node.inverse_inertia_body);
-    motion.w = motion.q * omega_body;
+    const Vector3d v = state.momentum_world / node.mass, w = motion.q * omega_body;
+    motion.w = w;
     Index at = node.at;
     // How the body stands against its parent, by what its joint leaves free.
     if (node.kind == TreeJoint::kFree) {
       motion.c = state.com_world;
-      motion.v = state.momentum_world / node.mass;
+      motion.v = v;
       y.segment<3>(at) = motion.c;
       y.segment<3>(half + at) = motion.v;
       at += 3;
     } else {
       move_parent_point(node, motion);
-      const Vector3d arm = motion.q * node.point_own;
-      const Vector3d apart = state.com_world + arm - motion.c,
-                     parting = state.momentum_world / node.mass + motion.w.cross(arm) - motion.v;
       if (node.kind == TreeJoint::kRod) {
+        const Vector3d arm = motion.q * node.point_own;
+        const Vector3d apart = state.com_world + arm - motion.c,
+                       parting = v + w.cross(arm) - motion.v;
         const Vector3d u = apart.normalized(), rate = parting / node.length;
-        y.segment<3>(at) = u;
-        y.segment<3>(half + at) = rate - u.dot(rate) * u;
-        motion.c += node.length * u;
-        motion.v += node.length * y.segment<3>(half + at);
+        motion.u_length = 1.0;
+        motion.u_along = 0.0;
+        motion.u = u;
+        motion.u_rate = rate - u.dot(rate) * u;
+        y.segment<3>(at) = motion.u;
+        y.segment<3>(half + at) = motion.u_rate;
+        motion.c += node.length * motion.u;
+        motion.v += node.length * motion.u_rate;
         at += 3;
       } else if (node.kind == TreeJoint::kHinge || node.kind == TreeJoint::kWeld) {
         const Motion& parent = motions_[static_cast<std::size_t>(node.parent)];
         const Quaterniond turned = (parent.q * node.parent_from_joint).conjugate() * motion.q *
                                    node.joint_from_own.conjugate();
         node.at_begin = node.kind == TreeJoint::kHinge
-                            ? Quaterniond(node.parent_from_joint * twist_about_z(turned))
+                            ? twisted_about_z(node.parent_from_joint, twist_about_z(turned))
                             : node.parent_from_joint;
         double rate = 0.0;
         if (node.kind == TreeJoint::kHinge) {
           const Vector3d axis = parent.q * node.axis_parent;
-          rate = axis.dot(motion.w - parent.w);
+          rate = axis.dot(w - parent.w);
           y[half + at] = rate;
         }
         turn_by_joint(node, 0.0, rate, motion);
@@ -179,33 +183,28 @@ VectorXd ArticulatedTree::begin(const std::vector<RigidBodyState>& states,
       }
     }
     settle_arms(node, motion);
+    misfit.add(state, v, w, node, motion, size_);
   }
-  measure_misfit(states);
+  misfit_ = std::max(std::sqrt(misfit.apart) / size_, std::sqrt(misfit.turned));
+  if (misfit.parting > 0.0) misfit_ += std::sqrt(misfit.parting / misfit.fastest);
+  stands_at_ = y;
   return y;
 }
 
-void ArticulatedTree::measure_misfit(const std::vector<RigidBodyState>& states) {
-  double apart = 0.0, turned = 0.0, parting = 0.0, fastest = 0.0;
-  for (int place = 0; place < movable(); ++place) {
-    const Node& node = nodes_[static_cast<std::size_t>(place)];
-    const Motion& motion = motions_[static_cast<std::size_t>(place)];
-    const RigidBodyState& state = states[static_cast<std::size_t>(place)];
-    const Vector3d v = state.momentum_world / node.mass;
-    apart = std::max(apart, (state.com_world - motion.c).norm());
-    parting = std::max(parting, (v - motion.v).norm());
-    fastest = std::max({fastest, v.norm(), size_ * motion.w.norm()});
-    if (node.kind != TreeJoint::kHinge && node.kind != TreeJoint::kWeld) continue;
-    const Vector3d w =
-        state.world_from_body * omega_body_of(state, node.inertia_body, node.inverse_inertia_body);
-    turned = std::max(turned, (state.world_from_body.conjugate() * motion.q).vec().norm());
-    parting = std::max(parting, size_ * (w - motion.w).norm());
-  }
-  misfit_ = std::max(apart / size_, turned) + (parting > 0.0 ? parting / fastest : 0.0);
+void ArticulatedTree::Misfit::add(const RigidBodyState& state, const Vector3d& v, const Vector3d& w,
+                                  const Node& node, const Motion& motion, double size) {
+  apart = std::max(apart, (state.com_world - motion.c).squaredNorm());
+  parting = std::max(parting, (v - motion.v).squaredNorm());
+  fastest = std::max({fastest, v.squaredNorm(), size * size * motion.w.squaredNorm()});
+  if (node.kind != TreeJoint::kHinge && node.kind != TreeJoint::kWeld) return;
+  turned = std::max(turned, (state.world_from_body.conjugate() * motion.q).vec().squaredNorm());
+  parting = std::max(parting, size * size * (w - motion.w).squaredNorm());
 }
 
 void ArticulatedTree::stand_at(const VectorXd& y, const std::vector<FixedEnd>& fixed) {
   require(y.size() == 2 * half_, "an articulated tree has as many numbers as begin() returned");
-  set_fixed(fixed);
+  if (!set_fixed(fixed) && y.size() == stands_at_.size() && y == stands_at_) return;
+  stands_at_ = y;
   is_factored_ = false;
   const Index half = half_;
   for (const int place : order_) {
@@ -297,6 +296,32 @@ VectorXd ArticulatedTree::rate() const {
     const Quaterniond turning = motion.q * Quaterniond(0.0, 0.5 * w.x(), 0.5 * w.y(), 0.5 * w.z());
     rate.segment<4>(at) << turning.w(), turning.x(), turning.y(), turning.z();
     rate.segment<3>(half + at) = motion.q.conjugate() * solved.alpha;
+  }
+  return rate;
+}
+
+VectorXd ArticulatedTree::rates_of_places(const VectorXd& y) const {
+  VectorXd rate = VectorXd::Zero(2 * half_);
+  const Index half = half_;
+  for (const Node& node : nodes_) {
+    Index at = node.at;
+    if (node.kind == TreeJoint::kFree) {
+      rate.segment<3>(at) = y.segment<3>(half + at);
+      at += 3;
+    }
+    if (node.kind == TreeJoint::kRod) {
+      const Vector3d u = y.segment<3>(at).normalized();
+      const Vector3d u_rate = y.segment<3>(half + at);
+      rate.segment<3>(at) = y.segment<3>(at).norm() * (u_rate - u.dot(u_rate) * u);
+      at += 3;
+    }
+    if (node.kind == TreeJoint::kHinge) rate[at] = y[half + at];
+    if (node.kind == TreeJoint::kHinge || node.kind == TreeJoint::kWeld || node.turns_evenly)
+      continue;
+    const Vector3d w = 0.5 * y.segment<3>(half + at);
+    const Quaterniond turning =
+        Quaterniond(y[at], y[at + 1], y[at + 2], y[at + 3]) * Quaterniond(0.0, w.x(), w.y(), w.z());
+    rate.segment<4>(at) << turning.w(), turning.x(), turning.y(), turning.z();
   }
   return rate;
 }

@@ -41,6 +41,7 @@ ArticulatedTree::ArticulatedTree(const std::vector<Inertia>& bodies, int fixed_e
     nodes_[i].inverse_inertia_body = bodies[i].inertia_body.inverse();
     const double moment = bodies[i].inertia_body(0, 0);
     nodes_[i].is_even = bodies[i].inertia_body == moment * Matrix3d::Identity();
+    nodes_[i].is_principal = bodies[i].inertia_body.isDiagonal(0.0);
   }
   hang(bodies, links);
   find_points(links);

@@ -48,8 +48,8 @@ class ArticulatedTree {
   /// How many links a body of the longest branch hangs on.
   int depth() const { return depth_; }
 
-  /// Begins at these states and returns their coordinates. Velocities and places that links do not
-  /// allow are taken as the links allow them.
+  /// Begins at these states and returns their coordinates, where this then stands. Velocities and
+  /// places that links do not allow are taken as the links allow them.
   /// @param turns_freely  whether no torque will act on any body: balls held at their centres then
   ///   turn evenly, and y leaves their turning out
   VectorXd begin(const std::vector<RigidBodyState>& states, const std::vector<FixedEnd>& fixed,
@@ -61,6 +61,7 @@ class ArticulatedTree {
   /// largest arm, of turnings [rad], of velocities in parts of the fastest.
   double misfit() const { return misfit_; }
   /// Stands where y says. @param fixed  at the same time
+  /// Cost: O(bodies); where this stands there already, a look at y
   void stand_at(const VectorXd& y, const std::vector<FixedEnd>& fixed);
   /// Of a body, where this stands. @param since_begin  the time since begin() [s]
   RigidBodyState state(int body, double since_begin) const;
@@ -83,6 +84,8 @@ class ArticulatedTree {
   Eigen::Matrix<double, 6, 1> acceleration(int body) const;
   /// y', by the last accelerate().
   VectorXd rate() const;
+  /// y' at y, of its places only; of velocities 0. Cost: O(bodies), no forces and no pass over them
+  VectorXd rates_of_places(const VectorXd& y) const;
   /// What the rod on which a body hangs pulls with, by the last accelerate(): > 0 is a pull. [N]
   double tension(int body) const { return -solved_[static_cast<std::size_t>(body)].along_rod; }
   /// What pushes each body at the joint on which it hangs, by accelerate() under these forces; 0
@@ -102,6 +105,7 @@ class ArticulatedTree {
     Matrix3d inertia_body, inverse_inertia_body;
     Vector3d axis_parent;          // of a hinge
     bool is_even = false;          // its principal moments are the same
+    bool is_principal = false;     // inertia_body is diagonal
     bool at_own_centre = true;     // its joint's point is its centre
     bool at_parent_centre = true;  // and its parent's
     bool is_point = true;          // this, and all that hangs on it hangs at its centre
@@ -111,14 +115,15 @@ class ArticulatedTree {
     int at = 0;                    // its first number among the places of y
   };
   struct Motion {
-    Quaterniond q;
+    Quaterniond q = Quaterniond::Identity();
     Matrix3d R;
-    Vector3d c, v, w;  // of the centre; angular velocity
+    Vector3d c = Vector3d::Zero(), v = Vector3d::Zero();  // of the centre
+    Vector3d w;
     Vector3d arm_own, arm_parent, centripetal_own, centripetal_parent;
     Vector3d u, u_rate, axis;  // of a rod; of a hinge
     double q_length = 1.0, u_length = 1.0, u_along = 0.0, angle_rate = 0.0;
     Matrix3d inertia;
-    Vector3d a;  // of a fixed end
+    Vector3d a = Vector3d::Zero();  // of a fixed end
   };
   // F = M a + H alpha + f, N = H^T a + J alpha + n: force and torque about the centre that a body
   // with all that hangs on it asks of its joint
@@ -135,11 +140,18 @@ class ArticulatedTree {
     Vector3d a, alpha;  // accelerations
   };
 
-  void measure_misfit(const std::vector<RigidBodyState>& states);
+  // The largest squares of what states are away from what begin() makes of them.
+  struct Misfit {
+    double apart = 0.0, turned = 0.0, parting = 0.0, fastest = 0.0;
+    /// @param v, w  of the state
+    void add(const RigidBodyState& state, const Vector3d& v, const Vector3d& w, const Node& node,
+             const Motion& motion, double size);
+  };
+
   void hang(const std::vector<Inertia>& bodies, const std::vector<TreeLink>& links);
   void find_points(const std::vector<TreeLink>& links);
   void assign_numbers();
-  void set_fixed(const std::vector<FixedEnd>& fixed);
+  bool set_fixed(const std::vector<FixedEnd>& fixed);
   void move_parent_point(const Node& node, Motion& motion) const;
   void turn_by_joint(const Node& node, double angle, double rate, Motion& motion) const;
   void settle_arms(const Node& node, Motion& motion) const;
@@ -156,10 +168,11 @@ class ArticulatedTree {
   std::vector<int> cut_;
   double misfit_ = 0.0, size_ = 1.0;  // largest arm [m]
   bool is_factored_ = false;          // where this stands
-  int depth_ = 0, half_ = 0;          // numbers of y that are places
-  std::vector<Motion> motions_;       // by place: fixed ends too
-  std::vector<Articulated> held_;     // by body
-  std::vector<Solved> solved_;        // by place
+  VectorXd stands_at_;
+  int depth_ = 0, half_ = 0;       // numbers of y that are places
+  std::vector<Motion> motions_;    // by place: fixed ends too
+  std::vector<Articulated> held_;  // by body
+  std::vector<Solved> solved_;     // by place
 };
 
 }  // namespace tumble

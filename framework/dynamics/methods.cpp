@@ -21,6 +21,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
 #include "framework/dynamics/gauss.h"
+#include "framework/dynamics/split_ode.h"
 
 namespace tumble {
 namespace {
@@ -78,7 +79,7 @@ void add(const VectorXd& dy, double h, bool momenta, VectorXd& y) {
 VectorXd symplectic_euler(const OdeFunction& f, double t, const VectorXd& y, double h) {
   VectorXd next = y;
   add(f(t, y), h, true, next);
-  add(f(t, next), h, false, next);
+  add(rates_of_places(f, t, next), h, false, next);
   return next;
 }
 
@@ -88,7 +89,7 @@ VectorXd symplectic_euler(const OdeFunction& f, double t, const VectorXd& y, dou
 VectorXd verlet(const OdeFunction& f, double t, const VectorXd& y, double h) {
   VectorXd next = y;
   add(f(t, y), 0.5 * h, true, next);
-  add(f(t + 0.5 * h, next), h, false, next);
+  add(rates_of_places(f, t + 0.5 * h, next), h, false, next);
   add(f(t + h, next), 0.5 * h, true, next);
   return next;
 }

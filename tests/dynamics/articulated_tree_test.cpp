@@ -310,6 +310,53 @@ TEST(ArticulatedTree, RespondsToAPushAsItsAccelerationsChange) {
   }
 }
 
+TEST(ArticulatedTree, RatesOfPlacesAreThoseOfTheWholeRate) {
+  // Ten roundings of numbers up to 4 here: velocities reach 10 and go through a turn and back.
+  constexpr double kTurnAndBack = 1e-14;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Lot lot(3000 + seed);
+    Linkage all = forest_by_lot(lot, 1 + lot.below(6), kAllKinds);
+    ArticulatedTree tree(all.bodies, 2, all.links);
+    VectorXd y = settle(tree, all);
+    const Index half = y.size() / 2;
+    for (Index i = 0; i < half; ++i) y[i] *= 1.2, y[half + i] += 0.3;  // as stages leave them
+    const VectorXd alone = tree.rates_of_places(y);
+    tree.stand_at(y, all.fixed);
+    tree.accelerate(all.wrenches);
+    const VectorXd whole = tree.rate().head(half);
+    EXPECT_LT((alone.head(half) - whole).norm(), kTurnAndBack * (1.0 + whole.norm())) << seed;
+  }
+}
+
+TEST(ArticulatedTree, StandsAfterItsBeginningAsIfItCameFromElsewhere) {
+  // Directions of length 1 are made so once more: a rounding of places and velocities, which
+  // accelerations see by the condition numbers above.
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Lot lot(4000 + seed);
+    Linkage all = forest_by_lot(lot, 1 + lot.below(6), kAllKinds);
+    ArticulatedTree tree(all.bodies, 2, all.links);
+    settle(tree, all);  // states that the links allow
+    const VectorXd y = tree.begin(all.states, all.fixed, false);
+    tree.accelerate(all.wrenches);
+    const VectorXd begun = tree.rate();
+    tree.stand_at(1.1 * y, all.fixed);
+    tree.stand_at(y, all.fixed);
+    tree.accelerate(all.wrenches);
+    const VectorXd come = tree.rate();
+    EXPECT_LT((come - begun).norm(), kRounding * (1.0 + come.norm())) << seed;
+    // Where a fixed end moves, the same y is another place.
+    std::vector<FixedEnd> moved = all.fixed;
+    moved[1].com_world += Vector3d(1.0, 2.0, 3.0);
+    tree.stand_at(y, moved);
+    for (const TreeLink& link : all.links)
+      if (tree.link_of(0) >= 0 && &link == &all.links[static_cast<std::size_t>(tree.link_of(0))] &&
+          std::max(link.a, link.b) == static_cast<int>(all.bodies.size()) + 1)
+        EXPECT_NEAR((tree.state(0, 0.0).com_world - all.states[0].com_world).norm(),
+                    Vector3d(1.0, 2.0, 3.0).norm(), kRounding)
+            << seed;
+  }
+}
+
 TEST(ArticulatedTree, RatesMoveVelocitiesByTheAccelerations) {
   // Central differences of h: h^2 of third derivatives that reach 1e5, and rounding over h.
   constexpr double h = 1e-5, kDifference = 1e-5;

@@ -7,6 +7,7 @@
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
 #include "framework/dynamics/methods.h"
+#include "framework/dynamics/split_ode.h"
 
 namespace tumble::testing {
 namespace {
@@ -34,6 +35,25 @@ TEST(Methods, OfFixedStepsHaveTheOrderTheyPromise) {
     EXPECT_NEAR(std::log2(error_at_1(step, steps) / error_at_1(step, 2 * steps)), method.order,
                 0.05)
         << method.name;
+  }
+}
+
+TEST(Methods, ThatAreSymplecticAskForAccelerationsOnceForEachChangeOfVelocities) {
+  for (const auto& [word, kicks] : {std::pair{"symplectic", 1}, {"verlet", 2}}) {
+    int whole = 0, places = 0;
+    const OdeFunction split = SplitOde{[&](double t, const VectorXd& y) {
+                                         ++whole;
+                                         return kSwing(t, y);
+                                       },
+                                       [&](double, const VectorXd& y) -> VectorXd {
+                                         ++places;
+                                         return Vector2d(y[1], kUnset);
+                                       }};
+    const StepFunction step = step_of(method_named(word), kUnset);
+    const VectorXd y = Vector2d(0.6, -0.8);
+    EXPECT_EQ(step(split, 0.0, y, 0.1), step(kSwing, 0.0, y, 0.1)) << word << ", to the last bit";
+    EXPECT_EQ(whole, kicks) << word;
+    EXPECT_EQ(places, 1) << word;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
 #include "framework/core/error.h"
+#include "framework/dynamics/methods.h"
 #include "framework/engines/run.h"
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/joint/joint.h"
@@ -102,6 +103,18 @@ TEST(JointCoordinates, OfATreeAskForNoRowsInAStep) {
   EXPECT_EQ(solves(tree), 0u) << "nor what frames record of its rods";
   const Trajectory loop = run(of_course("four_bar", 0.8), Coordinates::kReduced, 1.0 / 480);
   EXPECT_GT(solves(loop), loop.frames.size() + 1) << "a loop is closed by rows";
+}
+
+TEST(JointCoordinates, AreAskedForAccelerationsOnceASymplecticStep) {
+  Laws symplectic = laws();
+  symplectic.integrate_step = step_of(method_named("symplectic"), kUnset);
+  const scene::Scene scene = of_course("double_pendulum", 0.1);
+  for (const Coordinates coordinates : {Coordinates::kReduced, Coordinates::kMaximal}) {
+    const auto counts = run_by(symplectic, scene, coordinates, 1e-3, "rd").counters.counts;
+    EXPECT_EQ(counts.at("steps"), 100u);
+    EXPECT_EQ(counts.at("derivative_evaluations"), 100u)
+        << (coordinates == Coordinates::kReduced ? "reduced" : "maximal");
+  }
 }
 
 TEST(JointCoordinates, KeepTheirEnergyToTheOrderOfTheMethod) {

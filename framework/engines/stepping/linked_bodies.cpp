@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/disjoint_sets.h"
+#include "framework/dynamics/split_ode.h"
 #include "framework/dynamics/state_units.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -299,14 +300,23 @@ VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies,
   return multipliers;
 }
 
+namespace {
+
+// Of packed bodies.
+RigidBodyState stage_of(const VectorXd& y, std::size_t body) {
+  RigidBodyState state =
+      unpack(y.segment(static_cast<Eigen::Index>(body) * kStateSize, kStateSize));
+  state.world_from_body.normalize();  // why: MovingWorld::integrate
+  return state;
+}
+
+}  // namespace
+
 VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
   ++counters_.derivative_evaluations;
   std::vector<RigidBodyState> local;
   local.reserve(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    local.push_back(unpack(y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize)));
-    local.back().world_from_body.normalize();  // why: MovingWorld::integrate
-  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) local.push_back(stage_of(y, i));
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Wrench> wrenches = forces(local, bodies);
@@ -318,6 +328,24 @@ VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
   return rate;
 }
 
+// Rates of places as the law has them: no force enters these.
+VectorXd LinkedBodies::rates_of_bodies(const VectorXd& y) const {
+  VectorXd rate(y.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    rate.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = laws_.state_derivative(
+        stage_of(y, i), world_.bodies[static_cast<std::size_t>(bodies_[i])].inertia,
+        {Vector3d::Zero(), Vector3d::Zero()});
+  return rate;
+}
+
+void LinkedBodies::need_size(const VectorXd& stage, const VectorXd& y) const {
+  if (stage.size() == y.size()) return;
+  throw StoppedRun(
+      fmt::format("integration (integrate_step of {}) asked for the derivative of a state of {} "
+                  "numbers instead of {}",
+                  laws_.integrator_source, stage.size(), y.size()));
+}
+
 std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodyState>& states,
                                                   double t, double h) {
   step_ = h;
@@ -326,13 +354,12 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   VectorXd y(static_cast<Eigen::Index>(local.size()) * kStateSize);
   for (std::size_t i = 0; i < local.size(); ++i)
     y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = pack(local[i]);
-  const OdeFunction f = [&](double time, const VectorXd& state) {
-    if (state.size() != y.size())
-      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source +
-                       ") asked for the derivative of a state of " + std::to_string(state.size()) +
-                       " numbers instead of " + std::to_string(y.size()));
-    return derivative(time, state);
-  };
+  const OdeFunction f =
+      SplitOde{[&](double time, const VectorXd& state) {
+                 need_size(state, y);
+                 return derivative(time, state);
+               },
+               [&](double, const VectorXd& state) { return rates_of_bodies(state); }};
   ++counters_.integrations;
   const VectorXd end = naming(subject(), [&] { return integrate_by(laws_, f, t, y, h, units_); });
   for (std::size_t i = 0; i < local.size(); ++i) {

@@ -144,6 +144,8 @@ class LinkedBodies final : effects::GroupPlaces {
                                  const std::vector<RigidBodyState>& local,
                                  std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
+  VectorXd rates_of_bodies(const VectorXd& y) const;
+  void need_size(const VectorXd& stage, const VectorXd& y) const;
   // In joint coordinates: reduced_bodies.cpp.
   void plant_tree();
   std::vector<RigidBodyState> advance_reduced(std::vector<RigidBodyState> local, double t,

@@ -129,7 +129,7 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
 // however it turns, and moves the same.
 void MovingWorld::watch_turning(int body, double duration) {
   if (!can_move(body)) return;
-  const double turning = omega_of(states_[body], world_.bodies[body].inertia).norm() * duration;
+  const double turning = turning_speed_of(states_[body], world_.bodies[body].inertia) * duration;
   if (turning <= kTurnResolved) return;
   const bool is_alone =
       linked_group(body) < 0 && std::none_of(effects::all().begin(), effects::all().end(),

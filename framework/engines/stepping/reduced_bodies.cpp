@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/decompositions.h"
+#include "framework/dynamics/split_ode.h"
 #include "framework/dynamics/state_units.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
@@ -300,14 +301,12 @@ void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) 
 std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyState> local,
                                                           double t, double h) {
   const VectorXd y = begin_reduced(local, t);
-  const OdeFunction f = [&](double time, const VectorXd& state) {
-    if (state.size() != y.size())
-      throw StoppedRun(
-          fmt::format("integration (integrate_step of {}) asked for the derivative of "
-                      "a state of {} numbers instead of {}",
-                      laws_.integrator_source, state.size(), y.size()));
-    return reduced_rate(time, state);
-  };
+  const OdeFunction f =
+      SplitOde{[&](double time, const VectorXd& state) {
+                 need_size(state, y);
+                 return reduced_rate(time, state);
+               },
+               [&](double, const VectorXd& state) { return tree_->rates_of_places(state); }};
   ++counters_.integrations;
   const VectorXd units = laws_.steps_in_units
                              ? tree_->units(nearest_power_of_two(length_ > 0.0 ? length_ : 1.0))

@@ -66,8 +66,14 @@ SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end,
       momentum_{start.momentum_world, end.momentum_world},
       angular_momentum_{start.angular_momentum_world, end.angular_momentum_world} {}
 
+double turning_speed_of(const RigidBodyState& state, const Inertia& inertia) {
+  return (inertia.inverse_inertia_body *
+          (state.world_from_body.conjugate() * state.angular_momentum_world))
+      .norm();
+}
+
 double SmoothPath::turning_at_ends() const {
-  return h_ * std::max(omega_of(from_, inertia_).norm(), omega_of(to_, inertia_).norm());
+  return h_ * std::max(turning_speed_of(from_, inertia_), turning_speed_of(to_, inertia_));
 }
 
 void SmoothPath::find_polynomials() const {

@@ -14,6 +14,9 @@
 
 namespace tumble::engines {
 
+/// |omega|, which is the same in every frame. [rad/s]
+double turning_speed_of(const RigidBodyState& state, const Inertia& inertia);
+
 class SmoothPath {
  public:
   SmoothPath() = default;
