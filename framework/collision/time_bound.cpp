@@ -4,28 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/collision/edge_bound.h"
 #include "framework/collision/ellipsoid.h"
-#include "framework/collision/inline_vector.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/collision/vertex_lines.h"
 #include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
-
-// One vertex of (E.1): height over the supporting plane, rate along the normal, and half the bound
-// on its acceleration.
-struct VertexLine {
-  double height, rate, half_acceleration;
-  double at(double t) const { return height + (rate - half_acceleration * t) * t; }
-};
-
-using VertexLines = InlineVector<VertexLine, 32>;
-
-// Largest acceleration by rotation, per length of the arm. [1/s^2]
-double acceleration_by_rotation(const MotionBounds& bounds) {
-  return bounds.angular_acceleration +
-         bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error);
-}
 
 // Lines of all vertices of a piece of a body. `side` is +1 for A (heights along n) and -1 for B
 // (heights along -n).
@@ -58,9 +44,22 @@ double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
   return lowest;
 }
 
-// Largest t up to `horizon` with (E.1) on [0, t]: starts at the horizon and moves back to the first
-// root of the lowest pair. Requires every pair's curve to be concave, so that a curve above zero at
-// t was never below zero before.
+// Two balls with centres in straight relative motion: the first root of |d + u t|^2 = r^2.
+double duration_of_balls(const Vector3d& d, const Vector3d& u, double gap, double radius) {
+  const double approach = d.dot(u);
+  if (approach >= 0) return kInfinity;
+  const double excess = gap * (gap + 2 * radius);  // d.d - r^2 without cancellation
+  const double discriminant = approach * approach - u.squaredNorm() * excess;
+  return discriminant < 0 ? kInfinity : excess / (-approach + std::sqrt(discriminant));
+}
+
+// Of the time that is asked for: shorter bounds are worth a second look.
+constexpr double kShort = 1.0 / 16;
+
+}  // namespace
+
+// Starts at the horizon and moves back to the first root of the lowest pair. Requires every pair's
+// curve to be concave, so that a curve above zero at t was never below zero before.
 double duration_of_lines(double gap, double rate, double half_acceleration, const VertexLines& a,
                          const VertexLines& b, double horizon) {
   if (a.size() == 1 && b.size() == 1) {
@@ -82,26 +81,6 @@ double duration_of_lines(double gap, double rate, double half_acceleration, cons
   }
   return 0.0;
 }
-
-// Two balls with centres in straight relative motion: the first root of |d + u t|^2 = r^2.
-double duration_of_balls(const Vector3d& d, const Vector3d& u, double gap, double radius) {
-  const double approach = d.dot(u);
-  if (approach >= 0) return kInfinity;
-  const double excess = gap * (gap + 2 * radius);  // d.d - r^2 without cancellation
-  const double discriminant = approach * approach - u.squaredNorm() * excess;
-  return discriminant < 0 ? kInfinity : excess / (-approach + std::sqrt(discriminant));
-}
-
-struct Relative {
-  Vector3d velocity, acceleration;
-  double deviation, turning_reach;  // [m/s^2], [m/s]
-
-  double reach(double t) const {
-    return ((velocity.norm() + turning_reach) + 0.5 * (acceleration.norm() + deviation) * t) * t;
-  }
-};
-
-}  // namespace
 
 double first_root_of_quadratic(double g, double c, double q) {
   const double discriminant = c * c - 4 * q * g;
@@ -170,7 +149,14 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
   const auto shorten_by_pair = [&](int i, int j, const PolytopeGap& found) {
     collect_lines(query.piece_of_a(i), state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
     collect_lines(query.piece_of_b(j), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
+    const double before = bound.duration;
     along(found.distance - radius, found.normal_b_to_a, lines_b);
+    if (radius != 0.0 || bound.duration > kShort * before) return;
+    const PlacedPolytope piece_a = query.piece_of_a(i), piece_b = query.piece_of_b(j);
+    bound.duration =
+        std::max(bound.duration, duration_of_edges({piece_a, state_a, bounds_a, lines_a},
+                                                   {piece_b, state_b, bounds_b, lines_b}, query,
+                                                   found, relative, before));
   };
   // The nearest pair first: the shorter its bound, the fewer other pairs can touch before.
   const NearestPieces nearest =

@@ -10,6 +10,8 @@
 /// where w is the angular velocity in its states: the rate of an arm is w x r + e x r. The second
 /// term is bounded by |e| |r|; the first changes at the rate alpha x r + w x ((w + e) x r). For
 /// solids that are not convex, every pair of pieces that can come near within the bound is tested.
+/// Two edges that turn while they are near have a longer bound along a normal that turns with them,
+/// (E.2) of edge_bound.h.
 /// For an ellipsoid over a half-space, the support function covers all points of the surface at
 /// once (ellipsoid.h).
 /// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley
