@@ -35,7 +35,10 @@ class BodyMatrix {
   void find_order(std::vector<std::vector<int>> neighbours);
   template <int kRows>
   void add_product(const ContactBlock& contact, const Matrix3d& d);
-  void add_pair(int body_a, int body_b, const Block6& ab, const Block6& ba);
+  struct PairOfBlocks {
+    Block6 &ab, &ba;
+  };
+  PairOfBlocks pair_of(int body_a, int body_b);
   void eliminate(std::size_t step);
 
   struct Column {                      // of one step of the elimination
