@@ -12,8 +12,8 @@
 /// and the solids stay apart while the first and the least of each solid's sum to more than 0.
 ///   |n'| <= (|w_A| + |w_B|) / s,   |n''| <= ((|w_A| + |w_B|)^2 + |alpha_A| + |alpha_B|) / s,
 ///   |n| <= 1 / s,   s = |p x q|_0                                                          (E.2)
-/// where |w|, |alpha| bound the whole time, and A_A is of (E.1). The step grows as the root of the gap, no longer as
-/// the gap.
+/// where |w|, |alpha| bound the whole time, and A_A is of (E.1). The step grows as the root of the
+/// gap, no longer as the gap.
 #pragma once
 
 #include "framework/collision/piece_pairs.h"
