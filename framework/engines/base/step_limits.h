@@ -2,10 +2,13 @@
 /// what goes on for ever looks like a hang.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "framework/dynamics/world.h"
 
 namespace tumble::engines {
 
@@ -27,12 +30,21 @@ inline constexpr std::uint32_t most_microsteps(int bodies) {
   return 1000 + 10 * static_cast<std::uint32_t>(bodies);
 }
 
+/// The end of a message that time stands still, in a world with driven bodies.
+inline const char* room_beside_driven(const World& world) {
+  const bool is_any_driven =
+      std::any_of(world.bodies.begin(), world.bodies.end(),
+                  [](const WorldBody& b) { return b.immovable() && is_driven(b.motion); });
+  return is_any_driven ? "; what drives bodies together (\"motion\") must leave them room" : "";
+}
+
 /// @param bodies  names, as "bodies 'a' and 'b'"
-inline std::string endless_impacts_message(double time, const std::string& bodies) {
+inline std::string endless_impacts_message(double time, const std::string& bodies,
+                                           const World& world) {
   return fmt::format(
       "at t = {:.6f} s, {}: time stands still, they meet again and again; a persistent contact is "
-      "needed there, or a larger \"rest_speed_m_s\"",
-      time, bodies);
+      "needed there, or a larger \"rest_speed_m_s\"{}",
+      time, bodies, room_beside_driven(world));
 }
 
 }  // namespace tumble::engines

@@ -64,6 +64,13 @@ struct ContactConstants {
   /// sweeps of the solver in one step: some 200 problems that all stayed unsolved. Larger: a run
   /// without an answer takes hours. Smaller: hard steps are given up.
   std::uint64_t most_sweeps_a_step = 300000;
+  /// of the island's speed: what stays unsolved where a driven body leaves no room (half of the
+  /// driven body's speed, where nothing else moves). Larger: such a run ends late. Smaller: jams
+  /// that a solver's patience would open end it.
+  double jammed = 1e-2;
+  /// jams from one instant on, in ever shorter steps. Larger: such a run ends late. Smaller: as
+  /// above.
+  int most_jams = 4;
 
   // ---- Contact problems
   /// of the island's speed: approach and slip left where it moves. Larger: energy errors. Smaller:
@@ -134,6 +141,12 @@ struct ContactConstants {
   double correction_reach = 4.0;
   /// of what is missing a round may leave. Larger: more rounds. Smaller: more sweeps.
   double correction_missed = 1e-6;
+  /// of what was missing before it: a round that leaves more finds no room, and the pairs give up
+  /// their margin. Larger: slow. Smaller: contacts that could have their margin lose it.
+  double correction_in_vain = 0.4;
+  /// longest steps: how long. Larger: their margin comes back late where there is room again.
+  /// Smaller: the correction in vain is tried too often.
+  double steps_without_margin = 64;
   /// margins: a point farther away at the start has become active in the step, and is not drawn to
   /// its margin. Larger: its impact is undone. Smaller: active contacts open.
   double far_at_start = 1e3;

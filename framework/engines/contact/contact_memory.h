@@ -34,6 +34,8 @@ struct ContactMemory {
   // Warm start: of the last step, and of attempts at the one that has begun.
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
   std::set<Pair> stuck;  // pairs with friction that did not slide in the last step
+  // Pairs that rods, joints or walls leave no room for a margin between them, and until when [s].
+  std::map<Pair, double> without_margin;
   // Large islands: bodies whose island has, or has had since it last came to rest, too many impacts
   // a step to locate each.
   std::set<int> in_large_island;
@@ -52,6 +54,9 @@ struct ContactMemory {
   double cut_since = -kInfinity;  // [s]
   long cuts = 0;
   std::uint64_t sweeps = 0;
+  // problems of islands that a driven body presses, unsolved from one instant on [s], and how many
+  double jammed_at = -kInfinity;
+  int jams = 0;
   // body of the island that last asked for an earlier target
   int asked_last = -1;
 };

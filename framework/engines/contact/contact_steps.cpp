@@ -123,6 +123,16 @@ void PersistentContacts::warm_start(const std::vector<StepContact>& contacts,
   }
 }
 
+// Where rods and joints hold bodies still, all that is left of velocities is what places and
+// multipliers are rounded by. [m/s]
+double PersistentContacts::speed_of_rounding(const ContactIsland& island) const {
+  double farthest = 0.0;
+  for (const int body : island.bodies)
+    farthest = std::max(
+        farthest, moving_.state(body).com_world.norm() + moving_.shape(body).bounding_radius());
+  return kCoordinateRounding * farthest / memory_.longest_step;
+}
+
 ContactSolution PersistentContacts::solve(const ContactIsland& island,
                                           const ContactProblem& problem, double h) {
   if (problem.contacts.empty() && problem.rows.empty()) return unpushed(problem);
@@ -137,6 +147,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
   if (!frictionless || !problem.rows.empty() || problem.contacts.size() > kContact.many_contacts) {
     ContactOptions options;
     if (problem.contacts.size() > kContact.few_contacts) options.tolerance = kContact.solved;
+    if (!problem.rows.empty()) options.least_speed = speed_of_rounding(island);
     // what stands has to be found to the last digit
     if (speed(island) > kContact.moving * restitution_threshold_) options.enough = kContact.solved;
     if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep &&
@@ -153,6 +164,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
       for (PushingContact& contact : afresh.contacts) contact.warm_start_world.setZero();
       ContactOptions every;
       every.tolerance = options.tolerance;
+      every.least_speed = options.least_speed;
       ContactSolution again = solve_contacts(afresh, every);
       again.sweeps += solution.sweeps;
       again.factorisations += solution.factorisations;
@@ -161,7 +173,10 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
     counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
     memory_.sweeps += static_cast<std::uint64_t>(solution.sweeps);
     counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
-    if (!solution.converged) ++counters_.contact_unsolved;
+    if (!solution.converged) {
+      ++counters_.contact_unsolved;
+      require_room(island, solution.residual);
+    }
     return solution;
   }
   // The laws' part: A f + b are accelerations, f forces.

@@ -142,10 +142,13 @@ class PersistentContacts {
   bool may_close(Pair pair, const collision::ManifoldPoint& point, double time) const;
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
+  std::vector<int> driven_against(const ContactIsland& island) const;
+  void require_room(const ContactIsland& island, double residual);
   void require_progress();
   StepContacts contacts_of(const ContactIsland& island);
   bool is_curved(const ContactIsland& island) const;
   double speed(const ContactIsland& island) const;
+  double speed_of_rounding(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
   void remove_overlaps();
 

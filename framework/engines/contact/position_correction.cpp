@@ -24,6 +24,20 @@ void limit_ratios(ContactProblem& problem) {
   }
 }
 
+/// How far rods and joints are open, beyond rounding: of rows that ask for a place [m], with
+/// `size` the largest coordinate of the bodies [m], and of those that ask for an angle [rad].
+double farthest_open(const ContactProblem& problem, double size) {
+  double farthest = 0.0;
+  for (Eigen::Index i = 0; i < problem.row_targets.size(); ++i) {
+    const ConstraintRow& row = problem.rows[static_cast<std::size_t>(i)].row;
+    const bool is_angle =
+        row.jacobian_a.head<3>().isZero(0.0) && row.jacobian_b.head<3>().isZero(0.0);
+    const double off = std::abs(problem.row_targets[i]);
+    if (off > kSolverRounding * (is_angle ? 1.0 : size)) farthest = std::max(farthest, off);
+  }
+  return farthest;
+}
+
 }  // namespace
 
 // A contact of a correction: bodies of other islands stay where they are.
@@ -63,34 +77,53 @@ bool PositionCorrection::apply_correction(int body, const Velocity& correction,
   return true;
 }
 
+bool PositionCorrection::keeps_margin(const Pair& pair, double t) const {
+  const auto known = memory_.without_margin.find(pair);
+  return known == memory_.without_margin.end() || t >= known->second;
+}
+
+// A correction has not helped these. @return whether any of them still kept its margin
+bool PositionCorrection::give_up_margins(const std::vector<Pair>& pairs, double t) {
+  bool any = false;
+  for (const Pair& pair : pairs) {
+    if (!keeps_margin(pair, t)) continue;
+    memory_.without_margin[pair] = t + kContact.steps_without_margin * memory_.longest_step;
+    any = true;
+  }
+  return any;
+}
+
 // The island's contacts as they are in these places: what each has to move by. Points farther apart
 // than `reach` are no concern.
-// @return the farthest that any too near, or held too far, has to move; 0 where none is
-double PositionCorrection::add_corrections(const ContactIsland& island,
-                                           const std::vector<Pair>& pairs,
-                                           const std::vector<RigidBodyState>& states, double t,
-                                           const std::vector<ActiveContact>& active, double reach,
-                                           ContactProblem& problem) {
-  double wrong = 0.0;
+PositionCorrection::Missing PositionCorrection::add_corrections(
+    const ContactIsland& island, const std::vector<Pair>& pairs,
+    const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active,
+    double reach, ContactProblem& problem) {
+  Missing missing;
   for (const Pair& pair : pairs) {
-    const double margin = geometry_.margin(pair), size = geometry_.size_of(pair);
-    const bool has_active = std::any_of(active.begin(), active.end(),
-                                        [&](const ActiveContact& h) { return h.pair == pair; });
+    const bool keeps = keeps_margin(pair, t);
+    const double size = geometry_.size_of(pair), margin = keeps ? geometry_.margin(pair) : 0.0,
+                 too_near = keeps ? 0.5 * margin : -kSolverRounding * size;
+    const bool has_active =
+        keeps && std::any_of(active.begin(), active.end(),
+                             [&](const ActiveContact& h) { return h.pair == pair; });
+    bool is_short = false;
     const ContactManifold points = geometry_.points_at(
         pair, states,
         std::max(
-            {kContact.far_at_start * margin, reach,
+            {kContact.far_at_start * geometry_.margin(pair), reach,
              has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
     std::vector<const collision::ManifoldPoint*> at_margin;
     for (const ActiveContact& h : active)
-      if (h.pair == pair)
+      if (keeps && h.pair == pair)
         at_margin.push_back(geometry_.same_point(pair, h.point, *h.at, points, states,
                                                  geometry_.same_within(pair)));
     for (const collision::ManifoldPoint& point : points) {
       const bool is_active =
           std::find(at_margin.begin(), at_margin.end(), &point) != at_margin.end();
-      if (point.gap < 0.5 * margin || (is_active && point.gap > 2 * margin))
-        wrong = std::max(wrong, std::abs(margin - point.gap));
+      if (point.gap < too_near || (is_active && point.gap > 2 * margin))
+        missing.farthest = std::max(missing.farthest, std::abs(margin - point.gap));
+      is_short = is_short || point.gap < margin;
       PushingContact contact;
       place_for_correction(island, pair, point, states, t, margin, problem, contact);
       if (is_active) {
@@ -108,8 +141,9 @@ double PositionCorrection::add_corrections(const ContactIsland& island,
         problem.contacts.push_back(contact);
       }
     }
+    if (is_short) missing.below_margin.push_back(pair);
   }
-  return wrong;
+  return missing;
 }
 
 // The correction, minimal in the kinetic metric, that leaves no gap of these pairs below its
@@ -120,17 +154,18 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
                                            std::vector<RigidBodyState>& states, double t,
                                            const std::vector<ActiveContact>& active) {
   place_driven(states, t);
-  double reach = 0.0;
+  double reach = 0.0, before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kContact.most_corrections; ++round) {
     ContactProblem problem;
     places_.begin(moving_.size());
     for (const int body : island.bodies)
       place_body(moving_, body, t, places_, states, nullptr, problem);
     limit_ratios(problem);
-    const double wrong = add_corrections(
+    const Missing missing = add_corrections(
         island, pairs, states, t,
         round < kContact.most_corrections / 2 ? active : std::vector<ActiveContact>{}, reach,
         problem);
+    const double wrong = missing.farthest;
     // what a correction this long may bring together has to be in it
     if (kContact.correction_reach * wrong > reach) {
       reach = 2 * kContact.correction_reach * wrong;
@@ -140,9 +175,15 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
     double size = 0.0;
     for (const int body : island.bodies)
       size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
-    const bool open = problem.row_targets.size() > 0 &&
-                      problem.row_targets.cwiseAbs().maxCoeff() > kSolverRounding * size;
-    if (wrong == 0.0 && !open) return true;
+    const double open = farthest_open(problem, size);
+    if (wrong == 0.0 && open == 0.0) return true;
+    const double left = std::max(wrong, open);
+    if (left > kContact.correction_in_vain * before) {
+      if (!give_up_margins(missing.below_margin, t)) return false;
+      before = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    before = left;
     ++counters_.position_corrections;
     // The solver measures its answers by the farthest point, which need not move at all. Active
     // points, rods and joints are drawn together by what is of another size.

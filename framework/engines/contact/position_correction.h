@@ -3,7 +3,9 @@
 /// The correction is minimal in the kinetic (mass) metric, with mass ratios above 1e4 taken as 1e4;
 /// no rod or joint opens, and velocities stay. It begins where a gap is below half its margin (in
 /// large islands a tenth) and takes it to the margin. Gaps are a linear complementarity problem,
-/// rows are equalities: the contact solver answers both, of large islands by a few sweeps.
+/// rows are equalities: the contact solver answers both, of large islands by a few sweeps. Where
+/// rods, joints or walls leave no room for the margin (a bar that touches a wall at its own hinge),
+/// that pair only must not overlap.
 #pragma once
 
 #include <map>
@@ -48,6 +50,10 @@ class PositionCorrection {
                             std::vector<double>& gaps);
 
  private:
+  struct Missing {
+    double farthest = 0.0;  // that a point too near, or held too far, has to move [m]; 0: none has
+    std::vector<Pair> below_margin;
+  };
   struct KnownManifold {  // a pair's points as they were when it was last asked for them
     ContactManifold points;
     double reach = -1.0;  // all up to here [m]; negative: never asked
@@ -60,10 +66,12 @@ class PositionCorrection {
                             ContactProblem& problem, PushingContact& contact);
   bool apply_correction(int body, const Velocity& correction,
                         std::vector<RigidBodyState>& states) const;
-  double add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs,
-                         const std::vector<RigidBodyState>& states, double t,
-                         const std::vector<ActiveContact>& active, double reach,
-                         ContactProblem& problem);
+  Missing add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs,
+                          const std::vector<RigidBodyState>& states, double t,
+                          const std::vector<ActiveContact>& active, double reach,
+                          ContactProblem& problem);
+  bool keeps_margin(const Pair& pair, double t) const;
+  bool give_up_margins(const std::vector<Pair>& pairs, double t);
   void place_driven(std::vector<RigidBodyState>& states, double t) const;
   double way_of(int body, const Velocity& correction) const;
   ContactProblem corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs,

@@ -52,8 +52,8 @@ Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, 
   if (key.microstep > most_microsteps(world_.size()))
     throw StoppedRun(
         fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; "
-                    "a persistent contact is needed there, or a larger \"rest_speed_m_s\"",
-                    key.time, subject()));
+                    "a persistent contact is needed there, or a larger \"rest_speed_m_s\"{}",
+                    key.time, subject(), room_beside_driven(world_.world())));
   try {
     ++counters.impacts;
     Discontinuity discontinuity = meetings_.resolve_impact(key, f, g);
@@ -99,8 +99,8 @@ Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Fli
   if (key.microstep > most_microsteps(world_.size()))
     throw StoppedRun(
         fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each "
-                    "other without end; a larger \"rest_speed_m_s\" is needed",
-                    key.time, name(a), name(b)));
+                    "other without end; a larger \"rest_speed_m_s\" is needed{}",
+                    key.time, name(a), name(b), room_beside_driven(world_.world())));
   LogicalProcesses& processes = *world_.processes();
   ++counters.impacts;
   const auto state_of = [&](int body, const Flight& flight) {
@@ -145,8 +145,8 @@ Discontinuity FlightRun::end_of_segment(const EventStamp& key, const Flight& fli
   if (key.kind == StampKind::kFault) world_.processes()->segments().raise(flight.segment);
   if (key.microstep > most_microsteps(world_.size()))
     throw StoppedRun(
-        fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it",
-                    key.time, name(key.body_a)));
+        fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it{}",
+                    key.time, name(key.body_a), room_beside_driven(world_.world())));
   const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, key.time);
   require(end != nullptr, "a segment ends where own_end said");
   Discontinuity discontinuity = finished(key, world_.processes()->sort(end->after), end->events);
@@ -234,7 +234,8 @@ void FlightRun::require_progress(const EventStamp& key, const Event& event) {
   if (impacts_in_step_ <= most_impacts(world_.size())) return;
   stopped_at_ = key.time;
   throw StoppedRun(endless_impacts_message(
-      key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
+      key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b)),
+      world_.world()));
 }
 
 void FlightRun::count(const RunWatch* noted) {

@@ -155,8 +155,8 @@ ProcessWorld::Outcome IslandSegments::outcome_of_step(Segment& segment) const {
   segment.idle = outcome.step.end > now ? 0 : segment.idle + 1;
   if (segment.idle > kMostIdleSteps)
     throw StoppedRun(
-        fmt::format("at t = {:.6f} s, {}: time stands still, its bodies collide again and again",
-                    now, names(segment.start->members)));
+        fmt::format("at t = {:.6f} s, {}: time stands still, its bodies collide again and again{}",
+                    now, names(segment.start->members), room_beside_driven(whole_)));
   return outcome;
 }
 

@@ -195,7 +195,8 @@ void RetroactiveRun::advance_to(double target) {
     world_step_.respond(step.around(), *step.impact, true, *this);
     idle = moving_.time() > before ? 0 : idle + 1;
     if (idle > kMostIdleSteps || ++impacts > most_impacts(moving_.size())) {
-      stopped_by_ = endless_impacts_message(moving_.time(), world_step_.names(*step.impact));
+      stopped_by_ =
+          endless_impacts_message(moving_.time(), world_step_.names(*step.impact), moving_.world());
       return;
     }
   }
