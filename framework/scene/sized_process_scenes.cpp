@@ -111,6 +111,7 @@ Scene cars(int n) {
   Scene scene = scene_of(2.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
   scene.stabilisation = StabilisationSpec{};
+  scene.coordinates = Coordinates::kAutomatic;  // half the price: pendula and axles that few meet
   Random random = lots(21, scene);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(n)))),
             vehicles = std::max(1, n / 100);

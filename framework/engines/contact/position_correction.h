@@ -52,6 +52,7 @@ class PositionCorrection {
  private:
   struct Missing {
     double farthest = 0.0;  // that a point too near, or held too far, has to move [m]; 0: none has
+    double too_near = 0.0;  // the same of points too near alone
     std::vector<Pair> below_margin;
   };
   struct KnownManifold {  // a pair's points as they were when it was last asked for them
