@@ -5,6 +5,7 @@
 #include "tests/support/places.h"
 #include "framework/engines/run.h"
 #include "framework/scene/load_scene.h"
+#include "tests/engines/driven_scenes.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/failing_steps.h"
 #include "tests/engines/taught_laws.h"
@@ -51,6 +52,16 @@ void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least
 TEST(TaughtTimewarp, CommitsTheReferencesTraceOfLinkedBodies) {
   expect_the_references_trace_of(pendula_and_balls(5, 0.9), 10);
   expect_the_references_trace_of(sized("cars", 4, 0.3), 0);
+}
+
+// A ball that a wall, and one that a plane from below, wakes from its rest.
+TEST(TaughtTimewarp, CommitsTheReferencesTraceOfADrivenBodyThatMeetsABallAtRest) {
+  expect_the_references_trace_of(
+      ball_and_driven(driven(wall_with_face_at(-0.4), {1.0, 0, 0}), 0.0, 0.32), 4);
+  expect_the_references_trace_of(
+      ball_and_driven(driven(plane("plane", {0, 0, -0.1}, Vector3d::UnitZ()), {0, 0, 0.5}), 0.0,
+                      0.3),
+      4);
 }
 
 // The step of an island that fails is computed ahead; an impact before it makes it never count.

@@ -57,10 +57,12 @@ bool FlightImpactDetection::has_closed_form(int a, const Flight& f, int b, const
 
 double FlightImpactDetection::first_impact(int a, const Flight& f, int b, const Flight& g,
                                            double from, double to, CheckCost& cost) const {
-  // A resting ball never collides with its support.
-  if ((f.is_resting && (g.is_resting || !world_.can_move(b))) ||
-      (g.is_resting && !world_.can_move(a)))
-    return kInfinity;
+  // A resting ball never collides with its support, nor with anything else that stands; a driven
+  // body does not.
+  const auto stands = [&](int body, const Flight& flight) {
+    return flight.is_resting || world_.is_still(body);
+  };
+  if (stands(a, f) && stands(b, g)) return kInfinity;
   if (world_.is_internal(a, f, b, g)) return kInfinity;
   if (!has_closed_form(a, f, b, g)) return in_windows(a, f, b, g, from, to, cost);
   ++cost.pair_checks;
@@ -112,21 +114,30 @@ double FlightImpactDetection::of_ball_and_plane(int ball, const Flight& f,
   return last_instant_apart(f.begin, f.begin + after, height);
 }
 
-// The relative path deviates from its chord by at most |a| s^2 / 8.
+// A relative path whose acceleration is at most a deviates from its chord by at most a s^2 / 8; a
+// body that is shaken, by at most twice the amplitude.
 bool FlightImpactDetection::may_meet(int a, const Flight& f, int b, const Flight& g, double low,
                                      double high) const {
   const auto driven = [&](int body) { return !world_.can_move(body) && !world_.is_still(body); };
-  if (driven(a) || driven(b)) return true;
-  if (f.segment >= 0 || g.segment >= 0) return may_meet_on_segment(a, f, b, g, low, high);
-  const double s = high - low,
-               bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8;
+  if (f.segment >= 0 || g.segment >= 0)
+    return driven(a) || driven(b) || may_meet_on_segment(a, f, b, g, low, high);
+  const double s = high - low;
+  const auto shake = [&](int body) {
+    if (!driven(body)) return 0.0;
+    const scene::PrescribedMotion& m = world_.world().bodies[static_cast<std::size_t>(body)].motion;
+    const double turn = m.angular_frequency_rad_s * s;
+    return m.amplitude_m.norm() * std::min(2.0, turn * turn / 8);
+  };
+  const double bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8 +
+                       shake(a) + shake(b);
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
     const bool a_is_plane = world_.is_half_space(a);
     const int body = a_is_plane ? b : a;
     const Flight &flight = a_is_plane ? g : f, &plane = a_is_plane ? f : g;
     const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
+    const int floor = a_is_plane ? a : b;
     const auto height = [&](double t) {
-      return normal.dot(world_.position(body, flight, t) - plane.com_world);
+      return normal.dot(world_.position(body, flight, t) - world_.position(floor, plane, t));
     };
     return std::min(height(low), height(high)) - bulge <= world_.radius(body) * (1 + kNegligible);
   }

@@ -263,7 +263,7 @@ void Worker::set_horizon(int body, double t) {
 
 void Worker::find_obstacles(int body, const Flight& flight, double from, double to) {
   LogicalProcess& mine = process(body);
-  if (all_.planes.empty() || flight.is_resting) return;
+  if (all_.planes.empty()) return;
   if (!world().is_ball(body) || flight.segment >= 0) {
     for (const int plane : all_.planes) check(body, flight, from, to, plane);
     return;
