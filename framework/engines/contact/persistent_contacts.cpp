@@ -597,8 +597,37 @@ bool PersistentContacts::flies_off(Pair pair, const std::vector<RigidBodyState>&
          n.dot(gravity) + (velocity - normal_speed * n).squaredNorm() / between.norm() > 0;
 }
 
+// Nearer than this the two are in contact; what comes back need not begin anew. [m]
+double PersistentContacts::near_distance(Pair pair, bool lasted, bool is_large,
+                                         const std::vector<RigidBodyState>& states) const {
+  const bool stays_near = lasted && !flies_off(pair, states);
+  return std::max(is_large ? 2 * geometry_.large_island_margin(pair) : open_distance(pair),
+                  stays_near ? restitution_threshold_ * memory_.longest_step : 0.0);
+}
+
+void PersistentContacts::end(Pair pair, const collision::Gap& gap) {
+  memory_.persistent.erase(pair);
+  ++counters_.contacts_ended;
+  sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world,
+               gap.normal_b_to_a_world, 0.0, 0.0});
+}
+
+// Of two that are both left alone nothing has changed. Whether an island is large is not known
+// between steps: the larger distance decides.
+void PersistentContacts::end_where_apart() {
+  const std::vector<RigidBodyState>& states = moving_.states();
+  for (const Pair& pair : std::vector<Pair>(memory_.persistent.begin(), memory_.persistent.end())) {
+    if (keeps(pair) || (!moving_.can_move(pair.first) && !moving_.can_move(pair.second))) continue;
+    const double near =
+        std::max(near_distance(pair, true, false, states), near_distance(pair, true, true, states));
+    if (!geometry_.is_within(pair, states, near)) end(pair, geometry_.gap_of(pair, states));
+  }
+}
+
 bool PersistentContacts::commit() {
   const StageTimer timer(counters_.contact_seconds);
+  // A pair that was out of reach in the whole step, as after a cut within the one before.
+  end_where_apart();
   if (islands_.empty()) return true;
   counters_.watch.add(std::exchange(unsolved_, {}));
   bool apart = true;
@@ -617,22 +646,14 @@ bool PersistentContacts::commit() {
       const Pair& pair = island.near[k];
       if (!keeps(pair)) continue;
       const bool lasted = lasts(pair);
-      // what comes back need not begin anew
-      const bool stays_near = lasted && !flies_off(pair, states);
-      const double near =
-          std::max(island.large ? 2 * geometry_.large_island_margin(pair) : open_distance(pair),
-                   stays_near ? restitution_threshold_ * memory_.longest_step : 0.0);
+      const double near = near_distance(pair, lasted, island.large, states);
       const bool is_near = island.large ? gaps[k] <= near : geometry_.is_within(pair, states, near);
       if (is_near == lasted) continue;
       const collision::Gap gap = geometry_.gap_of(pair, states);
-      if (is_near) {
+      if (is_near)
         begin(pair, gap);
-      } else {
-        memory_.persistent.erase(pair);
-        ++counters_.contacts_ended;
-        sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world,
-                     gap.normal_b_to_a_world, 0.0, 0.0});
-      }
+      else
+        end(pair, gap);
     }
   }
   return apart;

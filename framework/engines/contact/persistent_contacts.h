@@ -70,6 +70,9 @@ class PersistentContacts {
   void begin_where_touching(const std::vector<Pair>& pairs);
   bool lasts(Pair pair) const { return memory_.persistent.contains(pair); }
   const std::set<Pair>& lasting() const { return memory_.persistent; }
+  /// Ends what has come apart where the bodies stand now: within a step that an impact with another
+  /// process cuts short, which no commit() has seen.
+  void end_where_apart();
 
   /// Gives the bodies in contact their paths for the step that has begun. It may change committed
   /// velocities, by impulses at the step's start, and send their events, before the step is
@@ -150,6 +153,9 @@ class PersistentContacts {
   double speed(const ContactIsland& island) const;
   double speed_of_rounding(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
+  double near_distance(Pair pair, bool lasted, bool is_large,
+                       const std::vector<RigidBodyState>& states) const;
+  void end(Pair pair, const collision::Gap& gap);
   void remove_overlaps();
 
   // ---- One island's step (persistent_contacts.cpp, contact_steps.cpp)

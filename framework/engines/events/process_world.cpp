@@ -324,6 +324,9 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   load(state);
   load_forces(state);
   const BodyPair trigger = local(pair);
+  // The step ends here, as in a world of all bodies: contacts that have opened in it take no part.
+  if (has_contacts()) world_step_.contacts().end_where_apart();
+  const std::size_t ended = collector_.events.size();
   const std::vector<BodyPair> pairs = near_pairs(trigger);
   world_step_.impact_detection().separate(pairs);
   // An impact that is resolved within its step is resolved in the step that begins here, together
@@ -336,7 +339,7 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
     world_step_.respond(pairs, trigger, false, stages);
   }
   world_step_.require_numbers();
-  if (collector_.events.empty()) {  // they touched without approach
+  if (collector_.events.size() == ended) {  // they touched without approach
     const collision::Gap gap = world_step_.impact_detection().gap(trigger);
     collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second,
                       0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0,
