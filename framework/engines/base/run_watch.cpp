@@ -28,7 +28,7 @@ const Words& words_of(RunWatch::Kind kind) {
       {"contact_unsolved",
        "impulses of contacts keep bodies apart and within friction: here none were found that do, "
        "by this part of the speed",
-       "less friction, or masses that differ less"},
+       "less friction where there is any, or masses that differ less"},
       {"energy_rises",
        "beside what forces and motors bring in, nothing does: what rises is made by the step, over "
        "all that the scene has to give",

@@ -43,7 +43,8 @@ inline std::string endless_impacts_message(double time, const std::string& bodie
                                            const World& world) {
   return fmt::format(
       "at t = {:.6f} s, {}: time stands still, they meet again and again; a persistent contact is "
-      "needed there, or a larger \"rest_speed_m_s\"{}",
+      "needed there, or a larger \"rest_speed_m_s\"; or, where so many impacts in a step are "
+      "right, a shorter \"step_s\"{}",
       time, bodies, room_beside_driven(world));
 }
 
