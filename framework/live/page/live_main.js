@@ -305,7 +305,9 @@ function tick(now) {
     try {
       if (page.picture) {
         if (page.needsStage) { page.picture.setRun(run, page.former, page.hadStage); page.needsStage = false; page.hadStage = true; }
-        if (page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);
+        // where the processor draws, the compiler has it first
+        const waits = page.isCompiling && page.picture.isSoftware;
+        if (!waits && page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);
       }
     } catch (error) {
       noPicture(error);

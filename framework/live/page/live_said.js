@@ -21,6 +21,7 @@ function showTrouble(trouble) {
 // ---- What the program says ----
 
 function begin(message) {
+  page.isCompiling = false;
   const head = message.head, isBack = head.from_s > 0 && page.run;
   page.pushes = message.pushes;
   page.changes = message.changes;
@@ -142,7 +143,7 @@ const told = {
   },
   run: begin,
   starting(message) { say({ code: 'compiling …', change: 'starting over …' }[message.reason] || 'starting …', 'busy'); },
-  code_saved(message) { say(`${message.file} was saved: compiling …`, 'busy'); page.savedId = message.id; panes.verdicts.saved(message.id); document.body.dataset.saved = String(performance.now()); },
+  code_saved(message) { page.isCompiling = true; say(`${message.file} was saved: compiling …`, 'busy'); page.savedId = message.id; panes.verdicts.saved(message.id); document.body.dataset.saved = String(performance.now()); },
   pace(message) { page.paused = message.paused; page.speed = message.speed; byId('speed').value = String(message.speed); showTime(); },
   aimed(message) {
     const run = page.run;
@@ -176,6 +177,7 @@ const told = {
     showTime();
   },
   trouble(message) {
+    page.isCompiling = false;
     showTrouble(message);
     if (message.title === 'Does not compile') panes.verdicts.refused();
     if (message.ends_run && page.run) {
