@@ -67,6 +67,7 @@ Json changed(const Recipe& recipe) {
   }
   if (changes.step_s) scene["step_s"] = *changes.step_s;
   if (!changes.engine.empty()) scene["engine"] = changes.engine;
+  if (!changes.coordinates.empty()) scene["coordinates"] = changes.coordinates;
   if (recipe.duration_s) scene["duration_s"] = *recipe.duration_s;
   for (const std::string& push : recipe.pushes) scene["point_forces"].push_back(Json::parse(push));
   return scene;
@@ -95,6 +96,10 @@ void change(Changes& changes, const std::string& text) {
       changes.engine = value.is_null() ? "" : value.get<std::string>();
     } else if (key == "method") {
       changes.method = value.is_null() ? "" : value.get<std::string>();
+    } else if (key == "coordinates") {
+      changes.coordinates = value.is_null() ? "" : value.get<std::string>();
+      if (!changes.coordinates.empty())
+        scene::coordinates_named(changes.coordinates, "coordinates");
     } else if (key == "mass_kg") {
       for (const auto& [name, kg] : value.items()) {
         const auto mass = number_in(kg, "mass", 1e-9, 1e12, "From 1e-9 kg to 1e12 kg.");
@@ -152,6 +157,8 @@ void apply(const Recipe& recipe, scene::Scene& scene) {
   if (changes.friction.value_or(0.0) > 0 && !scene.contact) scene.contact.emplace();
   if (changes.step_s) scene.step_s = *changes.step_s;
   if (!changes.engine.empty()) scene.engine = changes.engine;
+  if (!changes.coordinates.empty())
+    scene.coordinates = scene::coordinates_named(changes.coordinates, "coordinates");
   if (recipe.duration_s) scene.duration_s = *recipe.duration_s;
   for (const std::string& text : recipe.pushes) {
     const Json push = Json::parse(text);
@@ -172,9 +179,10 @@ std::vector<std::string> before(const std::vector<std::string>& pushes, double t
 
 std::string as_text(const Recipe& recipe) {
   const Changes& changes = recipe.changes;
-  Json all{{"document", recipe.document}, {"file", recipe.file.string()},
-           {"engine", changes.engine},    {"method", changes.method},
-           {"mass_kg", changes.mass_kg},  {"pushes", recipe.pushes}};
+  Json all{{"document", recipe.document},       {"file", recipe.file.string()},
+           {"engine", changes.engine},          {"method", changes.method},
+           {"mass_kg", changes.mass_kg},        {"pushes", recipe.pushes},
+           {"coordinates", changes.coordinates}};
   if (changes.gravity_m_s2) all["gravity_m_s2"] = triple_of(*changes.gravity_m_s2);
   if (changes.restitution) all["restitution"] = *changes.restitution;
   if (changes.friction) all["friction"] = *changes.friction;
@@ -190,6 +198,7 @@ Recipe recipe_of(const std::string& text) {
   recipe.file = all.at("file").get<std::string>();
   recipe.changes.engine = all.at("engine");
   recipe.changes.method = all.at("method");
+  recipe.changes.coordinates = all.at("coordinates");
   recipe.changes.mass_kg = all.at("mass_kg").get<std::map<std::string, double>>();
   recipe.pushes = all.at("pushes").get<std::vector<std::string>>();
   if (all.contains("gravity_m_s2")) recipe.changes.gravity_m_s2 = vector_in(all.at("gravity_m_s2"));

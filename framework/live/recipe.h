@@ -19,7 +19,7 @@ struct Changes {
   std::optional<double> restitution, friction;  // of all bodies
   std::map<std::string, double> mass_kg;        // by body
   std::optional<double> step_s;
-  std::string engine, method;  // empty: the scene's, the laws'
+  std::string engine, method, coordinates;  // empty: the scene's, the laws', the scene's
 };
 
 struct Recipe {

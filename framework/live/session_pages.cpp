@@ -117,6 +117,7 @@ Json Session::run_words() const {
              {"has_former", !former_.frames().empty()}};
   const Changes& changes = recipe_.changes;
   words["changes"] = {{"engine", changes.engine}, {"method", changes.method}};
+  if (!changes.coordinates.empty()) words["changes"]["coordinates"] = changes.coordinates;
   if (changes.restitution) words["changes"]["restitution"] = *changes.restitution;
   if (changes.friction) words["changes"]["friction"] = *changes.friction;
   words["pushes"] = Json::array();

@@ -290,6 +290,9 @@ TEST(LiveRecipe, ChangesStandInTheDocument) {
   EXPECT_NO_THROW(scene::parse_scene(document.dump(), "changed.json"));
   // To the other process and back it is the same.
   EXPECT_EQ(live::document_of(live::recipe_of(live::as_text(recipe))), document.dump(2) + "\n");
+  live::change(recipe.changes, R"({"coordinates": "reduced"})");  // of scenes with links
+  const live::Recipe there = live::recipe_of(live::as_text(recipe));
+  EXPECT_EQ(Json::parse(live::document_of(there)).at("coordinates"), "reduced");
   live::change(recipe.changes, R"({"all": null})");
   EXPECT_FALSE(Json::parse(live::document_of(recipe)).contains("gravity_m_s2"));
 }
@@ -297,8 +300,9 @@ TEST(LiveRecipe, ChangesStandInTheDocument) {
 TEST(LiveRecipe, ImpossibleChangesAreRefused) {
   live::Changes changes;
   for (const char* change :
-       {R"({"restitution": 1.5})", R"({"friction": -1})", R"({"step_s": 0})",
-        R"({"mass_kg": {"box": 0}})", R"({"restitution": "much"})", R"({"camera": 1})"})
+       {R"({"coordinates": "polar"})", R"({"restitution": 1.5})", R"({"friction": -1})",
+        R"({"step_s": 0})", R"({"mass_kg": {"box": 0}})", R"({"restitution": "much"})",
+        R"({"camera": 1})"})
     EXPECT_THROW(live::change(changes, change), UserError) << change;
 }
 

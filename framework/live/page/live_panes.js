@@ -74,6 +74,8 @@ class ChangePane {
     row('step [s]', this.number(Number(facts.step_s.toPrecision(6)), 'step', [1e-5, 1, 'from 0.00001 s to 1 s'], value => this.act({ step_s: value })), html('button', { onclick: () => this.act({ step_s: facts.step_s / 2 }) }, '÷ 2'), html('button', { onclick: () => this.act({ step_s: facts.step_s * 2 }) }, '× 2'));
     row('method', this.choice(changes.method || '', [['', 'that of the code'], ...['euler', 'symplectic', 'midpoint', 'verlet', 'rk4'].map(word => [word, word])], value => this.act({ method: value || null })));
     row('engine', this.choice(facts.engine, [['rd', 'rd: step by step'], ['ca', 'ca: from impact to impact'], ['tw', 'tw: a clock for each body (timewarp)'], ['ordered', 'ordered: all events by their time']], value => this.act({ engine: value })));
+    if (run.about.rods.length + run.about.joints.length > 0)
+      row('coordinates', this.choice(changes.coordinates || '', [['', 'those of the scene'], ['maximal', 'maximal: six a body, rows hold rods and joints'], ['reduced', 'reduced: what rods and joints leave free']], value => this.act({ coordinates: value || null })));
     form.append(html('label', { className: 'wide' }, this.keep, ' keep the pushes'), html('button', { className: 'wide', onclick: () => this.act({ all: null }) }, 'The scene as it is in its file'));
     this.box.textContent = '';
     this.showWhatGoes();
