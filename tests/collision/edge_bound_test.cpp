@@ -7,13 +7,13 @@
 
 #include "framework/collision/first_impact.h"
 #include "framework/collision/time_bound.h"
+#include "tests/collision/flights.h"
 
 namespace tumble::testing::edge_bound_test {
 namespace {
 
 using collision::CollisionShape;
 using collision::Motion;
-using collision::MotionState;
 
 constexpr double kHalf = 0.5;  // m, of the cubes' sides
 const double kArm = std::sqrt(2.0) * kHalf;
@@ -22,24 +22,6 @@ CollisionShape cube() { return CollisionShape{Box{Vector3d::Constant(kHalf)}}; }
 
 Quaterniond turn(double angle, const Vector3d& axis) {
   return Quaterniond(Eigen::AngleAxisd(angle, axis));
-}
-
-/// Falls and spins evenly from x, v, q.
-Motion flight(const Vector3d& x, const Vector3d& v, const Vector3d& acceleration,
-              const Vector3d& omega, const Quaterniond& q) {
-  Motion motion;
-  motion.at = [=](double t) {
-    MotionState state;
-    state.pose.com_world = x + t * v + 0.5 * t * t * acceleration;
-    const double speed = omega.norm();
-    state.pose.world_from_body = speed > 0.0 ? turn(speed * t, omega / speed) * q : q;
-    state.velocity_world = v + t * acceleration;
-    state.omega_world = omega;
-    return state;
-  };
-  motion.bounds.acceleration_world = acceleration;
-  motion.bounds.angular_speed = omega.norm();
-  return motion;
 }
 
 // A cube stands on an edge along x over a cube that lies with an edge along y, and turns about y:

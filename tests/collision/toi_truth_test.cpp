@@ -7,6 +7,7 @@
 #include "framework/collision/first_impact.h"
 #include "framework/core/shortest_turn.h"
 #include "framework/dynamics/laws.h"
+#include "tests/collision/flights.h"
 #include "tests/collision/truth_reader.h"
 
 namespace tumble::testing {
@@ -15,26 +16,6 @@ namespace {
 using collision::CollisionShape;
 using collision::Impact;
 using collision::Motion;
-using collision::MotionState;
-
-// Uniform acceleration and uniform spin about a fixed axis.
-Motion flight(const Vector3d& x0, const Vector3d& v0, const Vector3d& acceleration,
-              const Vector3d& omega, const Quaterniond& q0 = Quaterniond::Identity()) {
-  Motion motion;
-  motion.at = [=](double t) {
-    MotionState state;
-    state.pose.com_world = x0 + (v0 + 0.5 * t * acceleration) * t;
-    const double angle = omega.norm() * t;
-    state.pose.world_from_body =
-        angle != 0 ? Quaterniond(Eigen::AngleAxisd(angle, omega.normalized())) * q0 : q0;
-    state.velocity_world = v0 + t * acceleration;
-    state.omega_world = omega;
-    return state;
-  };
-  motion.bounds.acceleration_world = acceleration;
-  motion.bounds.angular_speed = omega.norm();
-  return motion;
-}
 
 Motion still(const Vector3d& x, const Quaterniond& q = Quaterniond::Identity()) {
   return flight(x, Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), q);

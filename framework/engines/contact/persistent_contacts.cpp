@@ -4,22 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "framework/collision/gap.h"
 #include "framework/core/numbers.h"
 #include "framework/engines/base/tolerances.h"
-#include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/stepping/body_groups.h"
-#include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
-namespace {
-
-constexpr const char* kLeaveRoom = "what drives them together (\"motion\") must leave them room";
-
-}  // namespace
 
 void PersistentContacts::recall(ContactMemory memory) {
   memory_ = std::move(memory);
@@ -81,151 +72,6 @@ bool PersistentContacts::plastic(Pair pair) const {
   return geometry_.is_inelastic(pair) &&
          (!locates() || memory_.in_large_island.contains(pair.first) ||
           memory_.in_large_island.contains(pair.second));
-}
-
-// How much nearer the two can come in the step.
-double PersistentContacts::reach(Pair pair) {
-  if (const auto known = reach_of_.find(pair); known != reach_of_.end()) return known->second;
-  return farthest_reach(pair);
-}
-
-// The same from speeds alone.
-double PersistentContacts::farthest_reach(Pair pair) {
-  const double h = moving_.target() - moving_.time();
-  const double size = geometry_.size_of(pair);
-  const double way =
-      (reaches_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second)
-                        : reaches_[pair.first] + reaches_[pair.second]) *
-      h;
-  return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
-}
-
-// Where impacts are solved in the step, a body may be as fast by its end as any that can meet it.
-// [m/s], by body
-std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& candidates) {
-  std::vector<double> speeds(moving_.size(), 0.0);
-  std::vector<char> meets(moving_.size(), 0);
-  for (const auto& [a, b] : candidates) meets[a] = meets[b] = 1;
-  for (int i = 0; i < moving_.size(); ++i)
-    for (const double t : {moving_.time(), moving_.target()}) {
-      if (!meets[i] || (!moving_.can_move(i) && !moving_.is_driven(i))) continue;
-      const collision::MotionState state = moving_.motion_at(i, t);
-      speeds[i] = std::max(
-          speeds[i], state.velocity_world.norm() +
-                         (moving_.shape(i).is_half_space()
-                              ? 0.0
-                              : state.omega_world.norm() * moving_.shape(i).bounding_radius()));
-    }
-  std::vector<double> about = speeds;
-  for (const auto& [a, b] : candidates) {
-    about[a] = std::max(about[a], speeds[b]);
-    about[b] = std::max(about[b], speeds[a]);
-  }
-  for (int i = 0; i < moving_.size(); ++i)
-    if (!moving_.can_move(i)) about[i] = speeds[i];
-  return about;
-}
-
-// How much nearer than on their paths without contacts impacts may bring the two. [m]
-double PersistentContacts::bend(Pair pair) const {
-  return kContact.levers * (bends_[pair.first] + bends_[pair.second]);
-}
-
-// How much nearer any two points of the two come along a normal in the step, at most. [m]
-double PersistentContacts::way(Pair pair, const Vector3d& normal_b_to_a_world) const {
-  const Vector3d& n = normal_b_to_a_world;
-  const double h = moving_.target() - moving_.time();
-  double speed = 0.0;
-  for (const auto& [index, sign] : {std::pair{pair.first, -1.0}, std::pair{pair.second, 1.0}}) {
-    const Velocity& velocity = velocities_[index];
-    speed += sign * n.dot(velocity.linear_world);
-    if (!moving_.shape(index).is_half_space())
-      speed += velocity.angular_world.cross(n).norm() * moving_.shape(index).bounding_radius();
-  }
-  return h * std::max(0.0, speed);
-}
-
-// At the step's start, of what meets others in it.
-Vector3d PersistentContacts::velocity_of_point(int body, const Vector3d& point_world) const {
-  return velocities_[body].linear_world +
-         velocities_[body].angular_world.cross(point_world - moving_.state(body).com_world);
-}
-
-// Whether a point may close its gap within this time. [s]
-bool PersistentContacts::may_close(Pair pair, const collision::ManifoldPoint& point,
-                                   double time) const {
-  const Vector3d at = geometry_.point_of(pair, point);
-  const double approach = point.normal_b_to_a_world.dot(velocity_of_point(pair.second, at) -
-                                                        velocity_of_point(pair.first, at));
-  return point.gap <=
-         time * std::max(0.0, approach) + bend(pair) + 2 * geometry_.large_island_margin(pair);
-}
-
-// Where impacts are solved in steps: the pairs that their speeds may bring together in the step,
-// and in reach_of_ those among them that may meet. Along the normal of their gap two solids are
-// apart at the step's start, and without contacts at its end: between the two they come nearer by
-// what turning bends. Impacts of the step, which the pairs that would overlap at its end have, take
-// bodies off such paths, and with them pairs together that would pass each other; by about as much
-// as an impact takes off.
-std::vector<PersistentContacts::Pair> PersistentContacts::near_pairs(
-    const std::vector<Pair>& candidates) {
-  struct Near {
-    Pair pair;
-    double distance, reach;  // [m]
-  };
-  reach_of_.clear();
-  reaches_ = speeds_about(candidates);
-  bends_.assign(static_cast<std::size_t>(moving_.size()), 0.0);
-  velocities_.resize(static_cast<std::size_t>(moving_.size()));
-  std::vector<char> known(velocities_.size(), 0);
-  for (const Pair& pair : candidates)
-    for (const int index : {pair.first, pair.second}) {
-      if (std::exchange(known[index], 1)) continue;
-      const Body body = moving_.body_at_impact(index);
-      velocities_[index] = {body.velocity_world, body.omega_world};
-    }
-  std::vector<Near> near;
-  std::vector<Pair> pairs;
-  for (const Pair& pair : candidates) {
-    const auto& [a, b] = pair;
-    if (!memory_.persistent.contains(pair) && !plastic(pair)) continue;
-    const double within = farthest_reach(pair);
-    if (geometry_.least_gap_of(pair, moving_.states()) > within) continue;
-    const collision::CollisionShape &shape_a = moving_.shape(a), &shape_b = moving_.shape(b);
-    if (!collision::has_separations(shape_a, shape_b)) {
-      if (!geometry_.is_within(pair, moving_.states(), within)) continue;
-      pairs.push_back(pair);
-      near.push_back({pair, 0.0, within});
-      continue;
-    }
-    const auto start = collision::largest_separation(shape_a, geometry_.pose(a, moving_.states()),
-                                                     shape_b, geometry_.pose(b, moving_.states()),
-                                                     moving_.pair_cache(a, b), within);
-    if (!start) continue;
-    pairs.push_back(pair);
-    const Vector3d& n = start->normal_b_to_a_world;
-    const double end =
-        collision::separation_along(shape_a, moving_.pose_at(a, moving_.target()), shape_b,
-                                    moving_.pose_at(b, moving_.target()), n);
-    if (end < 0)
-      for (const int body : {a, b})
-        if (moving_.can_move(body)) bends_[body] = std::max(bends_[body], start->distance - end);
-    near.push_back(
-        {pair, std::min(start->distance, end) - chord_depth(a) - chord_depth(b), way(pair, n)});
-  }
-  for (const Near& of : near) {
-    const double room = bend(of.pair) + 2 * geometry_.large_island_margin(of.pair);
-    if (of.distance <= room || memory_.persistent.contains(of.pair))
-      reach_of_[of.pair] = std::min(farthest_reach(of.pair), of.reach + room);
-  }
-  return pairs;
-}
-
-// How far a point of a body that turns is from the chord of its arc in the step, at most. [m]
-double PersistentContacts::chord_depth(int body) const {
-  if (!moving_.can_move(body)) return 0.0;
-  const double turn = (moving_.target() - moving_.time()) * velocities_[body].angular_world.norm();
-  return 0.125 * turn * turn * moving_.shape(body).bounding_radius();
 }
 
 std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& touching) {
@@ -358,64 +204,6 @@ std::optional<double> PersistentContacts::take_steps(double h) {
   std::rotate(forces_.begin(), forces_.begin() + of_first,
               forces_.begin() + of_first + before_first);
   return earliest;
-}
-
-// Driven bodies that touch the island: what they do does not depend on what resists them.
-std::vector<int> PersistentContacts::driven_against(const ContactIsland& island) const {
-  std::vector<int> driven;
-  for (const Pair& pair : island.pairs)
-    for (const int body : {pair.first, pair.second})
-      if (moving_.is_driven(body) && std::find(driven.begin(), driven.end(), body) == driven.end())
-        driven.push_back(body);
-  return driven;
-}
-
-// A problem has stayed unsolved. Where a driven body presses the island against another, shorter
-// parts of the step have the same one.
-void PersistentContacts::require_room(const ContactIsland& island, double residual) {
-  if (!(residual > kContact.jammed)) return;
-  const std::vector<int> driven = driven_against(island);
-  if (driven.empty()) return;
-  if (std::exchange(memory_.jammed_at, moving_.time()) != moving_.time()) memory_.jams = 0;
-  if (++memory_.jams <= kContact.most_jams) return;
-  throw StoppedRun(fmt::format(
-      "{} cannot give way to {}: what their contacts ask for together stays unsolved, also in "
-      "shorter parts of a step of {:.3g} s; {}",
-      names_of(moving_.world(), island.bodies), names_of(moving_.world(), driven),
-      memory_.longest_step, kLeaveRoom));
-}
-
-// A step has been cut once more. Contacts that ask for ever shorter ones, or problems that all stay
-// unsolved, would take hours.
-void PersistentContacts::require_progress() {
-  const double t = moving_.time();
-  if (!(memory_.cut_since <= t && t < memory_.cut_since + memory_.longest_step)) {
-    memory_.cut_since = t;
-    memory_.cuts = 0;
-    memory_.sweeps = 0;
-  }
-  ++memory_.cuts;
-  const auto asked =
-      std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) {
-        return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last);
-      });
-  const auto names = [&] {
-    return asked == islands_.end() ? std::string("bodies")
-                                   : names_of(moving_.world(), asked->bodies);
-  };
-  const char* const remedy =
-      asked != islands_.end() && !driven_against(*asked).empty()
-          ? kLeaveRoom
-          : "masses or sizes that differ less, or a shorter \"step_s\", may help";
-  if (memory_.sweeps > kContact.most_sweeps_a_step)
-    throw StoppedRun(fmt::format(
-        "{}: what their contacts, rods and joints ask for together stays unsolved, also in the "
-        "shortest parts of a step of {:.3g} s. They may contradict each other; {}",
-        names(), memory_.longest_step, remedy));
-  if (memory_.cuts > kMostIdleSteps * static_cast<long>(moving_.size()))
-    throw StoppedRun(
-        fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}",
-                    names(), memory_.cuts - 1, memory_.longest_step, remedy));
 }
 
 void PersistentContacts::note_near_pairs(const std::vector<Pair>& candidates) {
