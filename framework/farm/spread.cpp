@@ -77,9 +77,14 @@ Outcome make_on(const KeptParts& parts, const SplitWork& work, ClusterJob job) {
       parts.forget(name);
   }
   if (outcome.taken_over == work.names.size()) return outcome;
+  // asked several times a second: a part that is whole stays, and is read and digested once
+  std::vector<bool> is_whole(work.names.size(), false);
   const auto finished = [&] {
     std::size_t count = 0;
-    for (const std::string& name : work.names) count += parts.has(name) ? 1 : 0;
+    for (std::size_t i = 0; i < work.names.size(); ++i) {
+      if (!is_whole[i]) is_whole[i] = parts.has(work.names[i]);
+      count += is_whole[i] ? 1 : 0;
+    }
     return count;
   };
   const auto each_of = [&](const Shard& shard, const auto& call) {
