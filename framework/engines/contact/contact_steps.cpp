@@ -376,6 +376,7 @@ void PersistentContacts::find_ends(const ContactIsland& island, const ContactPro
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
     RigidBodyState& end = ends_[body];
+    next_pressing_.erase(body);  // what acts at a landing does not last
     if (activation) {
       const RigidBodyState& start = moving_.state(body);
       end.com_world = start.com_world + h * after.linear_world;
@@ -389,8 +390,12 @@ void PersistentContacts::find_ends(const ContactIsland& island, const ContactPro
       end.com_world =
           free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
       end.world_from_body = turned(free.world_from_body, 0.5 * h * turning);
-      end.angular_momentum_world =
-          free.angular_momentum_world + angular_momentum_of(turning, at, inertia);
+      const Vector3d angular_impulse = angular_momentum_of(turning, at, inertia);
+      end.angular_momentum_world = free.angular_momentum_world + angular_impulse;
+      if (moving_.has_forces_of_motion(body))
+        next_pressing_[body] = {
+            (inertia.mass / h) * (after.linear_world - problem.bodies[k].velocity_world),
+            angular_impulse / h};
     }
     end.momentum_world = inertia.mass * after.linear_world;
   }

@@ -133,7 +133,10 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     touching.push_back(pair);
     points_.emplace(pair, std::move(points));
   }
-  if (touching.empty()) return std::nullopt;
+  if (touching.empty()) {
+    memory_.pressing.clear();
+    return std::nullopt;
+  }
   ends_ = midway_ = moving_.states();
   // What touches or is linked is solved together, island by island; large islands without
   // restitution are solved in steps.
@@ -151,8 +154,10 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
                                   : geometry_.points_at(pair, moving_.states(), reach(pair)));
     }
   note_near_pairs(candidates);
+  lead_pressed();
   // Every island gets its paths; where one asks for a shorter step, the step begins again for all.
   next_impulses_.clear();
+  next_pressing_.clear();
   next_stuck_.clear();
   if (const auto earlier = take_steps(h)) {
     require_progress();
@@ -161,8 +166,21 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   // The next step begins with these impulses.
   memory_.last_impulses = std::move(next_impulses_);
   memory_.tried_impulses.clear();
+  memory_.pressing = std::move(next_pressing_);
   memory_.stuck = std::move(next_stuck_);
   return std::nullopt;
+}
+
+// Springs, drag and water feel what pressed their bodies in the last step, as long as these touch
+// anything.
+void PersistentContacts::lead_pressed() {
+  if (memory_.pressing.empty()) return;
+  std::map<int, Wrench> pressing;
+  for (const ContactIsland& island : islands_)
+    for (const int body : island.bodies)
+      if (const auto known = memory_.pressing.find(body); known != memory_.pressing.end())
+        pressing.insert(*known);
+  moving_.lead_pressed(pressing);
 }
 
 // Every island's step.

@@ -110,6 +110,10 @@ class PersistentContacts {
 
   /// Goes on from what is remembered of another state; what was known of a step is forgotten.
   void recall(ContactMemory memory);
+  /// What contacts pressed bodies with in the last step, its mean, by body: of those on which forces
+  /// act that follow their motion; and the same of another state.
+  const std::map<int, Wrench>& pressing() const { return memory_.pressing; }
+  void expect(int body, const Wrench& pressing) { memory_.pressing[body] = pressing; }
   /// Hands over what is remembered; recall() comes before the next step.
   ContactMemory take_memory() { return std::move(memory_); }
 
@@ -145,6 +149,7 @@ class PersistentContacts {
   bool may_close(Pair pair, const collision::ManifoldPoint& point, double time) const;
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
+  void lead_pressed();
   std::vector<int> driven_against(const ContactIsland& island) const;
   void require_room(const ContactIsland& island, double residual);
   void require_progress();
@@ -246,6 +251,7 @@ class PersistentContacts {
   std::vector<Velocity> velocities_;  // the same: at the step's start
   std::map<Pair, double> reach_of_;   // the same, of pairs that may meet [m]
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
+  std::map<int, Wrench> next_pressing_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
   // By body, of the island whose step is taken: where it comes out, and the middle of the way

@@ -126,6 +126,7 @@ ProcessState LogicalProcesses::together(const ProcessState& a, const ProcessStat
       both.remembered[effect].insert(memory.begin(), memory.end());
     both.met.insert(state->met.begin(), state->met.end());
     both.lasting.insert(state->lasting.begin(), state->lasting.end());
+    both.pressing.insert(state->pressing.begin(), state->pressing.end());
   }
   return both;
 }
@@ -217,6 +218,8 @@ ProcessState LogicalProcesses::component(const ProcessState& state,
     if (whole(pair)) part.lasting.insert(pair);
   for (const BodyPair& pair : state.near)
     if (whole(pair)) part.near.insert(pair);
+  for (const auto& [body, wrench] : state.pressing)
+    if (ours(body)) part.pressing.emplace(body, wrench);
   return part;
 }
 

@@ -48,7 +48,7 @@ const RigidBodyState& ProcessState::state_of(int body) const {
 }
 
 ProcessState ProcessState::without_memory() const {
-  return {time, members, states, remembered, met, lasting, near, std::nullopt};
+  return {time, members, states, remembered, met, lasting, near, pressing, std::nullopt};
 }
 
 RigidBodyState ProcessStep::state_at(std::size_t member, double t) const {
@@ -102,6 +102,8 @@ void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> m
   const std::uint64_t begun = counters_.contacts_begun;
   // it has begun before: no event
   for (const BodyPair& pair : from.lasting) world_step_.contacts().begin(local(pair), {});
+  for (const auto& [body, wrench] : from.pressing)
+    world_step_.contacts().expect(local(body), wrench);
   counters_.contacts_begun = begun;
   collector_.events.clear();
 }
@@ -140,6 +142,8 @@ ProcessState ProcessWorld::save() {
   if (!has_contacts()) return state;
   for (const BodyPair& pair : world_step_.contacts().lasting()) state.lasting.insert(whole(pair));
   if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
+  for (const auto& [body, wrench] : world_step_.contacts().pressing())
+    state.pressing.emplace(whole(body), wrench);
   state.contacts = world_step_.contacts().take_memory();
   return state;
 }

@@ -33,6 +33,7 @@ struct ProcessState {
   // pairs without restitution that meet again within a step or two: they stay in one island
   // (in_step)
   std::set<BodyPair> near;
+  std::map<int, Wrench> pressing;  // by body of the whole world: ContactMemory::pressing
   // memory of contacts; bodies are those of the process world that computed this state
   std::optional<ContactMemory> contacts;
 

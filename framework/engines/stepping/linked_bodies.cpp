@@ -103,6 +103,12 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
   if (world_.coordinates == scene::Coordinates::kReduced) plant_tree();
 }
 
+bool LinkedBodies::has_forces_of_motion() const {
+  return std::any_of(terms_.begin(), terms_.end(), [](const Terms& terms) {
+    return terms.acting->row_count() == 0 && terms.acting->control() == nullptr;
+  });
+}
+
 // What links the group says how large it is, and the bodies do. The radius of gyration of a point
 // mass is no size: it counts where there is nothing else.
 double LinkedBodies::length_of_units() const {

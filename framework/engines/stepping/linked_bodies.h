@@ -72,6 +72,9 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Whether its control laws drive it otherwise than by what they held before.
   bool is_driven_otherwise(const std::map<int, effects::Memory>& before) const;
   bool has_constraints() const { return row_count_ > 0; }
+  /// Whether forces act on its bodies that follow within a step where these are and how fast:
+  /// springs, drag, water. What a motor holds does not.
+  bool has_forces_of_motion() const;
 
   /// Why the group is not integrated in joint coordinates where the world asks for these; empty: it
   /// is, as long as nothing touches it.

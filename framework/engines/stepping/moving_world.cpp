@@ -65,7 +65,8 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
     linked_.emplace_back(
         world_, laws_, counters_,
         [this](int body, const RigidBodyState& state) { return wrench_on(body, state); },
-        std::move(group), [this](int body) { return is_left_alone(body); });
+        std::move(group),
+        [this](int body) { return is_left_alone(body) && !pressing_.contains(body); });
     linked_.back().project(states_, 0.0);
   }
 }
@@ -270,6 +271,10 @@ Vector3d MovingWorld::velocity_of(int body, double t) const {
 Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
   Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
   for (Steady& forces : steady_) forces.acting->add(body, state, sum);
+  if (const auto pressed = pressing_.find(body); pressed != pressing_.end()) {
+    sum.force_world += pressed->second.force_world;
+    sum.torque_world += pressed->second.torque_world;
+  }
   return sum;
 }
 
@@ -362,15 +367,43 @@ void MovingWorld::begin_path(int body) {
 }
 
 void MovingWorld::begin_linked_paths() {
-  for (LinkedBodies& group : linked_) {
-    if (asleep(group.bodies().front())) continue;  // they sleep together
-    const std::vector<RigidBodyState> ends = group.advance(states_, time_, target_ - time_);
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
-      refuse_fast_turning(group.bodies()[i]);
+  for (LinkedBodies& group : linked_)
+    if (!asleep(group.bodies().front())) lead(group);  // they sleep together
+}
+
+void MovingWorld::lead(LinkedBodies& group) {
+  const double h = target_ - time_;
+  std::vector<RigidBodyState> ends = group.advance(states_, time_, h);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const int body = group.bodies()[i];
+    if (const auto pressed = pressing_.find(body); pressed != pressing_.end()) {
+      const auto& [force_world, torque_world] = pressed->second;
+      const Inertia& inertia = world_.bodies[body].inertia;
+      RigidBodyState& end = ends[i];
+      end.momentum_world -= h * force_world;
+      end.com_world -= (0.5 * h * h * inertia.inverse_mass) * force_world;
+      end.angular_momentum_world -= h * torque_world;
+      RigidBodyState turning = end;
+      turning.angular_momentum_world = torque_world;
+      end.world_from_body =
+          turned(end.world_from_body, (-0.5 * h * h) * omega_of(turning, inertia));
     }
-    integrations_in_step_ += ends.size();
+    set_path(body, states_[body], ends[i]);
+    refuse_fast_turning(body);
   }
+  integrations_in_step_ += ends.size();
+}
+
+void MovingWorld::lead_pressed(const std::map<int, Wrench>& pressing) {
+  if (pressing.empty()) return;
+  const StageTimer timer(counters_.integration_seconds);
+  pressing_ = pressing;
+  for (LinkedBodies& group : linked_) {
+    const bool is_pressed = std::any_of(group.bodies().begin(), group.bodies().end(),
+                                        [&](int body) { return pressing_.contains(body); });
+    if (is_pressed && !asleep(group.bodies().front())) lead(group);
+  }
+  pressing_.clear();
 }
 
 void MovingWorld::begin_step(double target) {

@@ -138,6 +138,18 @@ class MovingWorld {
   /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step
   /// under way, or where that path is not made of numbers
   void refuse_fast_turning(int body) const;
+  /// Whether forces act on a body that follow, within a step, where it is and how fast.
+  bool has_forces_of_motion(int body) const {
+    return group_of_[body] >= 0 && linked_[group_of_[body]].has_forces_of_motion();
+  }
+  /// Works out anew where the step under way leads bodies that contacts press: springs, drag and
+  /// water feel the path that contacts allow, not the one on which nothing holds a body up. What
+  /// presses them takes part in the integration, and its own share is taken off the path's end
+  /// again, for the step's contacts to give:
+  ///   p' -= F h,   x' -= F h^2 / 2m,   L' -= T h,   and turned back by I^-1 T h^2 / 2.
+  /// With forces that do not follow the motion the end is the same as before.
+  /// @param pressing  by body: the mean of what presses it, expected for the step
+  void lead_pressed(const std::map<int, Wrench>& pressing);
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body);
   /// The path that set_path has given, or that links have; nothing where the laws are asked at
@@ -216,6 +228,7 @@ class MovingWorld {
   void begin_path(int body);
   void begin_linked_paths();
   bool flies_freely(int body) const { return !rotations_.empty() && is_left_alone(body); }
+  void lead(LinkedBodies& group);
   RigidBodyState fly(int body, double duration, const VectorXd& start);
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
   const VectorXd& units_of(int body);
@@ -245,6 +258,8 @@ class MovingWorld {
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
   std::vector<int> group_of_;  // by body: place in linked_, -1
+  // by body: what contacts press with while lead_pressed integrates, else empty
+  std::map<int, Wrench> pressing_;
   double time_ = 0.0, target_ = 0.0;
   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0
   // for Euler
