@@ -260,4 +260,9 @@ RigidBodyState advance_freely(const RigidBodyState& state, const Inertia& inerti
   return later;
 }
 
+Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
+  const double angle = turn.norm();
+  return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
+}
+
 }  // namespace tumble

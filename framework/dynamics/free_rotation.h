@@ -12,6 +12,9 @@
 
 namespace tumble {
 
+/// An orientation after a turn, given as axis times angle in the world frame. [rad]
+Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_world);
+
 /// How a body is turned, and how it turns. The angular velocity is in the body frame, where a
 /// needle's slender axis (moments 1e-9 : 1) keeps all its digits; recovering it from an angular
 /// momentum in the world frame loses nine of them.

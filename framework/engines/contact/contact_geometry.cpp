@@ -8,11 +8,6 @@
 
 namespace tumble::engines {
 
-Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
-  const double angle = turn.norm();
-  return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
-}
-
 // Where forces act: on the surface of the body that moves, so that a rolling ball's arm is its
 // radius; between two that move, in the middle.
 Vector3d ContactGeometry::point_of(Pair pair, const collision::ManifoldPoint& p) const {

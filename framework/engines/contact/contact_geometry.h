@@ -18,9 +18,6 @@ namespace tumble::engines {
 /// The contact manifold of a pair: points at which its surfaces are near each other.
 using ContactManifold = std::vector<collision::ManifoldPoint>;
 
-/// An orientation after a turn, given as axis times angle in the world frame. [rad]
-Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_world);
-
 class ContactGeometry {
  public:
   using Pair = std::pair<int, int>;  // bodies, first < second
