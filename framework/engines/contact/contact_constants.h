@@ -61,6 +61,11 @@ struct ContactConstants {
   /// solves for where curved surfaces touch at the step's end: the second one leaves a thirtieth
   /// of the error. Larger: slower. Smaller: energy errors of what rolls.
   int curved_rounds = 2;
+  /// of a force: as near what presses a body and what springs, drag and water felt of it are to be
+  /// where a contact begins, and how often that is looked for. A round leaves a tenth of the error
+  /// or so. Larger, or fewer: the first step of a contact is of first order.
+  double same_pressing = 1e-4;
+  int most_pressing_rounds = 6;
   /// sweeps of the solver in one step: some 200 problems that all stayed unsolved. Larger: a run
   /// without an answer takes hours. Smaller: hard steps are given up.
   std::uint64_t most_sweeps_a_step = 300000;

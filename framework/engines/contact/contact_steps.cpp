@@ -376,7 +376,6 @@ void PersistentContacts::find_ends(const ContactIsland& island, const ContactPro
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
     RigidBodyState& end = ends_[body];
-    next_pressing_.erase(body);  // what acts at a landing does not last
     if (activation) {
       const RigidBodyState& start = moving_.state(body);
       end.com_world = start.com_world + h * after.linear_world;
@@ -390,15 +389,60 @@ void PersistentContacts::find_ends(const ContactIsland& island, const ContactPro
       end.com_world =
           free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
       end.world_from_body = turned(free.world_from_body, 0.5 * h * turning);
-      const Vector3d angular_impulse = angular_momentum_of(turning, at, inertia);
-      end.angular_momentum_world = free.angular_momentum_world + angular_impulse;
-      if (moving_.has_forces_of_motion(body))
-        next_pressing_[body] = {
-            (inertia.mass / h) * (after.linear_world - problem.bodies[k].velocity_world),
-            angular_impulse / h};
+      end.angular_momentum_world =
+          free.angular_momentum_world + angular_momentum_of(turning, at, inertia);
     }
     end.momentum_world = inertia.mass * after.linear_world;
   }
+}
+
+// What contacts press the island's bodies with, its mean over the step: for the next step of those
+// on which forces act that follow their motion. Where these bodies were not pressed in the step
+// before, they are led anew by what has been found, until it stays the same.
+// @return whether they have been: the step is taken again
+bool PersistentContacts::finds_other_pressing(const ContactIsland& island,
+                                              const std::vector<StepContact>& contacts,
+                                              const ContactProblem& problem,
+                                              const ContactSolution& solution, double h,
+                                              bool inertia_at_ends) {
+  std::map<int, Wrench> found;
+  bool is_known = true, is_same = true;
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+    const int body = island.bodies[k];
+    if (!moving_.has_forces_of_motion(body)) continue;
+    const Inertia& inertia = moving_.world().bodies[body].inertia;
+    const RigidBodyState& at = inertia_at_ends ? ends_[body] : moving_.path_end(body);
+    const Velocity& after = solution.velocities[k];
+    const Wrench now{(inertia.mass / h) * (after.linear_world - problem.bodies[k].velocity_world),
+                     angular_momentum_of(after.angular_world - problem.bodies[k].omega_world,
+                                         at.world_from_body, inertia) /
+                         h};
+    found.emplace(body, now);
+    is_known = is_known && memory_.pressing.contains(body);
+    const auto felt = felt_.find(body);
+    const Wrench before =
+        felt == felt_.end() ? Wrench{Vector3d::Zero(), Vector3d::Zero()} : felt->second;
+    const double largest = now.force_world.norm() * moving_.shape(body).bounding_radius() +
+                           now.torque_world.norm();  // N m
+    is_same = is_same &&
+              (before.force_world - now.force_world).norm() <=
+                  kContact.same_pressing * now.force_world.norm() &&
+              (before.torque_world - now.torque_world).norm() <= kContact.same_pressing * largest;
+  }
+  if (found.empty()) return false;
+  // what acts at a landing does not last
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].activates && !lasts(contacts[i].pair) &&
+        !solution.impulses_world[i].isZero(0.0)) {
+      for (const auto& [body, wrench] : found) next_pressing_.erase(body);
+      return false;
+    }
+  for (const auto& [body, wrench] : found) next_pressing_[body] = felt_[body] = wrench;
+  if (is_known || is_same ||
+      ++pressing_rounds_[island.bodies.front()] > kContact.most_pressing_rounds)
+    return false;
+  moving_.lead_pressed(found);
+  return true;
 }
 
 // The angle that the fastest of the island's bodies turns in the step; a ball looks the same

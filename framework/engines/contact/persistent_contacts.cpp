@@ -174,13 +174,14 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
 // Springs, drag and water feel what pressed their bodies in the last step, as long as these touch
 // anything.
 void PersistentContacts::lead_pressed() {
+  felt_.clear();
+  pressing_rounds_.clear();
   if (memory_.pressing.empty()) return;
-  std::map<int, Wrench> pressing;
   for (const ContactIsland& island : islands_)
     for (const int body : island.bodies)
       if (const auto known = memory_.pressing.find(body); known != memory_.pressing.end())
-        pressing.insert(*known);
-  moving_.lead_pressed(pressing);
+        felt_.insert(*known);
+  moving_.lead_pressed(felt_);
 }
 
 // Every island's step.
@@ -312,6 +313,8 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     activation = activates(used, solution);
   }
   require_numbers(island, solution);
+  if (finds_other_pressing(island, used, problem, solution, h, is_midway))
+    return take_step(island, h);
   // A pair that stops sliding ends the step there.
   if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt)
     return stop;

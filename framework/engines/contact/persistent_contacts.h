@@ -187,6 +187,9 @@ class PersistentContacts {
   void find_ends(const ContactIsland& island, const ContactProblem& problem,
                  const ContactSolution& solution, double h, bool activation,
                  bool inertia_at_ends = false);
+  bool finds_other_pressing(const ContactIsland& island, const std::vector<StepContact>& contacts,
+                            const ContactProblem& problem, const ContactSolution& solution,
+                            double h, bool inertia_at_ends);
   double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends,
                       double h) const;
   double turn_of_normals(const ContactIsland& island,
@@ -252,6 +255,9 @@ class PersistentContacts {
   std::map<Pair, double> reach_of_;   // the same, of pairs that may meet [m]
   std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
   std::map<int, Wrench> next_pressing_;
+  // by body: what it was led with (MovingWorld::lead_pressed); and how often that was looked for
+  std::map<int, Wrench> felt_;
+  std::map<int, int> pressing_rounds_;  // by an island's first body
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
   // By body, of the island whose step is taken: where it comes out, and the middle of the way
