@@ -9,17 +9,10 @@
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/rod/rod.h"
 #include "tests/engines/event_process_scenes.h"
-#include "tests/engines/reference_laws.h"
+#include "tests/engines/reference_runs.h"
 
 namespace tumble::testing {
 namespace {
-
-Trajectory run_on(const std::string& engine, const scene::Scene& scene) {
-  static const Laws laws = reference_laws();
-  engines::RunOptions options;
-  options.engine = engine;
-  return run_as_told(std::move(options), scene, laws);
-}
 
 void hold(scene::Scene& scene, effects::JointKind kind, const std::string& body,
           const Vector3d& point, const Vector3d& axis = Vector3d::UnitY()) {

@@ -1,0 +1,156 @@
+// Drag, springs and water beside contacts that press: what these forces feel is the path that the
+// contact allows, and not the one on which nothing holds the body up.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/spring/spring.h"
+#include "framework/effects/water/water.h"
+#include "tests/engines/event_process_scenes.h"
+#include "tests/engines/reference_runs.h"
+
+namespace tumble::testing {
+namespace pressed_in_motion_test {
+
+constexpr double kG = 9.81;
+const char* const kEngines[] = {"rd", "ca", "ordered", "tw"};
+
+scene::Scene pressed(std::vector<scene::BodySpec> bodies, double duration, double step) {
+  for (scene::BodySpec& body : bodies) body.restitution = 0.0;
+  scene::Scene scene = scene_of(std::move(bodies), duration, kEarth);
+  scene.contact.emplace();
+  scene.step_s = step;
+  return scene;
+}
+
+Trajectory run_well(const char* engine, const scene::Scene& scene) {
+  const Trajectory run = run_on(engine, scene);
+  EXPECT_EQ(run.stopped_by, "");
+  EXPECT_EQ(faults_of(run), "");
+  return run;
+}
+
+Vector3d force_on(int body, const Frame& frame) {
+  Vector3d sum = Vector3d::Zero();
+  for (const ContactPoint& point : frame.contacts) {
+    if (point.body_a == body) sum += point.force_on_a_world;
+    if (point.body_b == body) sum -= point.force_on_a_world;
+  }
+  return sum;
+}
+
+const scene::BodySpec kFloor = plane("floor", {0, 0, 0}, {0, 0, 1});
+const scene::BodySpec kBox = box("box", {0.2, 0.2, 0.05}, 1.0, {0, 0, 0.05}, {0, 0, 0});
+
+// Nothing moves, so nothing but its weight is to be held. A step of first order loses c g h / 2: a
+// twelfth at 1/60 s. The first step looks until a ten-thousandth is left, and each later one leaves
+// a part c h / 2m of the last one's: nothing but rounding and the solver's residue after half a
+// second.
+TEST(PressedInMotion, ABoxAtRestInSyrupWeighsWhatItWeighs) {
+  for (const double step : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+    scene::Scene scene = pressed({kFloor, kBox}, 0.5, step);
+    scene.effects.of<effects::DragSpec>().push_back({"box", 10.0, 1.0});
+    for (const char* engine : kEngines) {
+      SCOPED_TRACE(engine);
+      const Trajectory run = run_well(engine, scene);
+      EXPECT_LT((force_on(1, run.frames.back()) - Vector3d(0, 0, kG)).norm(), 1e-8 * kG);
+      for (std::size_t k = 1; k < run.frames.size(); ++k)
+        EXPECT_LT((force_on(1, run.frames[k]) - Vector3d(0, 0, kG)).norm(), 1e-4 * kG);
+    }
+  }
+}
+
+// Lighter than water, it is pressed against a roof below the surface: statics.
+TEST(PressedInMotion, ABoxUnderARoofInWaterIsPressedByItsBuoyancy) {
+  scene::BodySpec roof = plane("roof", {0, 0, 0.1}, {0, 0, -1});
+  scene::Scene scene = pressed({roof, kBox}, 0.5, 1.0 / 60);
+  scene.effects.of<effects::WaterSpec>().push_back({{0, 0, 2}, 1000.0, 3.0});
+  const double lift = (1000.0 * 0.4 * 0.4 * 0.1 - 1.0) * kG;
+  for (const char* engine : kEngines) {
+    SCOPED_TRACE(engine);
+    const Trajectory run = run_well(engine, scene);
+    EXPECT_LT((force_on(1, run.frames.back()) - Vector3d(0, 0, -lift)).norm(), 1e-8 * lift);
+  }
+}
+
+// m v' = -mu m g - c v until it stops, if nothing but the box's weight presses it.
+double slides(double v0, double mu, double c, double t) {
+  const double end = mu * kG / c;
+  return (v0 + end) * std::exp(-c * t) - end;
+}
+
+double error_of_sliding(const char* engine, double step) {
+  constexpr double kMu = 0.2, kC = 2.0, kSpeed = 2.0, kTime = 0.4;
+  scene::BodySpec box = kBox;
+  box.velocity_m_s = {kSpeed, 0, 0};
+  scene::Scene scene = pressed({kFloor, box}, kTime, step);
+  for (scene::BodySpec& body : scene.bodies) body.friction = kMu;
+  scene.effects.of<effects::DragSpec>().push_back({"box", kC, 0.0});
+  return std::abs(run_well(engine, scene).frames.back().poses[1].velocity_world.x() -
+                  slides(kSpeed, kMu, kC, kTime));
+}
+
+/// What halving the step leaves of an error of second order: a quarter, and a little more as long
+/// as steps are not short.
+constexpr double kQuarter = 0.27;
+
+TEST(PressedInMotion, ABoxThatSlidesInSyrupIsOfSecondOrderInTheStep) {
+  for (const char* engine : kEngines) {
+    SCOPED_TRACE(engine);
+    const double coarse = error_of_sliding(engine, 1.0 / 60),
+                 fine = error_of_sliding(engine, 1.0 / 120);
+    EXPECT_LT(coarse, 1e-4);  // m/s; of first order 9e-3: mu c g h / 2 over the time constant
+    EXPECT_LT(fine, kQuarter * coarse + 1e-9);  // the solver's residue
+  }
+}
+
+scene::Scene box_on_sprung_block(double lifted, double duration, double step) {
+  scene::Scene scene = pressed({box("block", {0.3, 0.3, 0.05}, 4.0, {0, 0, lifted}, {0, 0, 0}),
+                                box("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.15 + lifted}, {0, 0, 0})},
+                               duration, step);
+  // each carries a quarter of the weight where `lifted` is 0
+  constexpr double kStiffness = 1000.0, kLength = 1.0;
+  for (const double x : {-0.25, 0.25})
+    for (const double y : {-0.25, 0.25})
+      scene.effects.of<effects::SpringSpec>().push_back({"spring",
+                                                         {"", {x, y, kLength}},
+                                                         {"block", {x, y, 0}},
+                                                         kStiffness,
+                                                         0.0,
+                                                         kLength - 5 * kG / (4 * kStiffness)});
+  return scene;
+}
+
+// What is left is what the first step leaves of its force, a ten-thousandth at most, in
+//   x'' = -w^2 x:  h^2 / 2 of it, and w h of that again.
+TEST(PressedInMotion, ABoxThatLiesOnASprungBlockLiesStill) {
+  const scene::Scene scene = box_on_sprung_block(0.0, 2.0, 1.0 / 60);
+  for (const char* engine : kEngines) {
+    SCOPED_TRACE(engine);
+    const Trajectory run = run_well(engine, scene);
+    for (const Frame& frame : run.frames)
+      EXPECT_LT(frame.poses[0].com_world.norm(), 1e-7);  // m; 9e-4 in steps of first order
+  }
+}
+
+// Together they swing as one mass of 5 kg, as long as the box is not thrown off: w^2 A < g.
+double error_of_swing(const char* engine, double step) {
+  constexpr double kAmplitude = 0.005, kTime = 0.5;
+  const Trajectory run = run_well(engine, box_on_sprung_block(kAmplitude, kTime, step));
+  const double z = kAmplitude * std::cos(std::sqrt(4000.0 / 5.0) * kTime);
+  return std::abs(run.frames.back().poses[0].com_world.z() - z);
+}
+
+TEST(PressedInMotion, ABoxThatSwingsOnASprungBlockIsOfSecondOrderInTheStep) {
+  for (const char* engine : kEngines) {
+    SCOPED_TRACE(engine);
+    const double coarse = error_of_swing(engine, 1.0 / 240),
+                 fine = error_of_swing(engine, 1.0 / 480);
+    EXPECT_LT(coarse, 1e-4);  // m
+    EXPECT_LT(fine, kQuarter * coarse + 1e-9);
+  }
+}
+
+}  // namespace pressed_in_motion_test
+}  // namespace tumble::testing
