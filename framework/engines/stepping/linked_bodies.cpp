@@ -95,6 +95,7 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     if (acting->control() != nullptr) controls_.push_back(terms_.size());
     terms_.push_back({k, std::move(acting)});
   }
+  has_loop_ = closes_loop(group);
   length_ = length_of_units();
   units_.resize(static_cast<Eigen::Index>(bodies_.size()) * kStateSize);
   for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -263,11 +264,11 @@ Vector3d LinkedBodies::acceleration_of_fixed(int fixed, const Vector3d& com_worl
   return -w * w * (com_world - body.com_at_0_world - body.motion.velocity_m_s * t);
 }
 
-VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies,
+VectorXd LinkedBodies::add_constraint_forces(const std::vector<Constraint>& all,
+                                             const std::vector<Body>& bodies,
                                              const std::vector<RigidBodyState>& local,
                                              std::vector<Wrench>& wrenches) {
   const StageTimer timer(counters_.constraint_seconds);
-  const std::vector<Constraint> all = rows(bodies);
   std::vector<ConstrainedBody> constrained;
   constrained.reserve(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -326,7 +327,7 @@ VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Wrench> wrenches = forces(local, bodies);
-  if (has_constraints()) add_constraint_forces(bodies, local, wrenches);
+  if (has_constraints()) add_constraint_forces(obeyed_rows(bodies), bodies, local, wrenches);
   VectorXd rate(y.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     rate.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) =
@@ -357,6 +358,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   step_ = h;
   std::vector<RigidBodyState> local = take(states);
   if (tree_ && !touched_) return advance_reduced(std::move(local), t, h);
+  choose_rows(local, t);
   VectorXd y(static_cast<Eigen::Index>(local.size()) * kStateSize);
   for (std::size_t i = 0; i < local.size(); ++i)
     y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = pack(local[i]);
@@ -537,7 +539,7 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t,
   } else if (has_constraints()) {
     std::vector<Wrench> wrenches = forces(local, bodies);
     if (built::kContact) add_contacts(bodies, contacts, wrenches);
-    multipliers = add_constraint_forces(bodies, local, wrenches);
+    multipliers = add_constraint_forces(rows(bodies), bodies, local, wrenches);
   }
   Eigen::Index at = 0;
   for (const Terms& terms : terms_) {
