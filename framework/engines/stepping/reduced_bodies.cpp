@@ -235,7 +235,8 @@ void LinkedBodies::close_loops() {
   for (Eigen::Index k = 0; k < m; ++k)
     if ((*obeyed_loop_rows_)[static_cast<std::size_t>(k)] != 0) obeyed.push_back(k);
   ++counters_.constraint_solves;
-  const VectorXd lambda = least_squares(A(obeyed, obeyed), wanted(obeyed));
+  VectorXd lambda;  // a rod beside a rod of the tree leaves nothing to solve
+  if (!obeyed.empty()) lambda = least_squares(A(obeyed, obeyed), wanted(obeyed));
   for (std::size_t k = 0; k < obeyed.size(); ++k)
     add(all[static_cast<std::size_t>(loop_rows_[static_cast<std::size_t>(obeyed[k])])],
         scale[obeyed[k]] * lambda[static_cast<Eigen::Index>(k)], wrenches_);
