@@ -215,17 +215,6 @@ std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
   return rows;
 }
 
-std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBodyState>& states,
-                                                      double t) {
-  if (!has_constraints()) return {};
-  auto all = rows(place_bodies(take(states), t));
-  for (Constraint& row : all) {  // all fixed ends are one: none of them moves by an impulse
-    row.body_a = std::min(row.body_a, fixed_end());
-    row.body_b = std::min(row.body_b, fixed_end());
-  }
-  return all;
-}
-
 void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t,
               const BodyPlaces& places, ContactProblem& problem) {
   const int fixed = static_cast<int>(problem.bodies.size());
@@ -327,7 +316,8 @@ VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Wrench> wrenches = forces(local, bodies);
-  if (has_constraints()) add_constraint_forces(obeyed_rows(bodies), bodies, local, wrenches);
+  if (has_constraints())
+    add_constraint_forces(those_of(obeyed_, rows(bodies)), bodies, local, wrenches);
   VectorXd rate(y.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     rate.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) =

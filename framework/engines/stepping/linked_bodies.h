@@ -116,8 +116,8 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Places, then velocities, onto the constraints.
   void project(std::vector<RigidBodyState>& states, double t);
 
-  /// The rows of rods and joints, between places in bodies(); fixed ends have the index
-  /// fixed_end().
+  /// The rows of rods and joints, between places in bodies(), without those that say what others
+  /// say; fixed ends have the index fixed_end().
   std::vector<Constraint> constraint_rows(const std::vector<RigidBodyState>& states, double t);
   int fixed_end() const { return static_cast<int>(bodies_.size()); }
 
@@ -152,7 +152,9 @@ class LinkedBodies final : effects::GroupPlaces {
   bool closes_loop(const LinkedGroup& group) const;
   void choose_rows(const std::vector<RigidBodyState>& local, double t);
   std::vector<char> spanning(const std::vector<Body>& bodies);
-  std::vector<Constraint> obeyed_rows(const std::vector<Body>& bodies);
+  bool has_redundant_rows();
+  static std::vector<Constraint> those_of(const std::vector<char>& chosen,
+                                          std::vector<Constraint> all);
   VectorXd rates_of_bodies(const VectorXd& y) const;
   void need_size(const VectorXd& stage, const VectorXd& y) const;
   // In joint coordinates: reduced_bodies.cpp.

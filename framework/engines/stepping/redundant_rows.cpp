@@ -45,16 +45,20 @@ bool LinkedBodies::closes_loop(const LinkedGroup& group) const {
   return false;
 }
 
-void LinkedBodies::choose_rows(const std::vector<RigidBodyState>& local, double t) {
-  obeyed_.clear();
-  if (!has_loop_) return;
+// Where the scene begins: what is redundant by proportions is so everywhere.
+bool LinkedBodies::has_redundant_rows() {
   if (!has_redundant_rows_) {
     std::vector<RigidBodyState> start;
     for (const int body : bodies_)
       start.push_back(world_.bodies[static_cast<std::size_t>(body)].state);
-    has_redundant_rows_ = !spanning(place_bodies(start, 0.0)).empty();
+    has_redundant_rows_ = has_loop_ && !spanning(place_bodies(start, 0.0)).empty();
   }
-  if (*has_redundant_rows_) obeyed_ = spanning(place_bodies(local, t));
+  return *has_redundant_rows_;
+}
+
+void LinkedBodies::choose_rows(const std::vector<RigidBodyState>& local, double t) {
+  obeyed_.clear();
+  if (has_redundant_rows()) obeyed_ = spanning(place_bodies(local, t));
 }
 
 // By row, whether it says something that others do not; empty: all do.
@@ -82,13 +86,27 @@ std::vector<char> LinkedBodies::spanning(const std::vector<Body>& bodies) {
   return chosen;
 }
 
-std::vector<Constraint> LinkedBodies::obeyed_rows(const std::vector<Body>& bodies) {
-  std::vector<Constraint> all = rows(bodies);
-  if (obeyed_.empty()) return all;
-  std::vector<Constraint> obeyed;
+// @param chosen  by row; empty: all
+std::vector<Constraint> LinkedBodies::those_of(const std::vector<char>& chosen,
+                                               std::vector<Constraint> all) {
+  if (chosen.empty()) return all;
+  std::vector<Constraint> some;
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (obeyed_[k] != 0) obeyed.push_back(all[k]);
-  return obeyed;
+    if (chosen[k] != 0) some.push_back(all[k]);
+  return some;
+}
+
+std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBodyState>& states,
+                                                      double t) {
+  if (!has_constraints()) return {};
+  const std::vector<Body> bodies = place_bodies(take(states), t);
+  std::vector<Constraint> all = rows(bodies);
+  if (has_redundant_rows()) all = those_of(spanning(bodies), std::move(all));
+  for (Constraint& row : all) {  // all fixed ends are one: none of them moves by an impulse
+    row.body_a = std::min(row.body_a, fixed_end());
+    row.body_b = std::min(row.body_b, fixed_end());
+  }
+  return all;
 }
 
 }  // namespace tumble::engines
