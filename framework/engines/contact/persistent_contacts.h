@@ -110,8 +110,8 @@ class PersistentContacts {
 
   /// Goes on from what is remembered of another state; what was known of a step is forgotten.
   void recall(ContactMemory memory);
-  /// What contacts pressed bodies with in the last step, its mean, by body: of those on which forces
-  /// act that follow their motion; and the same of another state.
+  /// What contacts pressed bodies with in the last step, its mean, by body: of those on which
+  /// forces act that follow their motion; and the same of another state.
   const std::map<int, Wrench>& pressing() const { return memory_.pressing; }
   void expect(int body, const Wrench& pressing) { memory_.pressing[body] = pressing; }
   /// Hands over what is remembered; recall() comes before the next step.

@@ -7,9 +7,9 @@
 //   A lambda = -(J u' + J' u),   A = J (response of the tree to J^T)                      (R.6)
 // A has a column for each row, each in time linear in the bodies. Redundant rows (four hinges of a
 // plane linkage, a rod beside a rod) make it singular: a step obeys those that say something new
-// where it begins (redundant_rows.cpp). What is redundant is measured against the row's own response
-// in bodies that nothing else holds, J M^-1 J^T: a rod beside a rod of the tree leaves an A of
-// rounding alone.
+// where it begins (redundant_rows.cpp). What is redundant is measured against the row's own
+// response in bodies that nothing else holds, J M^-1 J^T: a rod beside a rod of the tree leaves an
+// A of rounding alone.
 #include <algorithm>
 #include <cmath>
 

@@ -2,10 +2,10 @@
 //
 // Loops have them: all axes of a plane linkage are parallel, those of a universal joint or of a
 // spherical linkage meet. That holds where the loop is closed, and only there. At a stage of a step
-// the loop is open by what the method leaves, e; the rows differ by e there, and if all had to hold,
-// they would push with forces of the order 1 / e, which take a mechanism's energy within a few
-// steps. So which rows say something new is asked where the step begins, and its stages obey these;
-// the others hold because of them.
+// the loop is open by what the method leaves, e; the rows differ by e there, and if all had to
+// hold, they would push with forces of the order 1 / e, which take a mechanism's energy within a
+// few steps. So which rows say something new is asked where the step begins, and its stages obey
+// these; the others hold because of them.
 #include <algorithm>
 #include <cmath>
 
