@@ -69,6 +69,10 @@ void check_body(const BodySpec& body, const Refuse& refuse) {
   if (body.motion && !body.immovable)
     refuse("motion", "a movable body moves by the laws, not by a motion of its own",
            "Add \"immovable\": true, or give velocity_m_s.");
+  if (body.motion && !body.motion->amplitude_m.isZero(0) &&
+      body.motion->angular_frequency_rad_s == 0.0)
+    refuse("motion/amplitude_m", "it swings with an angular frequency of 0: it would stand still",
+           "Give angular_frequency_rad_s, or delete amplitude_m.");
   if (body.immovable && !body.velocity_m_s.isZero(0))
     refuse("velocity_m_s", "it is immovable and has a velocity",
            "Give \"motion\": {\"velocity_m_s\": ...} to move it along its own law.");

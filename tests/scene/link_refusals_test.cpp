@@ -138,6 +138,9 @@ TEST(LinkRefusals, AMotorTurnsAHingeAndNothingElse) {
   expect_words(hinge + R"(, "motors": [{ "joint": "knie", "stiffness_n_m_rad": 1 }])",
                {"no joint is named 'knie'", "Did you mean 'knee'", "Hinges: knee."});
   expect_words(hinge + R"(, "motors": [{ "joint": "knee" }])", {"/motors/0", "would do nothing"});
+  expect_words(hinge + R"(, "motors": [{ "joint": "knee", "stiffness_n_m_rad": 1,
+                   "amplitude_rad": 1, "frequency_hz": 500 }])",
+               {"/motors/0/frequency_hz", "looks every 0.01 s", "50 times a second", "0.001"});
 }
 
 TEST(LinkRefusals, NamesOfLinksAreTheirOwn) {
@@ -184,6 +187,12 @@ TEST(LinkRefusals, AChainThatCannotBeLaid) {
                      R"({ "name": "bead", "shape": { "sphere": { "radius_m": 0.1 } },
             "mass_kg": 1, "position_m": [0, 0, 0] })"),
                {"/chains/0/link/position_m", "determines the positions of its links"});
+}
+
+TEST(LinkRefusals, AForceBeginsBeforeTheSceneEnds) {
+  expect_words(R"("point_forces": [{ "body": "ball", "force_n": [1, 0, 0], "point_m": [0, 0, 2],
+                   "start_s": 2, "duration_s": 1 }])",
+               {"/point_forces/0/start_s", "ends at 1 s", "duration_s"});
 }
 
 }  // namespace

@@ -62,6 +62,12 @@ TEST(SceneRefusals, OnlyABoxIsDrawnAsADie) {
                {"/bodies/0/drawn_as", "die"});
 }
 
+TEST(SceneRefusals, WhatSwingsHasAnAngularFrequency) {
+  expect_words(refusal(scene_with(
+                   body_with(R"("immovable": true, "motion": { "amplitude_m": [0, 0, 1] })"))),
+               {"/bodies/0/motion/amplitude_m", "would stand still", "angular_frequency_rad_s"});
+}
+
 TEST(SceneRefusals, ANegativeMassSaysWhatAMassIs) {
   expect_words(refusal(scene_with(body_with(R"("mass_kg": -2)"))),
                {"/bodies/0/mass_kg", "found -2", "above 0"});

@@ -95,6 +95,14 @@ class MotorEffect final : public ListedEffect<MotorSpec, Motor> {
       refuse(motor.pointer,
              "the motor has neither stiffness_n_m_rad nor damping_n_m_s_rad: it would do nothing",
              "Give one of the two.");
+    // seen at equal times, sin(2 pi f t) is the same for f and for 1 / period - f
+    if (motor.amplitude_rad != 0.0 && motor.frequency_hz * motor.period_s > 0.5)
+      refuse(motor.pointer + "/frequency_hz",
+             fmt::format("is {:g}: a motor that looks every {:g} s sees no target that swings "
+                         "faster than {:g} times a second",
+                         motor.frequency_hz, motor.period_s, 0.5 / motor.period_s),
+             fmt::format("Give period_s, at most {:g}; ten times less follows it well.",
+                         0.5 / motor.frequency_hz));
   }
 };
 

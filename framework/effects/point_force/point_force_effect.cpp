@@ -39,6 +39,12 @@ class PointForceEffect final : public ListedEffect<PointForceSpec, PointForce> {
       if (!bodies.can_move(force.body))
         refuse(force.pointer + "/body", "body '" + force.body + "' is immovable: no force moves it",
                "Name a movable body.");
+    for (const PointForceSpec& force : specs(scene))
+      if (force.start_s >= scene.duration_s)
+        refuse(force.pointer + "/start_s",
+               fmt::format("is {:g}, and the scene ends at {:g} s: the force would never act",
+                           force.start_s, scene.duration_s),
+               "Begin it earlier, or give the scene a longer duration_s.");
   }
   std::string describe(const PointForceSpec& spec) const override {
     return fmt::format("{}: {:.4g} N from {:g} s for {:g} s", spec.body, spec.force_n.norm(),

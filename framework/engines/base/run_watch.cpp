@@ -24,7 +24,9 @@ const Words& words_of(RunWatch::Kind kind) {
       {"projection_open",
        "the correction onto rods and joints ends on them: here it did not, and what follows is of "
        "another mechanism",
-       "masses that differ less"},
+       "masses that differ less; or, in a loop, more digits in \"point_m\" and \"axis\": joints "
+       "that "
+       "contradict each other cannot all be closed"},
       {"contact_unsolved",
        "impulses of contacts keep bodies apart and within friction: here none were found that do, "
        "by this part of the speed",
