@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "framework/core/math.h"
 
@@ -35,13 +34,6 @@ MatrixXd pseudo_inverse(const MatrixXd& matrix);
 /// @param threshold  what is smaller, relative to the largest pivot, counts as zero; nothing:
 ///                   round-off of A's size
 MatrixXd least_squares(const MatrixXd& A, const MatrixXd& B, std::optional<double> threshold = {});
-
-/// Which rows of a J span all of them, by G = J J^T: Cholesky with the largest pivot first (Higham,
-/// "Accuracy and Stability of Numerical Algorithms", section 10.3).
-/// @param G          symmetric, without negative eigenvalues; rows of like size
-/// @param threshold  a row of which no more is left, beside those chosen, says nothing new
-/// @return by row; depends on G alone
-std::vector<char> spanning_rows(MatrixXd G, double threshold);
 
 /// The x with A x = b of a symmetric matrix, by L D L^T. Only the lower triangle is read.
 VectorXd solve_symmetric(const MatrixXd& A, const VectorXd& b);

@@ -151,7 +151,7 @@ class LinkedBodies final : effects::GroupPlaces {
   // Rows that say what others say: redundant_rows.cpp.
   bool closes_loop(const LinkedGroup& group) const;
   void choose_rows(const std::vector<RigidBodyState>& local, double t);
-  std::vector<char> spanning(const std::vector<Body>& bodies);
+  std::vector<char> spanning(const std::vector<Body>& bodies, std::size_t at_least);
   bool has_redundant_rows();
   static std::vector<Constraint> those_of(const std::vector<char>& chosen,
                                           std::vector<Constraint> all);
@@ -196,8 +196,8 @@ class LinkedBodies final : effects::GroupPlaces {
   // its longest rod or spring, or its largest radius of gyration [m]
   double length_ = 0.0;
   bool has_loop_ = false;  // of links, through the world or without
-  // once asked: whether some rows say what others say, where the scene begins
-  std::optional<bool> has_redundant_rows_;
+  // once asked: how many rows say something new where the scene begins
+  std::optional<std::size_t> rank_at_start_;
   // by row, in the step under way: whether its stages obey it; empty: all
   std::vector<char> obeyed_;
   VectorXd units_;  // of the packed states of its bodies, by length_
@@ -207,8 +207,6 @@ class LinkedBodies final : effects::GroupPlaces {
   std::string kept_maximal_by_;
   std::vector<TreeLink> joints_;  // row: among those of all terms
   std::vector<int> loop_rows_;    // of joints that close loops
-  // the same as obeyed_, of these; nothing until the step's first stage
-  std::optional<std::vector<char>> obeyed_loop_rows_;
   bool touched_ = false;
   bool ends_move_ = false;            // fixed ends that are driven
   std::vector<char> feels_gravity_;   // by body, in the step under way: gravity alone
@@ -227,11 +225,6 @@ std::vector<std::string> coordinates_in_words(const World& world);
 /// Whether no law of rows will be asked for in a world: its rods and joints hang bodies in trees in
 /// joint coordinates, and none of these bodies collides.
 bool goes_without_rows(const World& world);
-
-/// Of a row's own response, 1: as much as is left of one that says what others say. Rounding leaves
-/// 1e-14, links that are open by a part e of their size some e^2, and a four-bar linkage that is
-/// stretched to 1e-6 rad of its singular posture 1e-12.
-double redundant_within(double open_part);
 
 /// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
 /// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become

@@ -7,9 +7,9 @@
 //   A lambda = -(J u' + J' u),   A = J (response of the tree to J^T)                      (R.6)
 // A has a column for each row, each in time linear in the bodies. Redundant rows (four hinges of a
 // plane linkage, a rod beside a rod) make it singular: a step obeys those that say something new
-// where it begins (redundant_rows.cpp). What is redundant is measured against the row's own
-// response in bodies that nothing else holds, J M^-1 J^T: a rod beside a rod of the tree leaves an
-// A of rounding alone.
+// where it begins (redundant_rows.cpp). In a posture where more of them do not, the lambda of least
+// norm is taken. That is measured against the row's own response in bodies that nothing else holds,
+// J M^-1 J^T: a rod beside a rod of the tree leaves an A of rounding alone.
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +28,9 @@ namespace {
 // Rows beside the tree cost the cube of their number; six coordinates a body with a sparse
 // factorisation are cheaper from about here on.
 constexpr std::size_t kMostLoopRows = 60;
+// Of a row's response in free bodies, against the pivots of (R.6): rows that say the same leave
+// 1e-14, and a four-bar linkage that is stretched to 1e-6 rad of its singular posture 1e-12.
+constexpr double kRedundant = 1e-13;
 // Of states against the links: rounding of a hundred bodies after each other is 1e-13, what an
 // impact within a step leaves goes by the fourth power of the step.
 constexpr double kLinksFit = 1e-12;
@@ -37,6 +40,16 @@ double free_response(const Vector6d& jacobian, const Body& body) {
   const Vector3d turning_body = body.world_from_body.conjugate() * jacobian.tail<3>();
   return body.inertia.inverse_mass * jacobian.head<3>().squaredNorm() +
          turning_body.dot(body.inertia.inverse_inertia_body * turning_body);
+}
+
+/// The lambda of least norm of (R.6), in the measure of free responses. @param free  (rows)
+VectorXd solve_with_redundant(const MatrixXd& A, const VectorXd& wanted, const VectorXd& free) {
+  const VectorXd scale = (free.array() > 0.0).select(free.array().rsqrt(), 0.0);
+  const MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  const double largest = scaled.colwise().norm().maxCoeff();
+  if (!(largest > kRedundant)) return VectorXd::Zero(wanted.size());
+  return scale.cwiseProduct(
+      least_squares(scaled, scale.cwiseProduct(wanted), kRedundant / largest));
 }
 
 }  // namespace
@@ -152,7 +165,6 @@ void LinkedBodies::stand_fixed_ends_at(double t) {
 // would take away is not the least in the measure of the masses, and would change energy.
 VectorXd LinkedBodies::begin_reduced(std::vector<RigidBodyState>& local, double t) {
   begun_at_ = t;
-  obeyed_loop_rows_.reset();
   stand_fixed_ends_at(t);
   bool turns_freely = pulling_.empty();
   const Vector3d gravity_world = world_.gravity_world.value_or(Vector3d::Zero());
@@ -224,22 +236,17 @@ void LinkedBodies::close_loops() {
             row.row.jacobian_b.dot(response.segment<6>(6 * static_cast<Eigen::Index>(row.body_b)));
     }
   }
-  // in the measure of free responses
-  const VectorXd scale = (free.array() > 0.0).select(free.array().rsqrt(), 0.0);
-  A = scale.asDiagonal() * A * scale.asDiagonal();
-  wanted = scale.cwiseProduct(wanted);
-  if (!obeyed_loop_rows_) {
-    obeyed_loop_rows_ = spanning_rows(A, redundant_within(open_part(seen_, all)));
-  }
   std::vector<Eigen::Index> obeyed;
   for (Eigen::Index k = 0; k < m; ++k)
-    if ((*obeyed_loop_rows_)[static_cast<std::size_t>(k)] != 0) obeyed.push_back(k);
+    if (obeyed_.empty() || obeyed_[static_cast<std::size_t>(loop_rows_[k])] != 0)
+      obeyed.push_back(k);
   ++counters_.constraint_solves;
-  VectorXd lambda;  // a rod beside a rod of the tree leaves nothing to solve
-  if (!obeyed.empty()) lambda = least_squares(A(obeyed, obeyed), wanted(obeyed));
-  for (std::size_t k = 0; k < obeyed.size(); ++k)
-    add(all[static_cast<std::size_t>(loop_rows_[static_cast<std::size_t>(obeyed[k])])],
-        scale[obeyed[k]] * lambda[static_cast<Eigen::Index>(k)], wrenches_);
+  if (!obeyed.empty()) {  // a rod beside a rod of the tree leaves nothing to solve
+    const VectorXd lambda = solve_with_redundant(A(obeyed, obeyed), wanted(obeyed), free(obeyed));
+    for (std::size_t k = 0; k < obeyed.size(); ++k)
+      add(all[static_cast<std::size_t>(loop_rows_[static_cast<std::size_t>(obeyed[k])])],
+          lambda[static_cast<Eigen::Index>(k)], wrenches_);
+  }
   tree_->accelerate(wrenches_);
 }
 
@@ -302,6 +309,7 @@ void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) 
 std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyState> local,
                                                           double t, double h) {
   const VectorXd y = begin_reduced(local, t);
+  choose_rows(local, t);
   const OdeFunction f =
       SplitOde{[&](double time, const VectorXd& state) {
                  need_size(state, y);
