@@ -205,6 +205,7 @@ TUMBLE_MODULE(a2, euler_step, rk4_step, inertia_in_world, rigid_body_derivative,
               orthonormalize, rotation_from_euler_angles, euler_angles_from_rotation,
               impact_time_bisection, impact_time_newton);
 
+#ifndef TUMBLE_BUILDING_MODULE  // for callers
 namespace tumble::a2 {
 
 /// How many numbers each answer has: checked on what your functions return, before its use.
@@ -218,3 +219,4 @@ inline void describe(modules::AnswerSizes<Module>& sizes) {
 }
 
 }  // namespace tumble::a2
+#endif

@@ -179,6 +179,7 @@ bool ends_in_contact(double approach_speed, double restitution, double rest_spee
 TUMBLE_MODULE(a3, anchor_position, anchor_velocity, spring_force, rod_row, baumgarte_acceleration,
               constraint_multipliers, constraint_correction, contact_forces, ends_in_contact);
 
+#ifndef TUMBLE_BUILDING_MODULE  // for callers
 namespace tumble::a3 {
 
 /// How many numbers each answer has: checked on what your functions return, before its use.
@@ -195,3 +196,4 @@ inline void describe(modules::AnswerSizes<Module>& sizes) {
 }
 
 }  // namespace tumble::a3
+#endif

@@ -174,6 +174,7 @@ Answer monte_carlo_answer(const std::vector<VectorXd>& chains);
 TUMBLE_MODULE(a5, log_prior, log_target, propose, log_proposal, log_acceptance, metropolis_step,
               autocorrelation, effective_sample_size, split_r_hat, monte_carlo_answer);
 
+#ifndef TUMBLE_BUILDING_MODULE  // for callers
 namespace tumble::a5 {
 
 /// How many numbers each answer has: checked on what your functions return, before its use.
@@ -185,3 +186,4 @@ inline void describe(modules::AnswerSizes<Module>& sizes) {
 }
 
 }  // namespace tumble::a5
+#endif

@@ -101,7 +101,7 @@ void answer_call(const std::function<R(A...)>& function) {
 /// @return the length of the answer
 template <class Module>
 std::size_t call(std::uint32_t number) {
-  static const Module module = Module::linked();
+  static const Module module = Module::of(Module::linked());
   std::uint32_t at = 0;
   Module::visit(module, [&](const char*, const auto& function) {
     if (at++ == number) answer_call(function);

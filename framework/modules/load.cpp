@@ -6,7 +6,7 @@
 
 namespace tumble::modules {
 
-AnyModule load_module(const ModuleName& module, const std::filesystem::path& file) {
+const void* load_functions(const ModuleName& module, const std::filesystem::path& file) {
   if (!std::filesystem::exists(file))
     throw UserError(file.string(), "there is no such file",
                     "Build it first, or check the path given to --modules.");
@@ -21,8 +21,7 @@ AnyModule load_module(const ModuleName& module, const std::filesystem::path& fil
     throw UserError(
         file.string(), "exports no module " + module.id,
         "It must be built from a file that includes the header of " + module.folder + ".");
-  // Never unloaded: laws copied from the table live as long as the program.
-  return AnyModule(exported(), [](const void*) {});
+  return exported();
 }
 
 }  // namespace tumble::modules

@@ -12,8 +12,8 @@ struct ModuleName {
   std::string folder;  // "a1_impulse": below assignments/, solutions_private/ and tests/
   std::string title;   // for people
 
-  /// C symbol of a shared object that gives the module's table (module.h).
-  std::string exported_name() const { return "tumble_module_" + id; }
+  /// C symbol of a shared object that gives the addresses of its functions (module.h).
+  std::string exported_name() const { return "tumble_functions_" + id; }
 };
 
 /// @throws UserError naming the known ids

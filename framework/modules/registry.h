@@ -36,6 +36,7 @@ struct ModuleKind : ModuleName {
   std::function<void(const AnyModule&, Laws&)> bind;
   std::function<void(const AnyModule&, Channel&)> serve;  // on the worker's side
   std::function<AnyModule(Connection&)> make_proxy;       // on the judge's side
+  std::function<AnyModule(const void*)> module_of;        // of loaded functions
   // the same module with watched calls
   std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;
   std::vector<NamedMethod> methods;  // empty where the module has no integration
@@ -56,6 +57,12 @@ struct ModuleKind : ModuleName {
   // those functions that become laws: only these can the run of a scene ask
   std::function<std::vector<std::string>()> functions_of_laws;
 };
+
+/// @param file  a shared object built from a file that implements the module's header
+/// @throws UserError as load_functions does
+inline AnyModule load_module(const ModuleKind& kind, const std::filesystem::path& file) {
+  return kind.module_of(load_functions(kind, file));
+}
 
 class Registry {
  public:
@@ -78,6 +85,7 @@ class Registry {
     kind.make_proxy = [](Connection& connection) -> AnyModule {
       return std::make_shared<const Module>(modules::make_proxy<Module>(connection));
     };
+    kind.module_of = modules::module_of<Module>;
     kind.watched = [](const AnyModule& module, CallWatcher& watcher) -> AnyModule {
       return std::make_shared<const Module>(
           modules::watched(*static_cast<const Module*>(module.get()), watcher));

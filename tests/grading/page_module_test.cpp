@@ -193,7 +193,8 @@ TEST_F(PageModuleTest, TheReferenceComputesInThePageWhatItComputesHere) {
   const PageModule module = a1_compiler().compile(source);
   ASSERT_EQ(module.why_not, "");
   write_whole(folder_.path() / "module.wasm", module.wasm);
-  const modules::AnyModule native = modules::load_module({"a1", "a1_impulse", "Impulse"}, object);
+  const modules::AnyModule native = modules::module_of<a1::Module>(
+      modules::load_functions({"a1", "a1_impulse", "Impulse"}, object));
   Calls calls(*static_cast<const a1::Module*>(native.get()));
   constexpr int kRounds = 1000;
   for (int i = 0; i < kRounds; ++i) calls.add_one_of_each();

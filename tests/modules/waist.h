@@ -49,6 +49,7 @@ double missing(double x);
 
 TUMBLE_MODULE(waist, twice, echo, call_back, attack, missing, step);
 
+#ifndef TUMBLE_BUILDING_MODULE  // for callers
 namespace tumble::waist {
 
 inline void describe(modules::AnswerSizes<Module>& sizes) {
@@ -57,3 +58,4 @@ inline void describe(modules::AnswerSizes<Module>& sizes) {
 }
 
 }  // namespace tumble::waist
+#endif

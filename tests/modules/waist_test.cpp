@@ -164,7 +164,7 @@ class Loop : public modules::Connection {
   int callbacks = 0;
 
  private:
-  waist::Module module_ = waist::linked_module();
+  waist::Module module_ = waist::Module::of(waist::Module::linked());
   int ends_[2];
   std::unique_ptr<Channel> near_;
   std::thread worker_;
@@ -172,7 +172,8 @@ class Loop : public modules::Connection {
 
 TEST(CallCounts, CountCallsByFunctionAlsoThoseWithinACall) {
   modules::CallCounts counts({"twice", "echo", "call_back", "attack", "missing", "step"});
-  const waist::Module counted = modules::watched(waist::linked_module(), counts);
+  const waist::Module counted =
+      modules::watched(waist::Module::of(waist::Module::linked()), counts);
   counted.call_back([&](double x) { return counted.twice(x); }, 3);
   EXPECT_THROW(counted.missing(1.0), NotImplemented);
   const auto all = [&] {

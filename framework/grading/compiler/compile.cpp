@@ -64,13 +64,14 @@ constexpr const char* kToTests =
 // eigen_assert ends the call, as where it is graded, without its words.
 #define TUMBLE_COMPILE_FOR_PAGE                                                             \
   "cd \"$3\" && /usr/bin/clang++-14 --target=wasm32-wasi -std=c++20 -O2 -ffp-contract=off " \
-  "-fno-finite-loops -fexceptions -DTUMBLE_BUILDING_MODULE "                                \
+  "-fno-finite-loops -fexceptions "                                                         \
   "'-Deigen_assert(x)=((x)?(void)0:__builtin_trap())' -w -fno-color-diagnostics "           \
   "-ferror-limit=20 -I \"$2\" -isystem " TUMBLE_EIGEN_INCLUDE " -x c++ -c \"$1\" -o "
 constexpr const char* kToBridge =
     TUMBLE_COMPILE_FOR_PAGE "\"$4/module\" && exec cat \"$4/module\" >&3";
 constexpr const char* kToPage = TUMBLE_COMPILE_FOR_PAGE
-    "\"$4/own.o\" && /usr/bin/clang++-14 --target=wasm32-wasi -mexec-model=reactor -Wl,--no-entry "
+    "\"$4/own.o\" -DTUMBLE_BUILDING_MODULE && /usr/bin/clang++-14 --target=wasm32-wasi "
+    "-mexec-model=reactor -Wl,--no-entry "
     "-Wl,--strip-all -Wl,--gc-sections -Wl,--threads=1 -Wl,-z,stack-size=1048576 "
     "-Wl,--max-memory=67108864 \"$4/own.o\" \"$5\" -o \"$4/module\" && exec cat \"$4/module\" >&3";
 #undef TUMBLE_COMPILE_FOR_PAGE
@@ -264,7 +265,7 @@ Compiled compile_submission(const CompileJob& job) {
                     kSourceInside,
                     kTmpInside,
                     kWorkerInside,
-                    "tumble_module_" + job.id};
+                    "tumble_functions_" + job.id};
   inside.uid = user.uid();
   inside.channel = ends[1];
   Sandbox sandbox = Sandbox::start(inside);

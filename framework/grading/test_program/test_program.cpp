@@ -96,13 +96,13 @@ int run_check_program(int argc, char** argv) {
   }
 }
 
-modules::AnyModule load_first_word(const modules::ModuleName& name, int argc, char** argv) {
+const void* load_first_word(const modules::ModuleName& name, int argc, char** argv) {
   try {
     if (argc < 2) throw UserError(argv[0], "needs a shared object", "Run tumble check.");
-    return modules::load_module(name, argv[1]);
+    return modules::load_functions(name, argv[1]);
   } catch (const UserError& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    return {};
+    return nullptr;
   }
 }
 

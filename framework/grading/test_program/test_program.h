@@ -17,14 +17,14 @@ namespace tumble::grading {
 ///   attempted and the others right
 int run_check_program(int argc, char** argv);
 
-/// The shared object that the first word names.
-/// @return nothing where it cannot be loaded, after a message
-modules::AnyModule load_first_word(const modules::ModuleName& name, int argc, char** argv);
+/// The functions of the shared object that the first word names.
+/// @return null where it cannot be loaded, after a message
+const void* load_first_word(const modules::ModuleName& name, int argc, char** argv);
 
 /// The tests against the functions linked into this program.
 template <class Module>
 int run_linked_tests(int argc, char** argv) {
-  static const Module module = observed(Module::linked());
+  static const Module module = observed(Module::of(Module::linked()));
   modules::UnderTest<Module>::table = &module;
   return run_check_program(argc, argv);
 }
@@ -33,10 +33,11 @@ int run_linked_tests(int argc, char** argv) {
 /// course, where nothing is linked.
 template <class Module>
 int run_loaded_tests(int argc, char** argv) {
-  const modules::AnyModule loaded =
+  const void* loaded =
       load_first_word(modules::find_name(assignment_names(), Module::kId), argc, argv);
-  if (!loaded) return static_cast<int>(ExitCode::kUserError);
-  static const Module module = observed(*static_cast<const Module*>(loaded.get()));
+  if (loaded == nullptr) return static_cast<int>(ExitCode::kUserError);
+  static const Module module =
+      observed(Module::of(*static_cast<const typename Module::Addresses*>(loaded)));
   modules::UnderTest<Module>::table = &module;
   return run_check_program(argc - 1, argv + 1);
 }

@@ -17,7 +17,8 @@ int run_linked_worker(const void* (*exported)()) {
   keep_freed_memory();
   try {
     modules::Channel channel(modules::Channel::End::kAnswers, kChannelFd, kChannelFd);
-    modules::serve(*static_cast<const Module*>(exported()), channel);
+    modules::serve(Module::of(*static_cast<const typename Module::Addresses*>(exported())),
+                   channel);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

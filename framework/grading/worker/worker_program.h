@@ -21,7 +21,8 @@ int run_worker(int argc, char** argv) {
   if (argc != 2) return 2;
   say_frames_when_dying(argv[1]);
   try {
-    const modules::AnyModule module = modules::load_module({Module::kId, Module::kId, ""}, argv[1]);
+    const modules::AnyModule module = modules::module_of<Module>(
+        modules::load_functions({Module::kId, Module::kId, ""}, argv[1]));
     modules::Channel channel(modules::Channel::End::kAnswers, kChannelFd, kChannelFd);
     modules::serve(*static_cast<const Module*>(module.get()), channel);
     return 0;
