@@ -141,6 +141,15 @@ std::filesystem::path Stage::add_file(const std::filesystem::path& from, const s
   return to;
 }
 
+std::filesystem::path Stage::link_file(const std::filesystem::path& from, const std::string& name) {
+  const auto to = path_ / name;
+  struct stat about {};
+  const bool all_may_read = ::stat(from.c_str(), &about) == 0 && (about.st_mode & 0444) == 0444;
+  // Not across file systems, and of a foreign file only where the kernel permits it.
+  if (all_may_read && ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), 0) == 0) return to;
+  return add_file(from, name);
+}
+
 std::filesystem::path Stage::add_text(const std::string& text, const std::string& name) {
   const auto to = path_ / name;
   std::ofstream out(to, std::ios::binary);

@@ -51,6 +51,9 @@ class Stage {
   /// @return path of the copy
   std::filesystem::path add_file(const std::filesystem::path& from, const std::string& name,
                                  bool executable = false);
+  /// The file itself under one more name, where that can be; else a copy. Not for secrets.
+  /// @pre what runs inside cannot change the file: another user's, or bound for reading only
+  std::filesystem::path link_file(const std::filesystem::path& from, const std::string& name);
   std::filesystem::path add_text(const std::string& text, const std::string& name);
 
  private:
