@@ -1,8 +1,13 @@
 // Failing tests matched to slips, by their names and by the answers that came.
 #include <gtest/gtest.h>
 
+#include <iterator>
+
+#include <fmt/format.h>
+
 #include "framework/grading/grades/causes.h"
 #include "framework/grading/grades/likely_slips.h"
+#include "framework/grading/grades/two_slips.h"
 
 namespace tumble::grading {
 namespace {
@@ -109,6 +114,102 @@ TEST(LikelySlips, TheAnswerIsReadFromTheStory) {
   EXPECT_EQ(failure_of(result).found, "SIGSEGV");
 }
 
+// One hit: how hard, and what of it the denominator has.
+struct Hit {
+  double e, speed, masses, turning;
+};
+constexpr Hit kHits[] = {{0.5, 6.0, 1.0, 0.75},
+                         {0.25, 4.0, 1.5, 2.0},
+                         {0.8, 3.0, 0.5, 0.3},
+                         {0.1, 7.0, 0.25, 0.6},
+                         {0.6, 2.0, 3.0, 0.4}};
+constexpr std::size_t kCount = std::size(kHits);
+
+// j = (1 + e) v / (masses + turning), with mistakes made in it.
+struct Mistakes {
+  bool sign = false, e_for_one_plus_e = false, turning_forgotten = false, masses_forgotten = false;
+};
+double impulse(const Hit& hit, const Mistakes& made) {
+  const double factor = made.e_for_one_plus_e ? hit.e : 1.0 + hit.e;
+  const double below =
+      (made.masses_forgotten ? 0.0 : hit.masses) + (made.turning_forgotten ? 0.0 : hit.turning);
+  return (made.sign ? -1.0 : 1.0) * factor * hit.speed / below;
+}
+
+std::vector<Failure> failures_with(const Mistakes& made) {
+  std::vector<Failure> failures;
+  for (const Hit& hit : kHits) {
+    failures.push_back(wrong(fmt::format("Impulse.Of{}", hit.speed),
+                             fmt::format("{:.12g} N s", impulse(hit, made))));
+    failures.back().expected = fmt::format("{:.12g} N s", impulse(hit, {}));
+  }
+  return failures;
+}
+
+std::vector<AuditedSlip> slips_of_the_impulse() {
+  return {{"e", "e where (1 + e) belongs", "", failures_with({.e_for_one_plus_e = true})},
+          {"masses", "no masses", "", failures_with({.masses_forgotten = true})},
+          {"sign", "no minus", "", failures_with({.sign = true})},
+          {"turning", "no turning", "", failures_with({.turning_forgotten = true})}};
+}
+
+TEST(TwoSlips, InAProductASumAndADenominatorGiveWhatFollowsFromEachAlone) {
+  const auto both = [](Together rule, double right, double a, double b, double found) {
+    const auto said = [](double number) { return answer_of(fmt::format("{:.12g} N", number)); };
+    return is_answer_of_both(rule, said(right), said(a), said(b), said(found));
+  };
+  for (const Hit& hit : kHits) {
+    EXPECT_TRUE(both(Together::kFactors, impulse(hit, {}), impulse(hit, {.sign = true}),
+                     impulse(hit, {.e_for_one_plus_e = true}),
+                     impulse(hit, {.sign = true, .e_for_one_plus_e = true})));
+    const double share = hit.turning / 2;  // of each body: both forgotten leave the masses
+    const auto j = [&](double below) { return (1.0 + hit.e) * hit.speed / below; };
+    EXPECT_TRUE(both(Together::kTermsBelow, impulse(hit, {}), j(hit.masses + share),
+                     j(hit.masses + share), impulse(hit, {.turning_forgotten = true})));
+  }
+  // w x r forgotten in the velocities of both bodies: 2 + 3 - 4 - 5
+  EXPECT_TRUE(both(Together::kTerms, 2.0 + 3 - 4 - 5, 2.0 - 4 - 5, 2.0 + 3 - 4, 2.0 - 4));
+  // one of them alone, or none, is no answer of both
+  EXPECT_FALSE(both(Together::kFactors, 9, -9, 3, 3));
+  EXPECT_FALSE(both(Together::kFactors, 9, -9, 3, -9));
+  EXPECT_FALSE(both(Together::kFactors, 9, -9, -9, 9));
+  EXPECT_FALSE(both(Together::kFactors, 9, -9, 3, -3.00001));
+  // other words are another answer
+  EXPECT_FALSE(is_answer_of_both(Together::kFactors, answer_of("9 N s"), answer_of("-9 N s"),
+                                 answer_of("3 N s"), answer_of("-3 m/s")));
+}
+
+// No test gives the answer of either alone, so neither can be found by its own.
+TEST(LikelySlips, TwoInOneExpressionAreNamedTogetherWithTheShareOfEach) {
+  const auto found = likely_slips(failures_with({.sign = true, .e_for_one_plus_e = true}), {},
+                                  slips_of_the_impulse());
+  ASSERT_EQ(names(found), std::vector<std::string>{"e"});
+  EXPECT_EQ(found[0].with, "sign");
+  EXPECT_EQ(found[0].tests.size(), kCount);
+  EXPECT_EQ(found[0].by_both, kCount);
+  EXPECT_EQ(found[0].alone[0], kCount);
+  EXPECT_EQ(found[0].alone[1], kCount);
+  EXPECT_TRUE(found[0].equals.empty());
+}
+
+TEST(LikelySlips, OneSlipIsNotTakenForTwo) {
+  for (const Mistakes& made :
+       {Mistakes{.sign = true}, {.e_for_one_plus_e = true}, {.masses_forgotten = true}}) {
+    const auto found = likely_slips(failures_with(made), {}, slips_of_the_impulse());
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].with, "");
+    EXPECT_EQ(found[0].same_numbers, kCount);
+  }
+}
+
+// Of two tests in five it may be chance.
+TEST(LikelySlips, TwoThatExplainLessThanHalfAreNotNamedTogether) {
+  auto failures = failures_with({.sign = true, .e_for_one_plus_e = true});
+  for (std::size_t i = 2; i < kCount; ++i) failures[i].found = fmt::format("{} N s", 10 + i);
+  for (const LikelySlip& likely : likely_slips(failures, {}, slips_of_the_impulse()))
+    EXPECT_EQ(likely.with, "") << likely.name;
+}
+
 ScoredTest scored(const std::string& name, double points, Verdict verdict,
                   const std::string& function, const std::string& story = "") {
   ScoredTest test;
@@ -161,6 +262,23 @@ TEST(Causes, WhatAsksAFailingFunctionStandsUnderItsCause) {
   EXPECT_EQ(causes[0].following, std::vector<std::string>{"Resolve.Gap"});
   EXPECT_EQ(points_lost(causes[0], tests), 8.0);
   EXPECT_EQ(causes[1].tests, std::vector<std::string>{"Force.Other"});
+}
+
+TEST(Causes, TwoMistakesOfOneLineAreSaidInOneCause) {
+  std::vector<ScoredTest> tests;
+  for (const Failure& failure :
+       failures_with({.e_for_one_plus_e = true, .turning_forgotten = true})) {
+    tests.push_back(
+        scored(failure.test, 2, Verdict::kWrong, "collision_impulse",
+               "\n  expected: " + failure.expected + "\n  found:    " + failure.found + "\n"));
+  }
+  const auto causes = causes_of(tests, slips_of_the_impulse(), "a1.cpp", "");
+  ASSERT_EQ(causes.size(), 1u);
+  EXPECT_EQ(causes[0].says, "e where (1 + e) belongs");
+  EXPECT_EQ(causes[0].and_also, "no turning");
+  EXPECT_EQ(causes[0].by_both, kCount);
+  EXPECT_EQ(causes[0].alone[0], kCount);
+  EXPECT_EQ(causes[0].alone[1], kCount);
 }
 
 TEST(Causes, TestsThatWereNotRunBelongToWhatUsedTheTimeWhichIsFirst) {

@@ -22,6 +22,10 @@ struct Cause {
   std::vector<std::string> following = {};
   // that were not run because this used up the time of all tests together
   std::vector<std::string> not_run = {};
+  // of two mistakes whose answers come together: the second; empty: one explains all
+  std::string and_also = {};
+  std::size_t by_both = 0;  // of same_numbers, where neither of the two alone gives that answer
+  std::size_t alone[2] = {0, 0};  // of the tests, how many either of the two fails alone
 };
 
 }  // namespace tumble::grading

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -36,9 +37,15 @@ Cause cause_of(const LikelySlip& likely, const std::vector<AuditedSlip>& known) 
   cause.kind = Cause::Kind::kSlip;
   const AuditedSlip& slip = *slip_called(known, likely.name);
   cause.says = slip.says;
+  if (!likely.with.empty()) {
+    cause.and_also = slip_called(known, likely.with)->says;
+    cause.by_both = likely.by_both;
+    std::copy(std::begin(likely.alone), std::end(likely.alone), cause.alone);
+  }
   for (const std::string& other : likely.equals) {
     const AuditedSlip* equal = slip_called(known, other);
-    if (equal->says != slip.says) cause.or_else.push_back(equal->says);
+    if (equal->says != slip.says && equal->says != cause.and_also)
+      cause.or_else.push_back(equal->says);
   }
   cause.tests = likely.tests;
   cause.same_numbers = likely.same_numbers;

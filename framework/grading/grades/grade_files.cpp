@@ -128,7 +128,7 @@ constexpr std::array kCauseKinds = {"slip", "crash", "out of time or memory", "n
 
 Json json_of_causes(const std::vector<Cause>& causes) {
   Json list = Json::array();
-  for (const Cause& c : causes)
+  for (const Cause& c : causes) {
     list.push_back({{"kind", kCauseKinds.at(static_cast<std::size_t>(c.kind))},
                     {"says", c.says},
                     {"or_else", c.or_else},
@@ -139,6 +139,12 @@ Json json_of_causes(const std::vector<Cause>& causes) {
                     {"same_numbers", c.same_numbers},
                     {"following", c.following},
                     {"not_run", c.not_run}});
+    if (!c.and_also.empty()) {
+      list.back()["and_also"] = c.and_also;
+      list.back()["by_both"] = c.by_both;
+      list.back()["alone"] = c.alone;
+    }
+  }
   return list;
 }
 
@@ -154,7 +160,12 @@ std::vector<Cause> causes_in(const Json& json) {
                 c.at("tests"),
                 c.at("same_numbers"),
                 c.value("following", std::vector<std::string>()),
-                c.value("not_run", std::vector<std::string>())};
+                c.value("not_run", std::vector<std::string>()),
+                c.value("and_also", ""),
+                c.value("by_both", std::size_t{0}),
+                {}};
+    if (c.contains("alone"))
+      for (const std::size_t k : {0, 1}) cause.alone[k] = c.at("alone").at(k);
     for (std::size_t i = 0; i < kCauseKinds.size(); ++i)
       if (c.at("kind") == kCauseKinds[i]) cause.kind = static_cast<Cause::Kind>(i);
     causes.push_back(std::move(cause));

@@ -17,8 +17,9 @@ namespace tumble::grading {
 struct Failure {
   std::string test;
   Verdict verdict = Verdict::kWrong;
-  std::string found;     // the wrong answer in the story's words; empty: the story has none
-  std::string function;  // that the test called last
+  std::string found;          // the wrong answer in the story's words; empty: the story has none
+  std::string function;       // that the test called last
+  std::string expected = {};  // the right answer in the story's words; empty: the story has none
 };
 
 /// A known-wrong solution, and what an audit found of it (causes_file.h).
@@ -29,17 +30,23 @@ struct AuditedSlip {
   std::vector<Failure> fails;
 };
 
-/// A slip that explains failures which no slip before it explains.
+/// A slip that explains failures which no slip before it explains, or two of them together.
 struct LikelySlip {
   std::string name;
-  std::vector<std::string> equals;     // other slips that explain the same as well
+  // other slips that explain the same as well; of two slips: that may stand in place of the second
+  std::vector<std::string> equals;
   std::vector<std::string> tests;      // that it explains
   std::vector<std::string> functions;  // of these tests, most of them first
   std::size_t same_numbers = 0;        // of these tests, in how many the same answer came
+  std::string with = {};               // the second of two slips; empty: one slip explains all
+  std::size_t by_both = 0;             // of same_numbers, where neither alone gives that answer
+  std::size_t alone[2] = {0, 0};       // of these tests, how many either of the two fails alone
 };
 
 /// Slips that explain failures, the strongest evidence first: greedily, first those whose numbers
-/// came, then those whose tests fail without a number that agrees.
+/// came, then those whose tests fail without a number that agrees. Two slips in one expression give
+/// answers that neither gives; where the answers that came are those of both (two_slips.h), the two
+/// are named together.
 ///
 /// Evidence is weighed function by function: a slip in what several functions share may be made in
 /// one of them alone. There a test that is passed, but would fail with the slip, weighs against it.

@@ -25,11 +25,26 @@ std::size_t failing(const Grade& grade) {
       }));
 }
 
+// How sure two mistakes are, and the share of each.
+std::string evidence_of_two(const Cause& cause, std::size_t failing) {
+  const std::size_t n = cause.tests.size();
+  return fmt::format(
+      "Together they explain {} of the {} that this file fails: in {} the answer that came is the "
+      "one that follows from both, and in {} neither alone gives it. Alone, the first fails {} of "
+      "these tests, the second {}. Both may stand in one line. Correct both before you run the "
+      "tests again: a test that both fail tells nothing of one.",
+      n, counted(failing, "test"),
+      cause.same_numbers == n ? "all of them" : fmt::format("{} of them", cause.same_numbers),
+      cause.by_both == cause.same_numbers ? "all these" : std::to_string(cause.by_both),
+      cause.alone[0], cause.alone[1]);
+}
+
 // How sure it is, in a sentence.
 std::string evidence_of(const Cause& cause, std::size_t failing) {
   const std::size_t n = cause.tests.size();
   switch (cause.kind) {
     case Cause::Kind::kSlip: {
+      if (!cause.and_also.empty()) return evidence_of_two(cause, failing);
       const std::string fails =
           fmt::format("A file with this mistake fails {} of the {} that this file fails", n,
                       counted(failing, "test"));
@@ -57,8 +72,12 @@ std::string evidence_of(const Cause& cause, std::size_t failing) {
 std::string title_of(const Cause& cause) {
   if (cause.kind != Cause::Kind::kSlip) return cause.says;
   const bool is_likely = cause.same_numbers > 0 && 2 * cause.same_numbers >= cause.tests.size();
-  return fmt::format("{} mistake{}: {}", is_likely ? "Likely" : "Possible",
-                     cause.functions.empty() ? "" : " in " + cause.functions.front(), cause.says);
+  const std::string in_function = cause.functions.empty() ? "" : " in " + cause.functions.front();
+  if (!cause.and_also.empty())
+    return fmt::format("Two {} mistakes{}: {}, and {}", is_likely ? "likely" : "possible",
+                       in_function, cause.says, cause.and_also);
+  return fmt::format("{} mistake{}: {}", is_likely ? "Likely" : "Possible", in_function,
+                     cause.says);
 }
 
 std::string points_in_words(double points) {
@@ -127,7 +146,9 @@ void add_cause(report::Page& page, const Cause& cause, std::size_t number, const
                    ""}});
   if (!cause.tests.empty()) page.paragraph(evidence_of(cause, failing(grade)));
   if (!cause.or_else.empty())
-    page.paragraph(fmt::format("As well possible: {}.", fmt::join(cause.or_else, "; or ")));
+    page.paragraph(fmt::format("As well possible{}: {}.",
+                               cause.and_also.empty() ? "" : " in place of the second",
+                               fmt::join(cause.or_else, "; or ")));
   if (const std::string places = places_of(cause); !places.empty())
     page.paragraph("Look at " + plain_name(places) + ".");
   for (std::size_t i = 0; i < cause.code.size(); ++i) {
