@@ -68,15 +68,40 @@ std::map<std::size_t, std::string> variants_found(const Xray& xray) {
   return marks;
 }
 
-// The first term whose part of the answer is wrong.
+// The first term whose part of the answer is wrong. Terms before it that nobody sees, behind the
+// last one that is right, may be wrong already.
 std::map<std::size_t, std::string> first_wrong(const Xray& xray) {
+  std::string unseen;
   for (std::size_t i = 0; i < xray.terms.size(); ++i) {
     const XrayTerm& term = xray.terms[i];
-    if (term.found.size() == 0 || is_near(term.value, term.found)) continue;
+    if (term.found.size() == 0) {
+      unseen += (unseen.empty() ? "" : ", ") + term.name;
+      continue;
+    }
+    if (is_near(term.value, term.found)) {
+      unseen.clear();
+      continue;
+    }
     const int digits = digits_for(term.value, term.found);
-    return {{i, "the first that is wrong: " + shown(term.found, term.unit, digits) + " found"}};
+    const std::string found = shown(term.found, term.unit, digits) + " found";
+    if (unseen.empty()) return {{i, "the first that is wrong: " + found}};
+    return {{i, "the first that is seen to be wrong: " + found +
+                    "; not seen, inside the function: " + unseen}};
   }
   return {};
+}
+
+// What can be said where no term is marked: a formula may have its terms in another order, or more
+// than one of them wrong.
+std::string why_no_mark(const Xray& xray) {
+  const XrayTerm* last_right = nullptr;  // every term that is seen is right
+  for (const XrayTerm& term : xray.terms)
+    if (term.found.size() > 0) last_right = &term;
+  if (last_right != nullptr)
+    return "right as far as it is seen, to " + last_right->name +
+           ": the mistake is in a term that is not seen, or in how they are put together";
+  return std::string("which term is wrong cannot be read from this answer") +
+         (xray.variants.empty() ? "" : ": no frequent mistake in one term alone gives it");
 }
 
 }  // namespace
@@ -103,8 +128,8 @@ std::string xray_in_words(const Xray& xray, bool is_answered) {
   const int digits = is_answered ? digits_for(xray.expected, xray.found) : kDigits;
   const std::string came =
       is_answered ? shown(xray.found, xray.unit, digits) + " found" : "no answer came";
-  return text +
-         line_of(xray.answer, shown(xray.expected, xray.unit, digits) + " expected, " + came);
+  text += line_of(xray.answer, shown(xray.expected, xray.unit, digits) + " expected, " + came);
+  return is_answered && marks.empty() ? text + "   <- " + why_no_mark(xray) : text;
 }
 
 bool add_xray(const std::string& function, XrayOfCall xray) {

@@ -7,8 +7,10 @@
 ///
 /// An assignment describes its equations where its hidden tests are (solutions_private): the terms
 /// are computed from the call's arguments, and the answer must be that of the terms. Wrong variants
-/// of a term are tried: each that gives the answer that came is named at its term. Numbers have six
-/// digits, and more where the difference begins behind them.
+/// of a term are tried: each that gives the answer that came is named at its term. Where none does,
+/// and no part of the answer shows a wrong term, the line of the answer says so: the function may
+/// have its formula in another form, or two wrong terms. Numbers have six digits, and more where
+/// the difference begins behind them.
 #pragma once
 
 #include <functional>
