@@ -56,6 +56,20 @@ TEST_F(CompileAttack, MissingFunctionsAreNamed) {
   EXPECT_NE(compiled.said.find("tumble::waist::echo"), std::string::npos) << compiled.said;
 }
 
+// Its pieces are compiled once, and linked from a library in each kind of sandbox.
+TEST_F(CompileAttack, AFileThatSolvesASystemIsBuilt) {
+  const Compiled compiled = compile(kModule + R"(
+namespace tumble {
+MatrixXd product(const MatrixXd& A, const MatrixXd& B) { return A * B.transpose(); }
+VectorXd by_lu(const MatrixXd& A, const VectorXd& b) { return A.lu().solve(b); }
+VectorXd by_ldlt(const MatrixXd& A, const VectorXd& b) { return A.ldlt().solve(b); }
+VectorXd by_llt(const MatrixXd& A, const VectorXd& b) { return A.llt().solve(b); }
+}
+)");
+  EXPECT_EQ(compiled.outcome, Outcome::kBuilt) << compiled.said;
+  EXPECT_EQ(compiled.said, "");
+}
+
 TEST_F(CompileAttack, PrivateFilesCannotBeIncluded) {
   if (chosen_sandbox() == SandboxKind::kBare)
     GTEST_SKIP() << "bare does not protect the compiler: so it is not official";

@@ -37,8 +37,10 @@ tumble=$folder/root/usr/bin/tumble
 nm -C "$folder/root/usr/lib/tumble/bin/tumble" | grep -F 'tumble::a4::Coordinator' >"$folder/symbols" || true
 [ ! -s "$folder/symbols" ] || fail "the course's program holds the private scheduler: $(head -n 2 "$folder/symbols")"
 # As after postinst, from the build.
-ln "$build/submission_sdk/precompiled.h.gch" "$folder/root/usr/lib/tumble/submission_sdk/" 2>/dev/null ||
-  cp "$build/submission_sdk/precompiled.h.gch" "$folder/root/usr/lib/tumble/submission_sdk/"
+for file in precompiled.h.gch libkernels.a; do
+  ln "$build/submission_sdk/$file" "$folder/root/usr/lib/tumble/submission_sdk/" 2>/dev/null ||
+    cp "$build/submission_sdk/$file" "$folder/root/usr/lib/tumble/submission_sdk/"
+done
 
 cd "$folder"
 "$tumble" start a1 work >"$folder/said" || fail "start: $(cat "$folder/said")"

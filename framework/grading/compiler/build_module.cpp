@@ -17,10 +17,14 @@ std::vector<std::string> own_compilation(const fs::path& root, const fs::path& b
   std::vector<std::string> words = {"g++"};
   std::istringstream flags(TUMBLE_SUBMISSION_FLAGS);
   for (std::string flag; flags >> flag;) words.push_back(flag);
+  const fs::path sdk = build / "submission_sdk";
+  const bool has_kernels = fs::exists(sdk / "libkernels.a");
+  if (!has_kernels) words.push_back("-DTUMBLE_NO_KERNELS");
   words.insert(words.end(), {"-Wall", "-Wextra", "-fdiagnostics-color=never", "-shared",
                              "-Wl,-z,defs", "-I", root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE,
-                             "-include", (build / "submission_sdk" / "precompiled.h").string(),
-                             source.string(), "-o", object.string()});
+                             "-include", (sdk / "precompiled.h").string(), source.string()});
+  if (has_kernels) words.push_back((sdk / "libkernels.a").string());
+  words.insert(words.end(), {"-o", object.string()});
   return words;
 }
 

@@ -28,24 +28,26 @@ constexpr std::size_t kObjectBytes = 32u << 20;  // a module is 200 kB
 constexpr const char* kHeadersInside = "/headers";
 constexpr const char* kSourceInside = "/submission";
 constexpr const char* kPrecompiled = "precompiled.h";
+constexpr const char* kKernels = "libkernels.a";
 
 constexpr const char* kWorkerInside = "/worker.o";
 
 // The compiler may fork its passes, and links to a temporary folder. The object leaves the sandbox
 // through descriptor 3, not through a shared folder. Arguments: the file's name, then what
 // kHeadersInside, kSourceInside, kTmpInside and kWorkerInside are called in the sandbox that runs
-// it, and the name that the module exports.
+// it, the name that the module exports, and the library of precompiled.h, or nothing.
 #define TUMBLE_COMPILE                                                                        \
   "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS                                        \
   " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" " \
   "-ffile-prefix-map=\"$2\"=/headers -ffile-prefix-map=\"$3\"=/submission "                   \
   "-isystem " TUMBLE_EIGEN_INCLUDE " -include \"$2/precompiled.h\" -x c++ \"$1\" -x none "
-constexpr const char* kToSharedObject =
-    TUMBLE_COMPILE "-shared -Wl,-z,defs -o \"$4/module\" && exec cat \"$4/module\" >&3";
+constexpr const char* kToSharedObject = TUMBLE_COMPILE
+    "${7:+\"$7\"} -shared -Wl,-z,defs -o \"$4/module\" && exec cat \"$4/module\" >&3";
 // Only the module's table stays visible to the worker: a main() or an operator new of the
 // submission replaces nothing in it.
 constexpr const char* kToWorker = TUMBLE_COMPILE
-    "-c -o \"$4/own.o\" && ld -r --force-group-allocation \"$4/own.o\" -o \"$4/module.o\" && "
+    "-c -o \"$4/own.o\" && ld -r --force-group-allocation \"$4/own.o\" ${7:+\"$7\"} -o "
+    "\"$4/module.o\" && "
     "objcopy --keep-global-symbol=\"$6\" \"$4/module.o\""
     " && /usr/bin/g++ -static-pie \"$5\" \"$4/module.o\" -o \"$4/module\" && exec cat "
     "\"$4/module\" >&3";
@@ -57,7 +59,7 @@ constexpr const char* kToTests =
     "-ffile-prefix-map=\"$2\"=/headers -ffile-prefix-map=\"$3\"=/submission "
     "-isystem " TUMBLE_EIGEN_INCLUDE
     " -include \"$2/precompiled.h\" -include \"$2/own_tests.h\" -x c++ \"$1\" -x none \"$5\" "
-    "-lgtest -lfmt -lcrypto -o \"$4/module\" && exec cat \"$4/module\" >&3";
+    "${7:+\"$7\"} -lgtest -lfmt -lcrypto -o \"$4/module\" && exec cat \"$4/module\" >&3";
 #undef TUMBLE_COMPILE
 
 // To WebAssembly, with every library inside: no import but those of modules/in_page.h and of WASI.
@@ -108,18 +110,24 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
   }
 }
 
-// The precompiled header of this build; without it compilation takes longer.
+// The precompiled header of this build, and the library that it needs; without them compilation
+// takes longer.
 // @param is_unwritable  what runs inside cannot change a file of this user
-void stage_precompiled(Stage& headers, const fs::path& build, bool is_unwritable) {
+// @return whether there is a library
+bool stage_precompiled(Stage& headers, const fs::path& build, bool is_unwritable) {
   const fs::path folder = build.empty() ? fs::path(TUMBLE_SUBMISSION_SDK)
                                         : build / fs::path(TUMBLE_SUBMISSION_SDK).filename();
-  headers.add_text(text_of(folder / kPrecompiled), kPrecompiled);
-  const std::string binary = std::string(kPrecompiled) + ".gch";
-  if (!fs::exists(folder / binary)) return;
+  const std::string binary = std::string(kPrecompiled) + ".gch",
+                    text = text_of(folder / kPrecompiled);
+  const bool is_made = fs::exists(folder / binary) && fs::exists(folder / kKernels);
+  headers.add_text(is_made ? text : "#define TUMBLE_NO_KERNELS\n" + text, kPrecompiled);
+  if (!is_made) return false;
+  headers.add_file(folder / kKernels, kKernels);
   if (is_unwritable)  // copying its 170 MB takes 0.1 s
     headers.link_file(folder / binary, binary);
   else
     headers.add_file(folder / binary, binary);
+  return true;
 }
 
 // One of bin/ of the build tree.
@@ -240,9 +248,9 @@ Compiled compile_submission(const CompileJob& job) {
   const bool is_native = job.form == CompileJob::Form::kModule,
              is_tests = job.form == CompileJob::Form::kTests;
   SandboxJob inside = sandbox_job(job.limits);
-  if (is_native || is_tests)
-    stage_precompiled(headers, job.build,
-                      inside.kind == SandboxKind::kNamespaces || user.uid().has_value());
+  const bool is_unwritable = inside.kind == SandboxKind::kNamespaces || user.uid().has_value();
+  const bool has_kernels =
+      (is_native || is_tests) && stage_precompiled(headers, job.build, is_unwritable);
   if (is_tests)
     headers.add_text("#undef TUMBLE_BUILDING_MODULE\n#include <gtest/gtest.h>\n", "own_tests.h");
   submission.add_text(*source, name);
@@ -272,7 +280,8 @@ Compiled compile_submission(const CompileJob& job) {
                     kSourceInside,
                     kTmpInside,
                     kWorkerInside,
-                    "tumble_functions_" + job.id};
+                    "tumble_functions_" + job.id,
+                    has_kernels ? std::string(kHeadersInside) + "/" + kKernels : ""};
   inside.uid = user.uid();
   inside.channel = ends[1];
   Sandbox sandbox = Sandbox::start(inside);

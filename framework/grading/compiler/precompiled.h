@@ -125,3 +125,55 @@ template struct Vectors<Eigen::Vector3d>;
 #undef TUMBLE_NORM
 
 }  // namespace tumble_precompiled
+
+// What multiplies, factors and solves dense matrices of any size: 2 s of a file that solves a
+// system. It is compiled once, from this file with `template` for TUMBLE_KERNEL, and a file that
+// uses some of it is linked with the result, libkernels.a. Inline functions are compiled with the
+// file as ever.
+#ifndef TUMBLE_NO_KERNELS
+#ifndef TUMBLE_KERNEL
+#define TUMBLE_KERNEL extern template
+#endif
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wignored-attributes"  // of a packet of two doubles
+namespace Eigen {
+
+TUMBLE_KERNEL class PartialPivLU<MatrixXd>;
+TUMBLE_KERNEL class LDLT<MatrixXd>;
+TUMBLE_KERNEL class LLT<MatrixXd>;
+
+namespace internal {
+
+using TumbleResult = blas_data_mapper<double, Index, ColMajor>;
+using TumbleColumns = const_blas_data_mapper<double, Index, ColMajor>;
+using TumbleRows = const_blas_data_mapper<double, Index, RowMajor>;
+
+// A B and A B^T
+TUMBLE_KERNEL struct gebp_kernel<double, double, Index, TumbleResult, 4, 4>;
+TUMBLE_KERNEL struct gemm_pack_lhs<double, Index, TumbleColumns, 4, 2, Packet2d, ColMajor>;
+TUMBLE_KERNEL struct gemm_pack_rhs<double, Index, TumbleColumns, 4, ColMajor>;
+TUMBLE_KERNEL struct gemm_pack_rhs<double, Index, TumbleRows, 4, RowMajor>;
+TUMBLE_KERNEL struct general_matrix_matrix_product<Index, double, ColMajor, false, double, ColMajor,
+                                                   false, ColMajor, 1>;
+TUMBLE_KERNEL struct general_matrix_matrix_product<Index, double, ColMajor, false, double, RowMajor,
+                                                   false, ColMajor, 1>;
+// A x and A^T x
+TUMBLE_KERNEL struct general_matrix_vector_product<Index, double, TumbleColumns, ColMajor, false,
+                                                   double, TumbleColumns, false>;
+TUMBLE_KERNEL struct general_matrix_vector_product<Index, double, TumbleColumns, ColMajor, false,
+                                                   double, TumbleRows, false>;
+TUMBLE_KERNEL struct general_matrix_vector_product<Index, double, TumbleRows, RowMajor, false,
+                                                   double, TumbleColumns, false>;
+// L x = b and U x = b
+TUMBLE_KERNEL struct triangular_solve_vector<double, double, Index, OnTheLeft, Upper, false,
+                                             ColMajor>;
+TUMBLE_KERNEL struct triangular_solve_vector<double, double, Index, OnTheLeft, Lower, false,
+                                             ColMajor>;
+TUMBLE_KERNEL struct triangular_solve_vector<double, double, Index, OnTheLeft, UnitLower, false,
+                                             ColMajor>;
+
+}  // namespace internal
+}  // namespace Eigen
+#pragma GCC diagnostic pop
+#undef TUMBLE_KERNEL
+#endif
