@@ -108,11 +108,11 @@ PositionCorrection::Missing PositionCorrection::add_corrections(
         keeps && std::any_of(active.begin(), active.end(),
                              [&](const ActiveContact& h) { return h.pair == pair; });
     bool is_short = false;
-    const ContactManifold points = geometry_.points_at(
-        pair, states,
-        std::max(
-            {kContact.far_at_start * geometry_.margin(pair), reach,
-             has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
+    const double far = std::max(
+        {kContact.far_at_start * geometry_.margin(pair), reach,
+         has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0});
+    missing.reach = std::min(missing.reach, far);
+    const ContactManifold points = geometry_.points_at(pair, states, far);
     std::vector<const collision::ManifoldPoint*> at_margin;
     for (const ActiveContact& h : active)
       if (keeps && h.pair == pair)
@@ -174,7 +174,9 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
     // what a correction this long may bring together has to be in it
     if (kContact.correction_reach * wrong > reach) {
       reach = 2 * kContact.correction_reach * wrong;
-      if (round == 0) continue;
+      // where all points within it are in it already, it counts as the next round's
+      if (round == 0 && missing.reach < reach) continue;
+      if (round == 0) ++round;
     }
     add_island_rows(moving_, island, states, t, places_, true, problem);
     double size = 0.0;

@@ -8,6 +8,7 @@
 /// that pair only must not overlap.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -53,6 +54,8 @@ class PositionCorrection {
   struct Missing {
     double farthest = 0.0;  // that a point too near, or held too far, has to move [m]; 0: none has
     double too_near = 0.0;  // the same of points too near alone
+    // as far apart as this, points of every pair have been looked at [m]
+    double reach = std::numeric_limits<double>::infinity();
     std::vector<Pair> below_margin;
   };
   struct KnownManifold {  // a pair's points as they were when it was last asked for them

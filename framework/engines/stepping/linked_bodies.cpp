@@ -219,7 +219,9 @@ void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, do
               const BodyPlaces& places, ContactProblem& problem) {
   const int fixed = static_cast<int>(problem.bodies.size());
   bool uses_fixed = false;
-  for (Constraint row : group.constraint_rows(states, t)) {
+  std::vector<Constraint> rows = group.constraint_rows(states, t);
+  problem.rows.reserve(problem.rows.size() + rows.size());
+  for (Constraint& row : rows) {
     for (int* const body : {&row.body_a, &row.body_b}) {
       uses_fixed = uses_fixed || *body >= group.fixed_end();
       *body = *body < group.fixed_end() ? places.at(group.bodies()[static_cast<std::size_t>(*body)])
