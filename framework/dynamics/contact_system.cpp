@@ -54,14 +54,6 @@ void fill_side(const System& system, int body, const Vector3d& arm, double sign,
     fill_row(system, body, arm, sign * block.contact_from_world.row(k).transpose(), g, k);
 }
 
-double diagonal_mean(const ContactBlock& block) {
-  double sum = 0;
-  const int n = block.is_frictional() ? 3 : 1;
-  if (block.body_a != kFixed) sum += block.g_a.topRows(n).squaredNorm();
-  if (block.body_b != kFixed) sum += block.g_b.topRows(n).squaredNorm();
-  return sum / n;
-}
-
 ContactBlock build_contact(const ContactProblem& problem, const PushingContact& contact,
                            System& system) {
   const PushedBody& a = problem.bodies[contact.body_a];
@@ -122,6 +114,14 @@ RowBlock build_row(const ContactProblem& problem, const Constraint& constraint, 
 }
 
 }  // namespace
+
+double diagonal_mean(const ContactBlock& block) {
+  double sum = 0;
+  const int n = block.is_frictional() ? 3 : 1;
+  if (block.body_a != kFixed) sum += block.g_a.topRows(n).squaredNorm();
+  if (block.body_b != kFixed) sum += block.g_b.topRows(n).squaredNorm();
+  return sum / n;
+}
 
 System build_system(const ContactProblem& problem) {
   System system;

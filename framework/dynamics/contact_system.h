@@ -60,6 +60,8 @@ struct Impulses {
 };
 
 System build_system(const ContactProblem& problem);
+/// The mean of W_ii's diagonal.
+double diagonal_mean(const ContactBlock& block);
 /// The warm start of the problem, made to obey |p_t| <= mu p_n.
 Impulses warm_start_of(const System& system, const ContactProblem& problem);
 /// y from the impulses, summed anew in a fixed order: what rounding has gathered in y goes.

@@ -1,4 +1,6 @@
-// How a contact problem is solved, cheapest first:
+// How a contact problem is solved. Bodies that hang on links and touch nothing are left out
+// (contact_links.h), and what they do follows at last; where that does not solve all rows as well
+// as is asked for, they are left in. The rest, cheapest first:
 //   1. the warm start: at rest with last step's impulses nothing is left to do;
 //   2. Newton's method on Coulomb's law, from the warm start: bodies at rest or sliding steadily.
 //      From zero it finds the most even distribution among redundant contacts;
@@ -19,6 +21,7 @@
 #include <limits>
 
 #include "framework/dynamics/contact_cone.h"
+#include "framework/dynamics/contact_links.h"
 #include "framework/dynamics/contact_newton.h"
 #include "framework/dynamics/contact_sweeps.h"
 #include "framework/dynamics/contact_system.h"
@@ -226,6 +229,30 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
     Turns(goal, enough, matrix, progress).run(options.most_sweeps);
 }
 
+/// Without the links that nothing touches. False: none could be left out, or what is left was not
+/// solved well enough; then `progress` is as it was but for its counts.
+bool solve_without_links(const Goal& goal, const ContactOptions& options, double enough,
+                         Progress& progress) {
+  const contacts::LinkElimination links(goal.system);
+  if (!links.is_of_use()) return false;
+  const Goal of_rest{links.rest(), goal.violation};
+  Progress rest, whole;
+  rest.impulses = links.of_rest(progress.impulses);
+  of_rest.measure(rest);
+  if (!rest.accepted) iterate(of_rest, options, enough, rest);
+  whole.impulses = links.of_whole(rest.impulses);
+  goal.measure(whole);
+  if (!whole.accepted) {
+    links.refine(whole.impulses);
+    goal.measure(whole);
+  }
+  progress.sweeps = whole.sweeps = rest.sweeps;
+  progress.factorisations = whole.factorisations = rest.factorisations;
+  if (!whole.accepted && !(whole.violation.largest <= enough)) return false;
+  progress = std::move(whole);
+  return true;
+}
+
 ContactSolution describe(const ContactProblem& problem, const System& system,
                          const Impulses& impulses) {
   ContactSolution solution;
@@ -257,8 +284,12 @@ ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptio
   const Goal goal{system, std::max(options.tolerance * speed, options.least_speed)};
   Progress progress;
   progress.impulses = contacts::warm_start_of(system, problem);
-  goal.measure(progress);
-  if (!progress.accepted) iterate(goal, options, options.enough * speed, progress);
+  const double enough = options.enough * speed;
+  const bool may_have_links = !system.rows.empty() && options.rows_are_links;
+  if (!may_have_links || !solve_without_links(goal, options, enough, progress)) {
+    goal.measure(progress);
+    if (!progress.accepted) iterate(goal, options, enough, progress);
+  }
   ContactSolution solution = describe(problem, system, progress.impulses);
   solution.residual = progress.violation.largest / speed;
   solution.converged = progress.accepted;

@@ -178,6 +178,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
       if (round == 0 && missing.reach < reach) continue;
       if (round == 0) ++round;
     }
+    const std::size_t of_contacts = problem.rows.size();
     add_island_rows(moving_, island, states, t, places_, true, problem);
     double size = 0.0;
     for (const int body : island.bodies)
@@ -205,6 +206,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
     ContactOptions options;  // the next round takes the rest
     options.tolerance = std::max(kSolverRounding, kContact.correction_missed * part);
     options.enough = std::max(kSolverRounding, kContactSolved * part);
+    options.rows_are_links = problem.rows.size() > of_contacts;
     const ContactSolution correction = solve_contacts(problem, options);
     memory_.sweeps += static_cast<std::uint64_t>(correction.sweeps);
     for (std::size_t k = 0; k < island.bodies.size(); ++k)
