@@ -80,8 +80,8 @@ struct ContactOptions {
   double enough = 0.0;
   // where the direct method is not called
   int most_sweeps_alone = 2000;
-  // rows are of rods and joints: bodies that hang on them and touch nothing are left out first
-  bool rows_are_links = true;
+  // bodies that hang on rows and touch nothing are left out, as far as this can be done
+  bool eliminates_links = true;
 };
 
 }  // namespace tumble

@@ -112,6 +112,7 @@ void solve_contacts_by_sweeps(double tolerance, Laws& laws) {
     options.tolerance = options.enough = tolerance;
     options.largest_direct = 0;
     options.most_sweeps_alone = kMostSweepsWithFriction;
+    options.eliminates_links = false;
     return solve_contacts(problem, options);
   };
   laws.contact_solver = "Gauss-Seidel sweeps";

@@ -285,7 +285,7 @@ ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptio
   Progress progress;
   progress.impulses = contacts::warm_start_of(system, problem);
   const double enough = options.enough * speed;
-  const bool may_have_links = !system.rows.empty() && options.rows_are_links;
+  const bool may_have_links = !system.rows.empty() && options.eliminates_links;
   if (!may_have_links || !solve_without_links(goal, options, enough, progress)) {
     goal.measure(progress);
     if (!progress.accepted) iterate(goal, options, enough, progress);

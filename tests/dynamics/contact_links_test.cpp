@@ -105,7 +105,7 @@ TEST(ContactsOfLinks, BlockOnAnArmObeysTheLawWithAllRows) {
 
 TEST(ContactsOfLinks, LinksLeftOutOrKeptMoveAlike) {
   ContactOptions with_rows;
-  with_rows.rows_are_links = false;
+  with_rows.eliminates_links = false;
   const ContactProblem problem = arm_with_a_block(8, 0.5);
   const ContactSolution without = solve_contacts(problem),
                         kept = solve_contacts(problem, with_rows);

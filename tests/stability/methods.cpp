@@ -76,6 +76,7 @@ Laws with_gauss_seidel(Laws laws, int sweeps) {
       problem.row_targets[static_cast<Eigen::Index>(i)] -= rows[i].row.velocity_product;
     ContactOptions options;
     options.largest_direct = 0;
+    options.eliminates_links = false;
     options.most_sweeps_alone = sweeps;
     return solve_contacts(problem, options).row_impulses;
   };

@@ -206,7 +206,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
     ContactOptions options;  // the next round takes the rest
     options.tolerance = std::max(kSolverRounding, kContact.correction_missed * part);
     options.enough = std::max(kSolverRounding, kContactSolved * part);
-    options.rows_are_links = problem.rows.size() > of_contacts;
+    options.eliminates_links = problem.rows.size() > of_contacts;  // not of active contacts alone
     const ContactSolution correction = solve_contacts(problem, options);
     memory_.sweeps += static_cast<std::uint64_t>(correction.sweeps);
     for (std::size_t k = 0; k < island.bodies.size(); ++k)
