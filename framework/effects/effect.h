@@ -16,6 +16,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
@@ -146,6 +147,26 @@ class GroupTerms {
   virtual void measure(const std::vector<Body>&, const VectorXd&, std::vector<double>&) {}
 };
 
+/// Potential energies as they are added up: all of them, and where that is asked for those of each
+/// body.
+class EnergySum {
+ public:
+  EnergySum() = default;
+  /// @param by_body  what each body has is added there [J]
+  explicit EnergySum(std::vector<double>& by_body) : by_body_(&by_body) {}
+
+  /// @param body  that has it; of an entry between two bodies either of those that can move
+  void add(int body, double energy) {
+    whole_ += energy;
+    if (by_body_ != nullptr) (*by_body_)[static_cast<std::size_t>(body)] += energy;
+  }
+  double whole() const { return whole_; }
+
+ private:
+  double whole_ = 0.0;
+  std::vector<double>* by_body_ = nullptr;
+};
+
 /// What an effect brought into a world. [J]
 struct Work {
   double done = 0.0;  // as far as it is known
@@ -154,8 +175,17 @@ struct Work {
 class WorkMeter {
  public:
   virtual ~WorkMeter() = default;
-  /// Since it was asked last. @param states  by body of the world that it was made for
-  virtual Work since_last(double time, const std::vector<RigidBodyState>& states) = 0;
+  /// Adds what it brought in since it was asked last. @param states  by body of the world that it
+  /// was made for  @param brought  by body: either of those that it acts on and that can move
+  virtual void add_work(double time, const std::vector<RigidBodyState>& states,
+                        std::vector<Work>& brought) = 0;
+};
+
+/// What an entry takes out of a world, beside what its work_meter says.
+enum class Takes : std::uint8_t {
+  kNothing,
+  kPower,    // Effect::power_taken says how much
+  kUnknown,  // nobody watches what its bodies lose
 };
 
 /// Takes evenly from the velocities of a body: m v' = -linear v, I w' = -angular w.
@@ -256,12 +286,20 @@ class Effect : public scene::Words {
   /// Adds the potential energy of its entries in these states. [J]
   /// @param states  by body; of immovable bodies the place alone is looked at
   virtual void add_potential_energy(const World&, const std::vector<RigidBodyState>&,
-                                    double&) const {}
+                                    EnergySum&) const {}
   /// Adds the size of the terms that this energy is a sum of, each as large as its parts make it:
   /// what rounding is relative to. [J]
   virtual void add_energy_terms(const World&, const std::vector<RigidBodyState>&, double&) const {}
   /// For an effect that brings energy in; nothing for one that keeps it or takes it out.
   virtual std::unique_ptr<WorkMeter> work_meter(const World&) const { return nullptr; }
+  /// Whether an entry takes energy out. Nothing is said of energy that is lost by bodies that an
+  /// entry of an unknown kind acts on.
+  virtual Takes takes(const World&, int /*entry*/) const { return Takes::kUnknown; }
+  /// At most, in these states. [W]
+  virtual double power_taken(const World&, const std::vector<RigidBodyState>&,
+                             int /*entry*/) const {
+    return 0.0;
+  }
 
   // What it asks of a step ------------------------------------------------------------------------
 

@@ -15,9 +15,28 @@ Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& 
     sums.angular_momentum_world +=
         state.angular_momentum_world + state.com_world.cross(state.momentum_world);
   }
+  effects::EnergySum potential;
   for (const effects::Effect* effect : effects::all())
-    effect->add_potential_energy(world, states, sums.potential_energy);
+    effect->add_potential_energy(world, states, potential);
+  sums.potential_energy = potential.whole();
   return sums;
+}
+
+EnergyByBody energy_by_body(const World& world, const std::vector<RigidBodyState>& states) {
+  EnergyByBody energy;
+  energy.at_work.assign(world.bodies.size(), 0.0);
+  energy.height = energy.at_work;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    if (world.bodies[i].immovable()) continue;
+    energy.at_work[i] = kinetic_energy(states[i], world.bodies[i].inertia);
+    energy.kinetic += energy.at_work[i];
+  }
+  for (const effects::Effect* effect : effects::all()) {
+    effects::EnergySum potential(effect->traits().stores_energy ? energy.at_work : energy.height);
+    effect->add_potential_energy(world, states, potential);
+    energy.potential += potential.whole();
+  }
+  return energy;
 }
 
 }  // namespace tumble

@@ -18,4 +18,13 @@ struct Invariants {
 /// there
 Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& states);
 
+/// The energy of each body of a world; 0 of what does not move.
+struct EnergyByBody {
+  double kinetic = 0.0, potential = 0.0;  // the sums [J]
+  // by body: what moves, and what effects have stored that give it back; what is left of the
+  // potential energy. What is stored between two bodies is either's. [J]
+  std::vector<double> at_work, height;
+};
+EnergyByBody energy_by_body(const World& world, const std::vector<RigidBodyState>& states);
+
 }  // namespace tumble

@@ -149,10 +149,10 @@ TEST(Water, ForceAndTorqueAreTheSlopeOfTheEnergy) {
     if (turned.norm() > 0)
       state.world_from_body = Quaterniond(Eigen::AngleAxisd(turned.norm(), turned.normalized())) *
                               state.world_from_body;
-    double sum = 0.0;
+    effects::EnergySum sum;
     for (const effects::Effect* effect : effects::all())
       if (effect->name() == "water") effect->add_potential_energy(world, {state}, sum);
-    return sum;
+    return sum.whole();
   };
   const RigidBodyState& state = world.bodies[0].state;
   // m, rad: a difference quotient over it is off by its square over the size

@@ -20,11 +20,13 @@
 #include "framework/engines/contact/impact_detection.h"
 #include "framework/engines/events/process_world.h"
 #include "framework/engines/judging/judge.h"
+#include "framework/engines/stepping/energy_watch.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/engines/scenes.h"
+#include "tests/engines/watched_runs.h"
 
 namespace tumble::testing {
 namespace {
@@ -32,36 +34,10 @@ namespace {
 using engines::RunWatch;
 
 const Vector3d kGravity(0, 0, -9.81);
-const std::vector<std::string> kEngines = {"rd", "ca", "ordered", "tw"};
 
 scene::Scene broken_scene(const std::string& name) {
   return scene::load_scene(std::filesystem::path(test::source_dir()) /
                            "tests/engines/broken_scenes" / (name + ".json"));
-}
-
-Trajectory run_by(const std::string& engine, scene::Scene scene,
-                  const Laws& laws = reference_laws()) {
-  if (scene.contact && engine != "rd") scene.contact->sleep = false;  // which it refuses
-  engines::RunOptions options;
-  options.engine = engine;
-  options.timewarp = engines::fast_timewarp();
-  TrajectoryRecorder recorder;
-  engines::run_scene(scene, laws, options, recorder);
-  return recorder.trajectory();
-}
-
-bool has_fault(const Trajectory& run, const std::string& kind) {
-  return std::any_of(run.counters.faults.begin(), run.counters.faults.end(),
-                     [&](const RunFault& fault) { return fault.kind == kind; });
-}
-
-std::string said(const Trajectory& run) {
-  std::string all = run.stopped_by;
-  for (const RunFault& fault : run.counters.faults)
-    all += fmt::format("\n{} of {}: {:.3g} first at {:.3g} s", fault.kind, fault.subject,
-                       fault.worst, fault.first_s);
-  for (const std::string& notice : run.counters.notices) all += "\nnote " + notice;
-  return all;
 }
 
 double energy(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
@@ -237,7 +213,7 @@ std::vector<RunFault> told_of(const scene::Scene& scene, double speed, double th
   EXPECT_FALSE(watch.look(1.0 / 60, world, states(0.0, speed), contacts));
   EXPECT_FALSE(watch.look(2.0 / 60, world, states(lift, then), contacts));
   engines::RunCounters counters;
-  watch.tell(world, counters);
+  watch.tell(world, reference_laws(), counters);
   return counters.watch.faults();
 }
 

@@ -82,6 +82,15 @@ class DragEffect final : public ListedEffect<DragSpec, Drag> {
                                           GroupPlaces& places) const override {
     return std::make_unique<DragTerms>(acting, entries, places);
   }
+  Takes takes(const World&, int) const override { return Takes::kPower; }
+  double power_taken(const World& world, const std::vector<RigidBodyState>& states,
+                     int entry) const override {
+    const Drag& drag = held(world)[static_cast<std::size_t>(entry)];
+    const Inertia& inertia = world.bodies[static_cast<std::size_t>(drag.body)].inertia;
+    const RigidBodyState& state = states[static_cast<std::size_t>(drag.body)];
+    return drag.linear * (inertia.inverse_mass * state.momentum_world).squaredNorm() +
+           drag.angular * omega_of(state, inertia).squaredNorm();
+  }
   void append_drains(const World& world, std::vector<Drain>& drains) const override {
     for (const Drag& drag : held(world))
       drains.push_back({drag.body, drag.linear, drag.angular,

@@ -73,12 +73,14 @@ class GravityEffect final : public Effect {
   }
 
   void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states,
-                            double& sum) const override {
+                            EnergySum& sum) const override {
     if (!world.gravity_world) return;
     for (std::size_t i = 0; i < world.bodies.size(); ++i)
       if (!world.bodies[i].immovable())
-        sum -= world.bodies[i].inertia.mass * world.gravity_world->dot(states[i].com_world);
+        sum.add(static_cast<int>(i),
+                -(world.bodies[i].inertia.mass * world.gravity_world->dot(states[i].com_world)));
   }
+  Takes takes(const World&, int) const override { return Takes::kNothing; }
   void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states,
                         double& sum) const override {
     if (!world.gravity_world) return;

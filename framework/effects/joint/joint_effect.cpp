@@ -222,6 +222,7 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
                                           GroupPlaces& places) const override {
     return std::make_unique<JointTerms>(acting, entries, places);
   }
+  Takes takes(const World&, int) const override { return Takes::kNothing; }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
     std::vector<NeededLaw> needed;
     append_laws_of_rows(scene, laws, needed);

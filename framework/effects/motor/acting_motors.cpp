@@ -110,7 +110,8 @@ bool MotorTerms::differs_from(const Memory& before) const {
   return change > kSameTorque * largest + kSameAngle * stiffest;
 }
 
-Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& states) {
+void MotorMeter::add_work(double time, const std::vector<RigidBodyState>& states,
+                          std::vector<Work>& brought) {
   const std::vector<Motor>& motors = world_.effects.of<Motor>();
   // What of a body its hinge's motion asks for: how it stands and turns.
   const auto body = [&](int index) {
@@ -123,7 +124,6 @@ Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& stat
     if (!held.immovable()) found.omega_world = omega_of(state, held.inertia);
     return found;
   };
-  Work work;
   motors_.resize(motors.size());  // entries may have been appended
   const double passed = time - std::exchange(last_look_, time);
   for (std::size_t k = 0; k < motors.size(); ++k) {
@@ -131,6 +131,9 @@ Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& stat
     const JointLink& link = motors[k].hinge;
     const HingeMotion hinge = hinge_motion(link, body(link.a.body), body(link.b.body));
     if (!std::isnan(motor.angle)) {
+      const bool turns_a =
+          link.a.body >= 0 && !world_.bodies[static_cast<std::size_t>(link.a.body)].immovable();
+      Work& work = brought[static_cast<std::size_t>(turns_a ? link.a.body : link.b.body)];
       // whole turns by the mean rate
       const double about = 0.5 * (motor.rate + hinge.rate) * passed;
       const double turned = about + std::remainder(hinge.angle - motor.angle - about, kTurn);
@@ -142,7 +145,6 @@ Work MotorMeter::since_last(double time, const std::vector<RigidBodyState>& stat
     motor.rate = hinge.rate;
     if (time >= motor.held.next_look) set_anew(motors[k].law, time, hinge, motor.held);
   }
-  return work;
 }
 
 }  // namespace tumble::effects

@@ -61,7 +61,8 @@ class MotorTerms final : public GroupTerms, public Control {
 class MotorMeter final : public WorkMeter {
  public:
   explicit MotorMeter(const World& world) : world_(world) {}
-  Work since_last(double time, const std::vector<RigidBodyState>& states) override;
+  void add_work(double time, const std::vector<RigidBodyState>& states,
+                std::vector<Work>& brought) override;
 
  private:
   struct Metered {

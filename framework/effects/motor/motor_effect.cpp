@@ -72,6 +72,7 @@ class MotorEffect final : public ListedEffect<MotorSpec, Motor> {
   std::unique_ptr<WorkMeter> work_meter(const World& world) const override {
     return count_in(world) > 0 ? std::make_unique<MotorMeter>(world) : nullptr;
   }
+  Takes takes(const World&, int) const override { return Takes::kNothing; }
 
  private:
   static void check_motor(const MotorSpec& motor, const scene::Scene& scene,

@@ -125,8 +125,8 @@ Memory ActingPointForces::memory() const {
   return memory;
 }
 
-Work PointForceMeter::since_last(double time, const std::vector<RigidBodyState>& states) {
-  Work work;
+void PointForceMeter::add_work(double time, const std::vector<RigidBodyState>& states,
+                               std::vector<Work>& brought) {
   points_body_.resize(forces_.size(), unset_vector());  // entries may have been appended
   points_world_.resize(forces_.size(), unset_vector());
   for (std::size_t k = 0; k < forces_.size(); ++k) {
@@ -137,10 +137,10 @@ Work PointForceMeter::since_last(double time, const std::vector<RigidBodyState>&
       points_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
     const Vector3d now = state.com_world + state.world_from_body * points_body_[k];
     if (!std::isnan(points_world_[k].x()) && time <= force.end)
-      work.done += force.force_world.dot(now - points_world_[k]);
+      brought[static_cast<std::size_t>(force.body)].done +=
+          force.force_world.dot(now - points_world_[k]);
     points_world_[k] = now;
   }
-  return work;
 }
 
 }  // namespace tumble::effects

@@ -50,7 +50,8 @@ class PointForceMeter final : public WorkMeter {
       : forces_(world.effects.of<PointForce>()),
         points_body_(forces_.size(), unset_vector()),
         points_world_(points_body_) {}
-  Work since_last(double time, const std::vector<RigidBodyState>& states) override;
+  void add_work(double time, const std::vector<RigidBodyState>& states,
+                std::vector<Work>& brought) override;
 
  private:
   const std::vector<PointForce>& forces_;

@@ -95,6 +95,7 @@ class PointForceEffect final : public ListedEffect<PointForceSpec, PointForce> {
   std::unique_ptr<WorkMeter> work_meter(const World& world) const override {
     return count_in(world) > 0 ? std::make_unique<PointForceMeter>(world) : nullptr;
   }
+  Takes takes(const World&, int) const override { return Takes::kNothing; }
 
   void draw(const scene::Scene& scene, Drawables& drawables) const override {
     for (const PointForceSpec& spec : specs(scene))

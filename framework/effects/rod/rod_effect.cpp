@@ -130,6 +130,7 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
                                           GroupPlaces& places) const override {
     return std::make_unique<RodTerms>(acting, entries, places);
   }
+  Takes takes(const World&, int) const override { return Takes::kNothing; }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
     std::vector<NeededLaw> needed{needed_law<RodRow>(laws)};
     append_laws_of_rows(scene, laws, needed);

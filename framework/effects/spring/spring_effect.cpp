@@ -120,12 +120,28 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
 
   // E = k/2 (L - L0)^2
   void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states,
-                            double& sum) const override {
+                            EnergySum& sum) const override {
     for (const SpringLink& link : held(world)) {
       const double stretch = (anchor_point(link.b, states) - anchor_point(link.a, states)).norm() -
                              link.spring.rest_length;
-      sum += 0.5 * link.spring.stiffness * stretch * stretch;
+      const bool is_of_a =
+          link.a.body >= 0 && !world.bodies[static_cast<std::size_t>(link.a.body)].immovable();
+      sum.add(is_of_a ? link.a.body : link.b.body, 0.5 * link.spring.stiffness * stretch * stretch);
     }
+  }
+  Takes takes(const World& world, int entry) const override {
+    return held(world)[static_cast<std::size_t>(entry)].spring.damping == 0.0 ? Takes::kNothing
+                                                                              : Takes::kPower;
+  }
+  // P = c L'^2
+  double power_taken(const World& world, const std::vector<RigidBodyState>& states,
+                     int entry) const override {
+    const SpringLink& link = held(world)[static_cast<std::size_t>(entry)];
+    const AnchorState a = anchor_state(link.a, world, states, 0.0),
+                      b = anchor_state(link.b, world, states, 0.0);
+    const Vector3d way = b.point_world - a.point_world, rate = b.velocity_world - a.velocity_world;
+    const double along = way.isZero(0.0) ? rate.norm() : rate.dot(way.normalized());
+    return link.spring.damping * along * along;
   }
   // Its length is rounded as places are, so that its stretch is off by that.
   void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states,

@@ -96,17 +96,21 @@ class StreamMeter final : public WorkMeter {
  public:
   explicit StreamMeter(const World& world) {
     for (const Floating& floating : world.effects.of<Floating>())
-      most_ += 0.25 * floating.water.density_kg_m3 * floating.water.drag_1_s *
-               floating.solid.whole().volume * floating.water.stream_m_s.squaredNorm();
+      most_.emplace_back(floating.body, 0.25 * floating.water.density_kg_m3 *
+                                            floating.water.drag_1_s *
+                                            floating.solid.whole().volume *
+                                            floating.water.stream_m_s.squaredNorm());
   }
-  Work since_last(double time, const std::vector<RigidBodyState>&) override {
+  void add_work(double time, const std::vector<RigidBodyState>&,
+                std::vector<Work>& brought) override {
     const double passed = time - std::exchange(last_look_, time);
-    return {0.0, most_ * passed};
+    for (const auto& [body, power] : most_)
+      brought[static_cast<std::size_t>(body)].most += power * passed;
   }
 
  private:
-  double most_ = 0.0;       // [W]
-  double last_look_ = 0.0;  // [s]
+  std::vector<std::pair<int, double>> most_;  // bodies, and at most for each [W]
+  double last_look_ = 0.0;                    // [s]
 };
 
 class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
@@ -176,9 +180,9 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
   }
 
   void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states,
-                            double& sum) const override {
+                            EnergySum& sum) const override {
     for (const Floating& floating : held(world))
-      sum += energy_of(floating, states[static_cast<std::size_t>(floating.body)]);
+      sum.add(floating.body, energy_of(floating, states[static_cast<std::size_t>(floating.body)]));
   }
   void add_energy_terms(const World& world, const std::vector<RigidBodyState>& states,
                         double& sum) const override {
@@ -195,6 +199,26 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
         held(world).begin(), held(world).end(),
         [](const Floating& floating) { return !floating.water.stream_m_s.isZero(0.0); });
     return streams ? std::make_unique<StreamMeter>(world) : nullptr;
+  }
+  Takes takes(const World& world, int entry) const override {
+    return held(world)[static_cast<std::size_t>(entry)].water.drag_1_s == 0.0 ? Takes::kNothing
+                                                                              : Takes::kPower;
+  }
+  // P = rho k integral over what is under of (v_p - u) . v_p; a stream may bring more in.
+  double power_taken(const World& world, const std::vector<RigidBodyState>& states,
+                     int entry) const override {
+    const Floating& floating = held(world)[static_cast<std::size_t>(entry)];
+    const Inertia& inertia = world.bodies[static_cast<std::size_t>(floating.body)].inertia;
+    const RigidBodyState& state = states[static_cast<std::size_t>(floating.body)];
+    const Immersion now = immersion_of(floating, state.com_world, state.world_from_body);
+    const auto& [volume, first, second] = now.under;
+    const Vector3d velocity_world = inertia.inverse_mass * state.momentum_world,
+                   velocity = now.R.transpose() * velocity_world,
+                   past = now.R.transpose() * (velocity_world - floating.water.stream_m_s),
+                   omega = now.R.transpose() * omega_of(state, inertia);
+    const double per_drag = velocity.dot(volume * past + omega.cross(first)) +
+                            omega.dot(first.cross(past) + turning(second, omega));
+    return std::max(0.0, floating.water.density_kg_m3 * floating.water.drag_1_s * per_drag);
   }
 
   void append_drains(const World& world, std::vector<Drain>& drains) const override {

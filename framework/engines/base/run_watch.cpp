@@ -35,6 +35,10 @@ const Words& words_of(RunWatch::Kind kind) {
        "beside what forces and motors bring in, nothing does: what rises is made by the step, over "
        "all that the scene has to give",
        "another method (a2's rk4_step)"},
+      {"energy_lost",
+       "nothing takes energy from these bodies but what has been counted: the rest is lost by the "
+       "step",
+       ""},
       {"turn_unresolved",
        "beyond half a turn a step cannot be told from a turn the other way round: orientations, "
        "and what hangs on them, are not to be trusted",
@@ -53,7 +57,7 @@ double likely_part(RunWatch::Kind kind, double times_what_is_allowed, double ord
   constexpr double kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
   // a radian a step
   if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);
-  if (kind != RunWatch::Kind::kEnergyRises) return kMost;
+  if (kind != RunWatch::Kind::kEnergyRises && kind != RunWatch::Kind::kEnergyLost) return kMost;
   return std::min(kMost, std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / order)));
 }
 
@@ -121,11 +125,14 @@ void RunWatch::name_step(double step) { named_step_ = step; }
 std::vector<RunFault> RunWatch::faults() const {
   std::vector<RunFault> faults;
   double step = std::numeric_limits<double>::infinity();
-  for (const auto& [kind, incident] : incidents_)
-    if (incident.worst.step > 0)
-      step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed,
-                                        incident.worst.order) *
-                                incident.worst.step);
+  for (const auto& [kind, incident] : incidents_) {
+    const Size& worst = incident.worst;
+    if (!std::isnan(worst.mending_step))
+      step = std::min(step, worst.mending_step);
+    else if (worst.step > 0)
+      step =
+          std::min(step, likely_part(kind, worst.found / worst.allowed, worst.order) * worst.step);
+  }
   // A criterion of stability that the step breaks explains all that follows, and its step is
   // computed, not a guess from a size.
   if (std::isfinite(named_step_)) step = named_step_;
@@ -144,9 +151,16 @@ std::vector<RunFault> RunWatch::faults() const {
     fault.worst_s = incident.worst.time;
     fault.count = incident.count;
     fault.meaning = words.meaning;
-    fault.remedy = std::isfinite(step) ? fmt::format("a step of at most {} s (\"step_s\"), or {}",
-                                                     said, words.remedy)
-                                       : words.remedy;
+    if (!std::isnan(incident.worst.whole))
+      fault.meaning +=
+          fmt::format(": {:.3g} J of the {:.3g} J that moved, were stored or came down",
+                      incident.worst.found * incident.worst.whole, incident.worst.whole);
+    const std::string remedy = incident.worst.remedy.empty() ? words.remedy : incident.worst.remedy;
+    fault.remedy = remedy;
+    if (std::isfinite(step))
+      fault.remedy =
+          fmt::format("{}a step of at most {} s (\"step_s\"){}{}", incident.worst.first_remedy,
+                      said, remedy.empty() ? "" : ", or ", remedy);
     // there no method is of a higher order than the impulses of a step
     if (kind == Kind::kEnergyRises && incident.worst.order < kOrderOfMethods)
       fault.remedy +=

@@ -87,6 +87,11 @@ class PersistentContacts {
   bool empty() const { return points_.empty(); }
   /// Whether the last advance() has kept the two apart, so that no impact is looked for.
   bool keeps(Pair pair) const { return points_.contains(pair); }
+  /// All such pairs. @param see  (Pair)
+  template <class See>
+  void for_each_kept(const See& see) const {
+    for (const auto& [pair, points] : points_) see(pair);
+  }
 
   /// Whether an impact between the two is dealt with in the step it falls into, not at its instant.
   bool deals_in_step(Pair pair) const { return plastic(pair); }

@@ -38,7 +38,10 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
     counters.watch.name_step(*step);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
   switches_ = force_switches(world_.world(), duration_);
-  for (const Event& event : world_.start_events()) sink_.event(event);
+  for (const Event& event : world_.start_events()) {
+    sink_.event(event);
+    energy_watch_.note(event);
+  }
 }
 
 Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, const Flight& g,
@@ -263,11 +266,20 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
   if (on_membership_) report_membership(frame.time, flight_of);
   frame_times_.take();
   if (!callbacks_.empty()) return;  // callbacks may add energy
+  note_islands_in_contact(flight_of);
   const auto runaway = energy_watch_.look(frame.time, world_.world(), states_, frame.contacts);
+  note_islands_in_contact(flight_of);  // until the next frame
   if (!runaway) return;
   throw StoppedRun(
       runaway_message(frame.time, world_.world(), *runaway,
                       {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
+}
+
+// Contacts that come and go between two frames of an island are seen by none.
+void FlightRun::note_islands_in_contact(const FlightOf& flight_of) {
+  if (!world_.processes() || !world_.processes()->holds_contacts()) return;
+  for (int body = 0; body < world_.size(); ++body)
+    if (flight_of(body).segment >= 0) energy_watch_.note_touch(body, -1);
 }
 
 void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {
@@ -300,7 +312,7 @@ void FlightRun::end(const std::string& stopped_by) {
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;
-  energy_watch_.tell(world_.world(), counters);
+  energy_watch_.tell(world_.world(), laws_, counters);
   sink_.end(counters.named(), stopped_by);
 }
 

@@ -13,7 +13,7 @@
 #include "framework/engines/base/run_options.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/base/tolerances.h"
-#include "framework/engines/stepping/stability.h"
+#include "framework/engines/stepping/energy_watch.h"
 
 namespace tumble::engines {
 
@@ -124,6 +124,7 @@ class FlightRun {
   std::unique_ptr<LinkMeasures> links_;
   std::vector<RigidBodyState> states_;  // of the frame that was committed last
   void report_membership(double t, const FlightOf& flight_of) const;
+  void note_islands_in_contact(const FlightOf& flight_of);
 
   std::function<void(const Membership&)> on_membership_;
   std::vector<Callback> callbacks_;

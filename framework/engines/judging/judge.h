@@ -51,6 +51,9 @@
 ///                       smaller body [-]
 ///   energy_rises        rise of E above its least value so far, without the work of point forces
 ///                       and motors, relative to the available energy [-]
+///   energy_lost         what bodies that springs, rods and joints link have lost beside what drag,
+///                       dampers, water, forces and motors take, away from impacts and persistent
+///                       contacts, relative to the most that moved, was stored or came down [-]
 ///
 /// In addition, for every scene: `impact_energy`, the change of kinetic energy in an impact
 /// relative to what restitution and friction give (`Event::energy_excess`), over the kinetic energy

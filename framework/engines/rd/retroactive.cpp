@@ -15,6 +15,7 @@
 #include "framework/engines/contact/sleeping.h"
 #include "framework/engines/contact/world_step.h"
 #include "framework/engines/rd/recorder.h"
+#include "framework/engines/stepping/energy_watch.h"
 #include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
@@ -187,6 +188,9 @@ void RetroactiveRun::advance_to(double target) {
     const double before = moving_.time();
     const WorldStep::Taken step = world_step_.take(target, *this);
     if (step.how != WorldStep::Taken::How::kCommitted) continue;
+    if (world_step_.has_contacts())
+      world_step_.contacts().for_each_kept(
+          [&](const auto& pair) { energy_watch_.note_touch(pair.first, pair.second); });
     if (has_sleepers()) note_touching(step.near);
     if (!built::kCollision || !step.impact) continue;
     // The step was committed no farther than the impact: free bodies by a shorter step of their
@@ -225,7 +229,7 @@ void RetroactiveRun::run() {
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
   }
-  energy_watch_.tell(moving_.world(), counters_);
+  energy_watch_.tell(moving_.world(), laws_, counters_);
   sink_.end(counters_.named(), stopped_by_);
 }
 
@@ -252,6 +256,10 @@ void RetroactiveRun::run_to_the_end() {
   run_callbacks();
   const auto watch_energy = [&] {
     if (!callbacks_.empty()) return;  // they bring energy in
+    // what rests without contacts stays where its support goes
+    if (!world_step_.has_contacts())
+      for (int body = 0; body < moving_.size(); ++body)
+        if (moving_.resting(body)) energy_watch_.note_touch(body, -1);
     if (const auto runaway =
             energy_watch_.look(moving_.time(), moving_.world(), moving_.states(), contacts()))
       stop_for(*runaway);

@@ -1,0 +1,174 @@
+#include "framework/engines/stepping/energy_loss.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/disjoint_sets.h"
+#include "framework/effects/registry.h"
+#include "framework/engines/base/run_watch.h"
+#include "framework/engines/base/tolerances.h"
+
+namespace tumble::engines {
+namespace {
+
+/// At most what is taken in a step at whose ends it is taken at these rates. Of a swing that turns
+/// by a radian a step the mean of v^2 is up to 1.2 times that at both ends; of a fall or a decay it
+/// lies between the two.
+double taken_at_most(double passed, double power_before, double power) {
+  constexpr double kMean = 1.25;
+  return passed * (kMean * std::max(power_before, power) + std::abs(power - power_before));
+}
+
+}  // namespace
+
+void EnergyLoss::note(const Event& event) {
+  if (event.kind == EventKind::kForceOn || event.kind == EventKind::kForceOff) return;
+  note_touch(event.body_a, event.body_b);
+  // it stays where its support goes
+  if (event.kind == EventKind::kRest) resting_.insert(resting_.end(), {event.body_a, event.body_b});
+}
+
+EnergyLoss::Part* EnergyLoss::part_with(int body) {
+  const int part = body < 0 ? -1 : part_of_[static_cast<std::size_t>(body)];
+  return part < 0 ? nullptr : &parts_[static_cast<std::size_t>(part)];
+}
+
+void EnergyLoss::begin(const World& world) {
+  is_begun_ = true;
+  left_out_ = 0;
+  const auto moves = [&](int body) {
+    return body >= 0 && !world.bodies[static_cast<std::size_t>(body)].immovable();
+  };
+  const auto drives = [&](int body) {
+    return body >= 0 && !moves(body) &&
+           is_driven(world.bodies[static_cast<std::size_t>(body)].motion);
+  };
+  for (Part& part : parts_)
+    if (!part.losses.empty()) former_.push_back(std::move(part));
+  parts_.clear();
+  takers_.clear();
+
+  DisjointSets linked(static_cast<int>(world.bodies.size()));
+  struct Entry {
+    const effects::Effect* effect;
+    int entry, body;
+    bool is_unknown;
+  };
+  std::vector<Entry> entries;
+  for (const effects::Effect* effect : effects::all()) {
+    const int count = effect->count_in(world);
+    if (count == 0) continue;
+    const bool needs_steps = !sees_switches_ && effect->work_meter(world) != nullptr;
+    for (int k = 0; k < count; ++k) {
+      int first = -1;
+      bool is_unknown = needs_steps || effect->takes(world, k) == effects::Takes::kUnknown ||
+                        (!sees_switches_ && effect->takes(world, k) == effects::Takes::kPower);
+      for (const int body : effect->bodies_of(world, k)) {
+        is_unknown = is_unknown || drives(body);
+        if (!moves(body)) continue;
+        if (first >= 0) linked.unite(first, body);
+        first = first < 0 ? body : first;
+      }
+      if (first >= 0) entries.push_back({effect, k, first, is_unknown});
+    }
+  }
+  part_of_.assign(world.bodies.size(), -1);
+  for (int body = 0; body < static_cast<int>(world.bodies.size()); ++body) {
+    if (!moves(body)) continue;
+    const auto leader = static_cast<std::size_t>(linked.find(body));
+    if (part_of_[leader] < 0) {
+      part_of_[leader] = static_cast<int>(parts_.size());
+      parts_.emplace_back();
+    }
+    part_of_[static_cast<std::size_t>(body)] = part_of_[leader];
+    parts_[static_cast<std::size_t>(part_of_[leader])].bodies.push_back(body);
+  }
+  for (const Entry& entry : entries) {
+    const int part = part_of_[static_cast<std::size_t>(entry.body)];
+    if (entry.is_unknown)
+      parts_[static_cast<std::size_t>(part)].is_watched = false;
+    else if (entry.effect->takes(world, entry.entry) == effects::Takes::kPower)
+      takers_.push_back({entry.effect, entry.entry, part});
+  }
+}
+
+bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBodyState>& states,
+                      const EnergyByBody& energy, const std::vector<effects::Work>& brought) {
+  if (!is_begun_) begin(world);
+  bool is_more = false;
+  const double passed = time - last_look_;
+  last_look_ = time;
+  for (; left_out_ < resting_.size(); ++left_out_)
+    if (Part* part = part_with(resting_[left_out_])) part->is_watched = false;
+  for (const int body : touched_)
+    if (Part* part = part_with(body)) part->is_touched = true;
+  touched_.clear();
+  std::vector<double> powers(takers_.empty() ? 0 : parts_.size(), 0.0);
+  for (const Taker& taker : takers_)
+    powers[static_cast<std::size_t>(taker.part)] +=
+        taker.effect->power_taken(world, states, taker.entry);
+
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    Part& part = parts_[k];
+    if (!part.is_watched) continue;
+    double at_work = 0.0, height = 0.0;
+    effects::Work work;
+    for (const int body : part.bodies) {
+      const auto i = static_cast<std::size_t>(body);
+      at_work += energy.at_work[i];
+      height += energy.height[i];
+      if (brought.empty()) continue;
+      work.done += brought[i].done;
+      work.most += brought[i].most;
+    }
+    const double all = at_work + height;
+    const double power = powers.empty() ? 0.0 : powers[k];
+    const double before = std::exchange(part.energy, all),
+                 power_before = std::exchange(part.power, power);
+    part.highest_place = std::max(part.highest_place, height);
+    part.whole = std::max({part.whole, at_work, part.highest_place - height});
+    const bool is_touched = std::exchange(part.is_touched, false);
+    if (std::isnan(before)) {  // the first look
+      part.highest = part.least = all;
+      continue;
+    }
+    if (is_touched) {
+      part.offset -= all - before;
+      part.offset_of_rises -= all - before;
+      continue;
+    }
+    const double ledger_before = before + part.offset;
+    part.offset -= work.done - work.most;
+    part.offset_of_rises -= work.done + work.most;
+    if (power_before > 0.0 || power > 0.0)
+      part.offset += taken_at_most(passed, power_before, power);
+    part.least = std::min(part.least, all + part.offset_of_rises);
+    part.rise = std::max(part.rise, all + part.offset_of_rises - part.least);
+    part.highest = std::max(part.highest, all + part.offset);
+    part.largest_fall = std::max(part.largest_fall, ledger_before - (all + part.offset));
+    const double lost = part.highest - (all + part.offset);
+    if (!(lost > kEnergyLost * part.whole) ||
+        (!part.losses.empty() && !(lost > kSeen * part.losses.back().size)))
+      continue;
+    part.losses.push_back({time, lost, part.largest_fall > 0.5 * lost});
+    is_more = true;
+  }
+  return is_more;
+}
+
+std::vector<LostEnergy> EnergyLoss::losses(double rounding) const {
+  std::vector<LostEnergy> found;
+  for (const std::vector<Part>* parts : {&former_, &parts_})
+    for (const Part& part : *parts) {
+      for (const Loss& loss : part.losses) {
+        // energy that swings, as that of symplectic methods does, is told of where it rises
+        if (part.rise > kEnergyRises * part.whole && !(loss.size > 2.0 * part.rise)) continue;
+        if (loss.size > kEnergyLost * part.whole + rounding)
+          found.push_back(
+              {part.bodies, loss.size, part.whole, loss.time, last_look_, loss.is_sudden});
+      }
+    }
+  return found;
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,94 @@
+/// Energy that is lost where nothing takes any.
+///
+/// The bodies of a world are parted into those that springs, rods, joints, drag and motors link;
+/// between impacts and contacts none of these parts gives another anything. For each a ledger is
+/// kept,
+///   A = T + V - W + D                                                                    (1)
+/// with W what effects have brought in, at least (effects::WorkMeter), and D what drag, dampers and
+/// water have taken, at most (Effect::power_taken). Nothing makes A smaller than it was but the
+/// method: damping of the step, projections, links of which two hold the same.
+///
+/// What a part is given or loses where it is hit, or in persistent contact, is counted neither way:
+/// A stands still from the look before to the one after. Impacts are judged by themselves
+/// (`impact_energy`, judging/judge.h).
+/// Not watched: what is linked with driven bodies, what an effect acts on that says of no entry
+/// what it takes (effects::Takes::kUnknown), balls at rest without contacts; and where looks are
+/// taken at frames (event engines), what is dragged, damped or driven, and islands of scenes with
+/// persistent contacts.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "framework/dynamics/world.h"
+#include "framework/effects/effect.h"
+#include "framework/effects/invariants.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// What one part of a world has lost.
+struct LostEnergy {
+  std::vector<int> bodies;  // of the part
+  double lost, whole;       // how much, of what moved, was stored or came down there at most [J]
+  double time, watched;     // when, and until when it was looked at [s]
+  bool is_sudden;           // half of it or more between two looks
+};
+
+class EnergyLoss {
+ public:
+  /// @param sees_switches  as EnergyWatch is asked
+  explicit EnergyLoss(bool sees_switches) : sees_switches_(sees_switches) {}
+
+  /// Bodies that are hit, or touch, since the last look.
+  void note(const Event& event);
+  void note_touch(int a, int b) {
+    touched_.push_back(a);
+    touched_.push_back(b);
+  }
+  /// @param brought  by effects since the last look, by body; empty: nothing
+  /// @return whether more is lost than before that may have to be told
+  bool look(double time, const World& world, const std::vector<RigidBodyState>& states,
+            const EnergyByBody& energy, const std::vector<effects::Work>& brought);
+  /// The world has other entries from now on.
+  void begin_again() { is_begun_ = false; }
+
+  /// What is more than this part of the whole and of what a rounding leaves, in the order of parts
+  /// and of time.
+  /// @param rounding  of the world's energy [J]
+  std::vector<LostEnergy> losses(double rounding) const;
+
+ private:
+  struct Loss {
+    double time, size;  // [s], [J]
+    bool is_sudden;
+  };
+  struct Part {
+    std::vector<int> bodies;
+    bool is_watched = true, is_touched = false;
+    // [J]: E = T + V now; of A and of A with W at most and without D, what they are above E, and
+    // how far they have been
+    double energy = kUnset, offset = 0.0, highest = 0.0, offset_of_rises = 0.0, least = 0.0;
+    double highest_place = -kInfinity, whole = 0.0, rise = 0.0, largest_fall = 0.0;
+    double power = kUnset;     // that is taken, at the last look [W]
+    std::vector<Loss> losses;  // each larger than the one before
+  };
+  struct Taker {
+    const effects::Effect* effect;
+    int entry, part;
+  };
+  void begin(const World& world);
+  Part* part_with(int body);  // nullptr: it does not move
+
+  bool sees_switches_, is_begun_ = false;
+  double last_look_ = kUnset;  // [s]
+  std::vector<int> part_of_;   // by body; -1: immovable
+  std::vector<Part> parts_, former_;
+  std::vector<Taker> takers_;
+  std::vector<int> touched_;  // bodies, since the last look
+  std::vector<int> resting_;  // the same, since the beginning; how many of them are left out
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace tumble::engines
