@@ -379,14 +379,15 @@ void MovingWorld::lead(LinkedBodies& group) {
     if (const auto pressed = pressing_.find(body); pressed != pressing_.end()) {
       const auto& [force_world, torque_world] = pressed->second;
       const Inertia& inertia = world_.bodies[body].inertia;
+      // what the method makes of a constant acceleration
+      const double bent = 0.5 * path_bend_ * h * h;
       RigidBodyState& end = ends[i];
       end.momentum_world -= h * force_world;
-      end.com_world -= (0.5 * h * h * inertia.inverse_mass) * force_world;
+      end.com_world -= (bent * inertia.inverse_mass) * force_world;
       end.angular_momentum_world -= h * torque_world;
       RigidBodyState turning = end;
       turning.angular_momentum_world = torque_world;
-      end.world_from_body =
-          turned(end.world_from_body, (-0.5 * h * h) * omega_of(turning, inertia));
+      end.world_from_body = turned(end.world_from_body, -bent * omega_of(turning, inertia));
     }
     set_path(body, states_[body], ends[i]);
     refuse_fast_turning(body);
