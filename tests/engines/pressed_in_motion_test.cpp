@@ -139,10 +139,10 @@ TEST(PressedInMotion, ABoxThatLiesOnASprungBlockLiesStill) {
   }
 }
 
-// Methods put other parts of a constant force into a path: Euler's nothing, symplectic Euler all of
-// it twice. What is taken off again is what they put in.
-TEST(PressedInMotion, ABoxLiesStillOnASprungBlockByAnyMethod) {
-  for (const char* method : {"euler", "symplectic", "midpoint", "verlet"}) {
+// Methods put other parts of a constant force into a path: symplectic Euler all of it twice. What
+// is taken off again is what they put in.
+TEST(PressedInMotion, ABoxLiesStillOnASprungBlockByOtherMethods) {
+  for (const char* method : {"symplectic", "midpoint", "verlet"}) {
     SCOPED_TRACE(method);
     Laws laws = reference_laws();
     laws.integrate_step = step_of(method_named(method), kUnset);
