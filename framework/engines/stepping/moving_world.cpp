@@ -399,12 +399,16 @@ void MovingWorld::lead_pressed(const std::map<int, Wrench>& pressing) {
   if (pressing.empty()) return;
   const StageTimer timer(counters_.integration_seconds);
   pressing_ = pressing;
+  // also where a law stops: a timewarp goes on from an earlier state then
+  const struct Released {
+    std::map<int, Wrench>& pressing;
+    ~Released() { pressing.clear(); }
+  } released{pressing_};
   for (LinkedBodies& group : linked_) {
     const bool is_pressed = std::any_of(group.bodies().begin(), group.bodies().end(),
                                         [&](int body) { return pressing_.contains(body); });
     if (is_pressed && !asleep(group.bodies().front())) lead(group);
   }
-  pressing_.clear();
 }
 
 void MovingWorld::begin_step(double target) {

@@ -146,7 +146,8 @@ class MovingWorld {
   /// water feel the path that contacts allow, not the one on which nothing holds a body up. What
   /// presses them takes part in the integration, and its own share is taken off the path's end
   /// again, for the step's contacts to give:
-  ///   p' -= F h,   x' -= F h^2 / 2m,   L' -= T h,   and turned back by I^-1 T h^2 / 2.
+  ///   p' -= F h,   x' -= b F h^2 / 2m,   L' -= T h,   and turned back by b I^-1 T h^2 / 2,
+  /// b what the method makes of a constant acceleration: 1 from the second order on.
   /// With forces that do not follow the motion the end is the same as before.
   /// @param pressing  by body: the mean of what presses it, expected for the step
   void lead_pressed(const std::map<int, Wrench>& pressing);

@@ -10,8 +10,8 @@
 #include <cmath>
 
 #include "framework/core/disjoint_sets.h"
-#include "framework/effects/registry.h"
 #include "framework/dynamics/state_units.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/stepping/linked_bodies.h"
 
 namespace tumble::engines {
