@@ -22,8 +22,9 @@ Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& 
   return sums;
 }
 
-EnergyByBody energy_by_body(const World& world, const std::vector<RigidBodyState>& states) {
-  EnergyByBody energy;
+void sum_energy(const World& world, const std::vector<RigidBodyState>& states,
+                EnergyByBody& energy) {
+  energy.kinetic = energy.potential = 0.0;
   energy.at_work.assign(world.bodies.size(), 0.0);
   energy.height = energy.at_work;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
@@ -36,7 +37,6 @@ EnergyByBody energy_by_body(const World& world, const std::vector<RigidBodyState
     effect->add_potential_energy(world, states, potential);
     energy.potential += potential.whole();
   }
-  return energy;
 }
 
 }  // namespace tumble

@@ -25,6 +25,9 @@ struct EnergyByBody {
   // potential energy. What is stored between two bodies is either's. [J]
   std::vector<double> at_work, height;
 };
-EnergyByBody energy_by_body(const World& world, const std::vector<RigidBodyState>& states);
+/// @param energy  of these states afterwards; one that is kept is asked at every step without a new
+/// place for its lists
+void sum_energy(const World& world, const std::vector<RigidBodyState>& states,
+                EnergyByBody& energy);
 
 }  // namespace tumble

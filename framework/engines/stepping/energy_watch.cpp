@@ -153,7 +153,8 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
                                          const std::vector<ContactPoint>& contacts) {
   const auto driven = [](const WorldBody& b) { return b.immovable() && is_driven(b.motion); };
   if (!has_meters_) take_in(world);
-  const EnergyByBody now = energy_by_body(world, states);
+  sum_energy(world, states, energy_);
+  const EnergyByBody& now = energy_;
   if (sees_switches_ && !meters_.empty()) {
     brought_.assign(world.bodies.size(), {});
     for (const auto& meter : meters_) meter->add_work(time, states, brought_);

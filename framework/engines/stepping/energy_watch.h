@@ -100,6 +100,7 @@ class EnergyWatch {
   // bodies in persistent contact at this look and at the one before
   std::vector<int> touching_, touching_before_;
   std::vector<Rise> rises_;  // each larger than the one before
+  EnergyByBody energy_;      // at the last look
   EnergyLoss loss_;
 };
 
