@@ -32,7 +32,7 @@ std::string evidence_of_two(const Cause& cause, std::size_t failing) {
       "Together they explain {} of the {} that this file fails: in {} the answer that came is the "
       "one that follows from both, and in {} neither alone gives it. Alone, the first fails {} of "
       "these tests, the second {}. Both may stand in one line. Correct both before you run the "
-      "tests again: a test that both fail tells nothing of one.",
+      "tests again: while one is left, some of these tests still fail.",
       n, counted(failing, "test"),
       cause.same_numbers == n ? "all of them" : fmt::format("{} of them", cause.same_numbers),
       cause.by_both == cause.same_numbers ? "all these" : std::to_string(cause.by_both),
