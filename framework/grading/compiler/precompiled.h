@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <functional>
 #include <optional>
@@ -126,22 +127,30 @@ template struct Vectors<Eigen::Vector3d>;
 
 }  // namespace tumble_precompiled
 
-// What multiplies, factors and solves dense matrices of any size: 2 s of a file that solves a
-// system. It is compiled once, from this file with `template` for TUMBLE_KERNEL, and a file that
-// uses some of it is linked with the result, libkernels.a. Inline functions are compiled with the
-// file as ever.
-#ifndef TUMBLE_NO_KERNELS
-#ifndef TUMBLE_KERNEL
-#define TUMBLE_KERNEL extern template
+// What multiplies, factors and solves dense matrices of any size: 1 to 6 s of a file that solves a
+// system. It is compiled once, from this file with `template` for one of the words below, and a
+// file that uses some of it is linked with the results, libkernels.a. Inline functions are compiled
+// with the file as ever, unless they are specialised here. Left out is BDCSVD: 20 s.
+#if !defined(TUMBLE_NO_KERNELS) && EIGEN_VERSION_AT_LEAST(3, 4, 0) && \
+    !EIGEN_VERSION_AT_LEAST(3, 4, 90)
+#ifdef TUMBLE_PRODUCTS
+#define TUMBLE_COMPILED_ONCE(...) __VA_ARGS__
+#else
+#define TUMBLE_COMPILED_ONCE(...) ;
+#define TUMBLE_PRODUCTS extern template
+#endif
+#ifndef TUMBLE_FACTORS
+#define TUMBLE_FACTORS extern template
+#endif
+#ifndef TUMBLE_ORTHOGONAL
+#define TUMBLE_ORTHOGONAL extern template
+#endif
+#ifndef TUMBLE_SPECTRA
+#define TUMBLE_SPECTRA extern template
 #endif
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wignored-attributes"  // of a packet of two doubles
 namespace Eigen {
-
-TUMBLE_KERNEL class PartialPivLU<MatrixXd>;
-TUMBLE_KERNEL class LDLT<MatrixXd>;
-TUMBLE_KERNEL class LLT<MatrixXd>;
-
 namespace internal {
 
 using TumbleResult = blas_data_mapper<double, Index, ColMajor>;
@@ -149,31 +158,148 @@ using TumbleColumns = const_blas_data_mapper<double, Index, ColMajor>;
 using TumbleRows = const_blas_data_mapper<double, Index, RowMajor>;
 
 // A B and A B^T
-TUMBLE_KERNEL struct gebp_kernel<double, double, Index, TumbleResult, 4, 4>;
-TUMBLE_KERNEL struct gemm_pack_lhs<double, Index, TumbleColumns, 4, 2, Packet2d, ColMajor>;
-TUMBLE_KERNEL struct gemm_pack_rhs<double, Index, TumbleColumns, 4, ColMajor>;
-TUMBLE_KERNEL struct gemm_pack_rhs<double, Index, TumbleRows, 4, RowMajor>;
-TUMBLE_KERNEL struct general_matrix_matrix_product<Index, double, ColMajor, false, double, ColMajor,
-                                                   false, ColMajor, 1>;
-TUMBLE_KERNEL struct general_matrix_matrix_product<Index, double, ColMajor, false, double, RowMajor,
-                                                   false, ColMajor, 1>;
+TUMBLE_PRODUCTS struct gebp_kernel<double, double, Index, TumbleResult, 4, 4>;
+TUMBLE_PRODUCTS struct gemm_pack_lhs<double, Index, TumbleColumns, 4, 2, Packet2d, ColMajor>;
+TUMBLE_PRODUCTS struct gemm_pack_rhs<double, Index, TumbleColumns, 4, ColMajor>;
+TUMBLE_PRODUCTS struct gemm_pack_rhs<double, Index, TumbleRows, 4, RowMajor>;
+TUMBLE_PRODUCTS struct general_matrix_matrix_product<Index, double, ColMajor, false, double,
+                                                     ColMajor, false, ColMajor, 1>;
+TUMBLE_PRODUCTS struct general_matrix_matrix_product<Index, double, ColMajor, false, double,
+                                                     RowMajor, false, ColMajor, 1>;
 // A x and A^T x
-TUMBLE_KERNEL struct general_matrix_vector_product<Index, double, TumbleColumns, ColMajor, false,
-                                                   double, TumbleColumns, false>;
-TUMBLE_KERNEL struct general_matrix_vector_product<Index, double, TumbleColumns, ColMajor, false,
-                                                   double, TumbleRows, false>;
-TUMBLE_KERNEL struct general_matrix_vector_product<Index, double, TumbleRows, RowMajor, false,
-                                                   double, TumbleColumns, false>;
+TUMBLE_PRODUCTS struct general_matrix_vector_product<Index, double, TumbleColumns, ColMajor, false,
+                                                     double, TumbleColumns, false>;
+TUMBLE_PRODUCTS struct general_matrix_vector_product<Index, double, TumbleColumns, ColMajor, false,
+                                                     double, TumbleRows, false>;
+TUMBLE_PRODUCTS struct general_matrix_vector_product<Index, double, TumbleRows, RowMajor, false,
+                                                     double, TumbleColumns, false>;
 // L x = b and U x = b
-TUMBLE_KERNEL struct triangular_solve_vector<double, double, Index, OnTheLeft, Upper, false,
-                                             ColMajor>;
-TUMBLE_KERNEL struct triangular_solve_vector<double, double, Index, OnTheLeft, Lower, false,
-                                             ColMajor>;
-TUMBLE_KERNEL struct triangular_solve_vector<double, double, Index, OnTheLeft, UnitLower, false,
-                                             ColMajor>;
+TUMBLE_PRODUCTS struct triangular_solve_vector<double, double, Index, OnTheLeft, Upper, false,
+                                               ColMajor>;
+TUMBLE_PRODUCTS struct triangular_solve_vector<double, double, Index, OnTheLeft, Lower, false,
+                                               ColMajor>;
+TUMBLE_PRODUCTS struct triangular_solve_vector<double, double, Index, OnTheLeft, UnitLower, false,
+                                               ColMajor>;
+
+// The products themselves, in the steps of Eigen 3.4.
+using TumbleProduct = Product<MatrixXd, MatrixXd>;
+using TumbleScaled = Product<MatrixXd, DiagonalWrapper<const VectorXd>, LazyProduct>;
+using TumbleTransposed = Transpose<MatrixXd>;
+using TumbleConstTransposed = Transpose<const MatrixXd>;
+using TumbleMinus = CwiseUnaryOp<scalar_opposite_op<double>, const MatrixXd>;
+using TumbleMinusTransposed = CwiseUnaryOp<scalar_opposite_op<double>, const TumbleTransposed>;
+using TumbleMinusConstTransposed =
+    CwiseUnaryOp<scalar_opposite_op<double>, const TumbleConstTransposed>;
+
+#define TUMBLE_MULTIPLIES(First, Second)                                                       \
+  template <>                                                                                  \
+  template <>                                                                                  \
+  void generic_product_impl<First, Second, DenseShape, DenseShape, GemmProduct>::evalTo(       \
+      MatrixXd& to, const First& A, const Second& B) TUMBLE_COMPILED_ONCE({                    \
+    if (B.rows() + to.rows() + to.cols() < EIGEN_GEMM_TO_COEFFBASED_THRESHOLD && B.rows() > 0) \
+      return lazyproduct::eval_dynamic(to, A, B, assign_op<double, double>());                 \
+    to.setZero();                                                                              \
+    scaleAndAddTo(to, A, B, 1.0);                                                              \
+  })
+TUMBLE_MULTIPLIES(MatrixXd, MatrixXd)
+TUMBLE_MULTIPLIES(MatrixXd, TumbleTransposed)
+TUMBLE_MULTIPLIES(MatrixXd, TumbleConstTransposed)
+TUMBLE_MULTIPLIES(TumbleTransposed, MatrixXd)
+TUMBLE_MULTIPLIES(TumbleConstTransposed, MatrixXd)
+TUMBLE_MULTIPLIES(TumbleProduct, TumbleTransposed)
+TUMBLE_MULTIPLIES(TumbleProduct, TumbleConstTransposed)
+TUMBLE_MULTIPLIES(TumbleScaled, TumbleTransposed)
+TUMBLE_MULTIPLIES(TumbleScaled, TumbleConstTransposed)
+#undef TUMBLE_MULTIPLIES
+
+#define TUMBLE_MULTIPLIES(First)                                                                  \
+  template <>                                                                                     \
+  template <>                                                                                     \
+  void generic_product_impl<First, VectorXd, DenseShape, DenseShape, GemvProduct>::scaleAndAddTo( \
+      VectorXd& to, const First& A, const VectorXd& x, const double& s) TUMBLE_COMPILED_ONCE({    \
+    if (A.rows() == 1) {                                                                          \
+      to(0) += s * A.row(0).dot(x);                                                               \
+      return;                                                                                     \
+    }                                                                                             \
+    LhsNested factor(A);                                                                          \
+    constexpr int order = int(MatrixType::Flags) & RowMajorBit ? RowMajor : ColMajor;             \
+    gemv_dense_selector<OnTheRight, order,                                                        \
+                        bool(blas_traits<MatrixType>::HasUsableDirectAccess)>::run(factor, x, to, \
+                                                                                   s);            \
+  })
+TUMBLE_MULTIPLIES(MatrixXd)
+TUMBLE_MULTIPLIES(TumbleTransposed)
+TUMBLE_MULTIPLIES(TumbleConstTransposed)
+TUMBLE_MULTIPLIES(TumbleMinus)
+TUMBLE_MULTIPLIES(TumbleMinusTransposed)
+TUMBLE_MULTIPLIES(TumbleMinusConstTransposed)
+#undef TUMBLE_MULTIPLIES
 
 }  // namespace internal
+
+// What is solved for an expression is solved for its vector.
+namespace internal {
+template <class Solver, class Expression>
+requires(Expression::ColsAtCompileTime == 1 &&
+         !std::is_same_v<Expression,
+                         VectorXd>) struct Assignment<VectorXd, Solve<Solver, Expression>,
+                                                      assign_op<double, double>, Dense2Dense> {
+  static void run(VectorXd& to, const Solve<Solver, Expression>& solved,
+                  const assign_op<double, double>&) {
+    const VectorXd b = solved.rhs();
+    to.resize(solved.rows());
+    solved.dec()._solve_impl(b, to);
+  }
+};
+}  // namespace internal
+
+// Factorisations. What is a template inside of a class is named for matrices and vectors.
+TUMBLE_FACTORS class PartialPivLU<MatrixXd>;
+TUMBLE_FACTORS class FullPivLU<MatrixXd>;
+TUMBLE_FACTORS class LDLT<MatrixXd>;
+TUMBLE_FACTORS class LLT<MatrixXd>;
+TUMBLE_FACTORS PartialPivLU<MatrixXd>::PartialPivLU(const EigenBase<MatrixXd>&);
+TUMBLE_FACTORS FullPivLU<MatrixXd>::FullPivLU(const EigenBase<MatrixXd>&);
+TUMBLE_FACTORS LDLT<MatrixXd>& LDLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
+TUMBLE_FACTORS LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
+TUMBLE_FACTORS void FullPivLU<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+TUMBLE_FACTORS void LDLT<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+TUMBLE_FACTORS void LLT<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+
+template <>
+template <>
+void PartialPivLU<MatrixXd>::_solve_impl(const VectorXd& b,
+                                         VectorXd& x) const TUMBLE_COMPILED_ONCE({
+  x = permutationP() * b;
+  m_lu.triangularView<UnitLower>().solveInPlace(x);
+  m_lu.triangularView<Upper>().solveInPlace(x);
+})
+
+    template <>
+    void internal::compute_inverse<MatrixXd, MatrixXd>::run(const MatrixXd& A, MatrixXd& inverse)
+        TUMBLE_COMPILED_ONCE({ inverse = A.partialPivLu().inverse(); })
+
+            TUMBLE_ORTHOGONAL class HouseholderQR<MatrixXd>;
+TUMBLE_ORTHOGONAL class ColPivHouseholderQR<MatrixXd>;
+TUMBLE_ORTHOGONAL class CompleteOrthogonalDecomposition<MatrixXd>;
+TUMBLE_ORTHOGONAL ColPivHouseholderQR<MatrixXd>& ColPivHouseholderQR<MatrixXd>::compute(
+    const EigenBase<MatrixXd>&);
+TUMBLE_ORTHOGONAL void HouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+TUMBLE_ORTHOGONAL void ColPivHouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+TUMBLE_ORTHOGONAL void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,
+                                                                              VectorXd&) const;
+
+TUMBLE_SPECTRA class JacobiSVD<MatrixXd>;
+TUMBLE_SPECTRA class SelfAdjointEigenSolver<MatrixXd>;
+TUMBLE_SPECTRA SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(
+    const EigenBase<MatrixXd>&, int);
+TUMBLE_SPECTRA void SVDBase<JacobiSVD<MatrixXd>>::_solve_impl(const VectorXd&, VectorXd&) const;
+
 }  // namespace Eigen
 #pragma GCC diagnostic pop
-#undef TUMBLE_KERNEL
+#undef TUMBLE_PRODUCTS
+#undef TUMBLE_FACTORS
+#undef TUMBLE_ORTHOGONAL
+#undef TUMBLE_SPECTRA
+#undef TUMBLE_COMPILED_ONCE
 #endif
