@@ -4,6 +4,9 @@
 /// in run_watch.h, limits of what may happen in a step in step_limits.h.
 #pragma once
 
+#include <algorithm>
+#include <initializer_list>
+
 #include "framework/core/numbers.h"
 
 namespace tumble::engines {
@@ -67,5 +70,15 @@ inline constexpr double kMostTurning = 1e5;
 /// Whether t is the end of what lasts until `end`, but for rounding: a step from there is none of
 /// it. [s]
 inline bool is_at_end(double t, double end, double step) { return t >= end - kNegligible * step; }
+/// The first of instants at which a step may end: of those that are one but for rounding (0.7 s of
+/// a grid, and of a motor that looks every 0.01 s), the last. No step of a rounding's length
+/// follows, in which impulses over time say nothing of forces. [s]
+inline double first_of(std::initializer_list<double> instants, double step) {
+  const double first = std::min(instants);
+  double last = first;
+  for (const double t : instants)
+    if (t <= first + kNegligible * step) last = std::max(last, t);
+  return last;
+}
 
 }  // namespace tumble::engines

@@ -22,6 +22,9 @@ struct ContactConstants {
   /// margins: nearer than this two touch at the start of a step; farther, a point becomes active
   /// in it. Larger: gaps close late. Smaller: contacts at rest are activated again and again.
   double touching_band = 8.0;
+  /// steps: a gap that so many may open between linked bodies by what is left of their velocities
+  /// (`solved`) is none. Larger: gaps close late. Smaller: contacts are activated again and again.
+  double steps_open = 16.0;
   /// margins: farther than this, and than the restitution threshold goes in a step, a contact has
   /// ended. Larger: contacts outlast their end. Smaller: contacts flicker.
   double open_band = 32.0;
@@ -66,6 +69,9 @@ struct ContactConstants {
   /// or so. Larger, or fewer: the first step of a contact is of first order.
   double same_pressing = 1e-4;
   int most_pressing_rounds = 6;
+  /// of the longest step: what presses a body in a shorter one alone is not remembered. Larger: it
+  /// is looked for again. Smaller: rounding of impulses is taken for a force.
+  double shortest_step_for_pressing = 1e-3;
   /// sweeps of the solver in one step: some 200 problems that all stayed unsolved. Larger: a run
   /// without an answer takes hours. Smaller: hard steps are given up.
   std::uint64_t most_sweeps_a_step = 300000;

@@ -98,11 +98,15 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
 std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of(
     const ContactIsland& island) {
   std::vector<StepContact> contacts;
+  // What the solver leaves of velocities opens gaps between bodies that rods and joints tie.
+  const double opened =
+      island.linked.empty() ? 0.0 : kContact.steps_open * kContact.solved * speed(island) * step_;
   for (const Pair& pair : island.pairs)
     for (const collision::ManifoldPoint& point : points_.at(pair)) {
       if (!locates() && !may_close(pair, point, moving_.target() - moving_.time())) continue;
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
-      const bool activates = distance > kContact.touching_band * margin + kNegligible * reach(pair);
+      const bool activates =
+          distance > kContact.touching_band * margin + kNegligible * reach(pair) + opened;
       contacts.push_back({pair, point,
                           activates ? -distance / (moving_.target() - moving_.time()) : 0.0,
                           activates, Vector3d::Zero(), point.gap});
@@ -290,6 +294,9 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   const double turn = std::max(largest_turn(island, ends_, h), turn_of_normals(island, ends_));
   if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step)
     return moving_.time() + h * kContact.most_turn / turn;
+  // A point that presses only there closes a gap that is hardly one. What is linked to it stays on
+  // the curve that its rods and joints ask for.
+  const bool stays_curved = moves && !island.linked.empty();
   bool is_midway = false;
   std::vector<StepContact> used = contacts;
   const int rounds = turn <= kContact.even_turn ? 0
@@ -304,7 +311,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     for (std::size_t i = 0; i < used.size(); ++i)
       problem.contacts[i].warm_start_world = solution.impulses_world[i];
     solution = solve(island, problem, h);
-    activation = activates(used, solution);
+    activation = !stays_curved && activates(used, solution);
     if (!activation || !separates) continue;
     // A contact becomes active after all: paths are straight then, and what was to separate stays.
     for (std::size_t i = 0; i < used.size(); ++i)

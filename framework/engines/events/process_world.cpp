@@ -268,7 +268,8 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   ProcessStep step{start.without_memory(), start.time, {}, {}};
   save_controls(step.from);
   Stages stages(*this, &step);
-  const WorldStep::Taken taken = world_step_.take(std::min({due, next_look, next_switch}), stages);
+  const WorldStep::Taken taken =
+      world_step_.take(first_of({due, next_look, next_switch}, rules_.step), stages);
   notes.move_to(step.noted);
   if (taken.impact) {
     try {

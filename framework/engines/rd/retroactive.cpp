@@ -114,15 +114,14 @@ class RetroactiveRun : private StepStages {
 };
 
 double RetroactiveRun::next_target() const {
-  double target = static_cast<double>(grid_index_ + 1) * step_;
-  // no step of a rounding's length at the end
-  if (is_at_end(target, duration_, step_)) target = duration_;
-  target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
-  if (next != switch_times_.end()) target = std::min(target, *next);
-  if (built::kCallback && called_ < callbacks_.size())
-    target = std::min(target, callbacks_[called_].time);
-  return target;
+  const double target = first_of(
+      {static_cast<double>(grid_index_ + 1) * step_, next_look_,
+       next != switch_times_.end() ? *next : kInfinity,
+       built::kCallback && called_ < callbacks_.size() ? callbacks_[called_].time : kInfinity},
+      step_);
+  // no step of a rounding's length at the end
+  return is_at_end(target, duration_, step_) ? duration_ : target;
 }
 
 void RetroactiveRun::take_from_hand() {

@@ -1,0 +1,169 @@
+// Plane mechanisms that lie on a floor without friction: they move as they do without floor and
+// gravity. Drawn by lot: chains and rings of bars, thrown as one body that turns, with hinges,
+// welds and balls, a motor, a spring, drag.
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "framework/core/random.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
+#include "framework/effects/spring/spring.h"
+#include "tests/engines/event_process_scenes.h"
+#include "tests/engines/reference_runs.h"
+
+namespace tumble::testing {
+namespace mechanisms_on_floor_test {
+
+using effects::JointKind;
+
+constexpr double kHalfHigh = 0.04;  // m
+
+/// Bars between these corners, linked in a row; without floor and gravity.
+/// @param closes  the last corner is the first
+scene::Scene bars_between(const std::vector<Vector3d>& corners, bool closes, double speed,
+                          double omega, Random& random) {
+  std::vector<scene::BodySpec> bars;
+  const std::size_t count = closes ? corners.size() : corners.size() - 1;
+  std::vector<std::pair<std::string, std::string>> apart;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vector3d &from = corners[k], &to = corners[(k + 1) % corners.size()];
+    const Vector3d middle = 0.5 * (from + to), way = to - from;
+    scene::BodySpec bar = box(
+        fmt::format("bar {}", k), {0.45 * way.norm(), random.between(0.02, 0.06), kHalfHigh},
+        std::pow(10.0, random.between(-0.5, 0.5)), middle,
+        Vector3d(speed, 0, 0) + Vector3d(0, 0, omega).cross(middle - Vector3d(0, 0, kHalfHigh)));
+    bar.omega_world_rad_s = {0, 0, omega};
+    bar.world_from_body = Eigen::AngleAxisd(std::atan2(way.y(), way.x()), Vector3d::UnitZ());
+    bar.restitution = 0.0;
+    bars.push_back(bar);
+    for (std::size_t j = 0; j < k; ++j) apart.emplace_back(bars[j].name, bar.name);
+  }
+  scene::Scene scene = scene_of(std::move(bars), 1.0);
+  scene.stabilisation = scene::StabilisationSpec{};
+  scene.apart = apart;
+  return scene;
+}
+
+void join(scene::Scene& scene, JointKind kind, std::size_t a, std::size_t b, const Vector3d& at) {
+  auto& joints = scene.effects.of<effects::JointSpec>();
+  joints.push_back({fmt::format("joint {}", joints.size()), kind, scene.bodies[a].name,
+                    scene.bodies[b].name, at, Vector3d::UnitZ()});
+}
+
+scene::Scene drawn_mechanism(Random& random) {
+  const std::size_t bars = 2 + random.below(5);
+  const bool closes = bars > 2 && random.below(2) == 0;
+  std::vector<Vector3d> corners{{0, 0, kHalfHigh}};
+  double direction = random.between(-3, 3);
+  for (std::size_t k = 0; k < bars && !closes; ++k) {
+    direction += random.between(-1, 1);
+    corners.push_back(corners.back() + random.between(0.3, 0.8) *
+                                           Vector3d(std::cos(direction), std::sin(direction), 0));
+  }
+  if (closes) corners.clear();
+  for (std::size_t k = 0; k < bars && closes; ++k) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(bars);
+    corners.emplace_back(random.between(0.4, 0.6) * std::cos(angle), 0.5 * std::sin(angle),
+                         kHalfHigh);
+  }
+  scene::Scene scene =
+      bars_between(corners, closes, random.between(-1, 1), random.between(-3, 3), random);
+  for (std::size_t k = 1; k < bars; ++k)
+    join(scene, random.below(5) == 0 ? JointKind::kWeld : JointKind::kHinge, k - 1, k, corners[k]);
+  if (closes)
+    join(scene, random.below(2) == 0 ? JointKind::kBall : JointKind::kHinge, bars - 1, 0,
+         corners[0]);
+  const effects::JointSpec& first = scene.effects.of<effects::JointSpec>().front();
+  // it looks at instants of the grid, and others a rounding beside them
+  if (first.kind == JointKind::kHinge && random.below(2) == 0)
+    scene.effects.of<effects::MotorSpec>().push_back({.joint = first.name,
+                                                      .offset_rad = 0.3,
+                                                      .stiffness_n_m_rad = 0.3,
+                                                      .damping_n_m_s_rad = 0.02});
+  if (random.below(2) == 0)
+    scene.effects.of<effects::SpringSpec>().push_back(
+        {"spring", {"bar 0", Vector3d::Zero()}, {"", {1.5, 1, kHalfHigh}}, 20.0, 0.2, 0.5});
+  if (random.below(2) == 0) scene.effects.of<effects::DragSpec>().push_back({"bar 1", 0.5, 0.05});
+  return scene;
+}
+
+scene::Scene laid_on_a_floor(scene::Scene scene) {
+  scene.bodies.push_back(plane("floor", {0, 0, 0}, {0, 0, 1}));
+  scene.bodies.back().restitution = 0.0;
+  scene.contact.emplace();
+  effects::set_gravity(scene, kEarth);
+  return scene;
+}
+
+/// A faint force straight down from shortly after 0.5 s on: a step of 1e-8 s ends there.
+void press_soon_after_the_grid(scene::Scene& scene) {
+  const scene::BodySpec& bar = scene.bodies.front();
+  scene.effects.of<effects::PointForceSpec>().push_back(
+      {bar.name, {0, 0, -1e-5}, bar.position_m, 0.5 + 1e-8, 0.1});
+}
+
+double farthest_apart(const Trajectory& one, const Trajectory& other, std::size_t bodies) {
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < bodies; ++i)
+    farthest = std::max(
+        farthest,
+        (one.frames.back().poses[i].com_world - other.frames.back().poses[i].com_world).norm());
+  return farthest;
+}
+
+// What the floor presses with goes through all joints, and none of it may show in the plane: there a
+// step leaves what RK4 leaves of it, or less where contacts shorten it because it turns far.
+TEST(MechanismsOnAFloor, MoveAsWithoutFloorAndGravity) {
+  // m: margins of contacts lift bars by 1e-10 of their size; what solvers leave of velocities,
+  // 1e-8 of some m/s, is without effect in the plane
+  constexpr double kLifted = 1e-9;
+  Random random(5);
+  for (int round = 0; round < 24; ++round) {
+    scene::Scene scene = drawn_mechanism(random), fine = scene;
+    scene.step_s = round % 2 == 0 ? 1.0 / 60 : 1.0 / 240;
+    fine.step_s = scene.step_s / 16;
+    const std::size_t bars = scene.bodies.size();
+    const Trajectory truth = run_on("rd", fine);
+    const double of_method = farthest_apart(run_on("rd", scene), truth, bars);
+    for (const char* engine : {"rd", "tw"}) {
+      SCOPED_TRACE(fmt::format("round {}, {}", round, engine));
+      scene::Scene laid = laid_on_a_floor(scene);
+      if (round % 3 == 0) press_soon_after_the_grid(laid);
+      const Trajectory run = run_on(engine, laid);
+      EXPECT_EQ(run.stopped_by, "");
+      EXPECT_EQ(faults_of(run), "");
+      EXPECT_LT(farthest_apart(run, truth, bars), 1.1 * of_method + kLifted);
+    }
+  }
+}
+
+/// Two bars of a kilogram in a row along x, from the origin, the first hinged to the world.
+scene::Scene arm_on_a_floor(double omega, Random& random) {
+  scene::Scene scene = bars_between({{0, 0, kHalfHigh}, {0.4, 0, kHalfHigh}, {0.8, 0, kHalfHigh}},
+                                    false, 0.0, omega, random);
+  join(scene, JointKind::kHinge, 0, 1, {0.4, 0, kHalfHigh});
+  scene.effects.of<effects::JointSpec>().push_back(
+      {"pivot", JointKind::kHinge, "bar 0", "", {0, 0, kHalfHigh}, Vector3d::UnitZ()});
+  return laid_on_a_floor(std::move(scene));
+}
+
+// 0.7 s of the grid and 70 looks of 0.01 s differ by a rounding: one step ends there, and no second
+// one of 1e-16 s follows, of which impulses over time would say what presses the bars.
+TEST(MechanismsOnAFloor, AMotorThatLooksOnTheGridAsksForNoSteps) {
+  Random random(1);
+  scene::Scene scene = arm_on_a_floor(0.5, random);
+  scene.duration_s = 1.0;
+  scene.step_s = 1.0 / 60;
+  scene.effects.of<effects::MotorSpec>().push_back(
+      {.joint = "joint 0", .stiffness_n_m_rad = 0.1, .period_s = 0.01});
+  // 60 on the grid, 100 looks, 20 of which are on both
+  EXPECT_EQ(run_on("rd", scene).counters.counts.at("steps"), 140u);
+}
+
+}  // namespace mechanisms_on_floor_test
+}  // namespace tumble::testing
