@@ -143,6 +143,15 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
 
 }  // namespace
 
+void hold_rows(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
+  if (goal.system.rows.empty() || progress.accepted) return;
+  Progress trial = progress;
+  hold(goal, std::vector<bool>(goal.system.contacts.size(), false), matrix, trial);
+  progress.factorisations = trial.factorisations;
+  goal.measure(trial);
+  if (trial.violation.squares < progress.violation.squares) progress = std::move(trial);
+}
+
 bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
   constexpr int kMostRounds = 8;
   const System& system = goal.system;

@@ -58,6 +58,8 @@ void solve_upper(const Block6& root, Vector6d& x) {
   }
 }
 
+constexpr std::size_t kUnknown = static_cast<std::size_t>(-1);
+
 /// Least of what an impulse at the contact moves it by, over directions. [1/kg]
 double least_mobility(const ContactBlock& c) {
   if (!c.is_frictional()) return c.inverse_effective_mass;
@@ -70,13 +72,25 @@ double least_mobility(const ContactBlock& c) {
 
 }  // namespace
 
-LinkElimination::LinkElimination(const System& system)
+void leave_out(ContactBlock& contact) {
+  contact.body_a = contact.body_b = kFixed;
+  contact.inverse_effective_mass = 0;
+}
+
+LinkElimination::LinkElimination(const System& system, double negligible)
     : system_(system),
       mobility_(system.root_inverse_mass.size()),
       is_held_(mobility_.size(), 0),
       is_left_(system.rows.size(), 1) {
   eliminate_links(find_links());
-  is_of_use_ = !steps_.empty() && build_rest();
+  std::vector<Vector6d> y(mobility_.size(), Vector6d::Zero());
+  lacks_ = lacks([&](std::size_t row) { return system_.rows[row].base; }, y);
+  for (const std::size_t i : held_contacts_)
+    if (!(contact_velocity(system_.contacts[i], y)[0] >= -negligible)) {
+      held_contacts_.clear();
+      return;
+    }
+  is_of_use_ = !steps_.empty() && build_rest(y);
 }
 
 std::vector<LinkElimination::Link> LinkElimination::find_links() const {
@@ -111,17 +125,60 @@ void LinkElimination::eliminate_links(const std::vector<Link>& links) {
   for (const ContactBlock& c : system_.contacts)
     for (const int body : {c.body_a, c.body_b})
       if (body != kFixed) degree[at(body)] += kTouched;
-  for (std::size_t start = 0; start < degree.size(); ++start)
-    for (std::size_t child = start; degree[child] == 1;) {
-      const std::size_t index = last[child];
-      const Link& link = links[index];
-      const int other = at(link.body_a) == child ? link.body_b : link.body_a;
-      if (other == kFixed || !eliminate(other, static_cast<int>(child), link)) break;
-      degree[child] = 0;
-      --degree[at(other)];
-      last[at(other)] ^= index;
-      child = at(other);
+  std::vector<std::vector<std::size_t>> contacts_of;
+  if (!steps_.empty()) contacts_of = contacts_of_bodies();
+  std::vector<char> is_out(system_.contacts.size(), 0);
+  // those of a body that has lost mobility
+  const auto leave_out_held = [&](std::size_t body) {
+    if (contacts_of.empty()) return;
+    for (const std::size_t i : contacts_of[body]) {
+      const ContactBlock& c = system_.contacts[i];
+      if (is_out[i] || !is_held_along_normal(c)) continue;
+      is_out[i] = 1;
+      held_contacts_.push_back(i);
+      for (const int side : {c.body_a, c.body_b})
+        if (side != kFixed) degree[at(side)] -= kTouched;
     }
+  };
+  for (std::size_t body = 0; body < degree.size(); ++body)
+    if (is_held_[body]) leave_out_held(body);
+  for (std::size_t held = 0, before = kUnknown; held != before;) {
+    before = held_contacts_.size();
+    for (std::size_t start = 0; start < degree.size(); ++start)
+      for (std::size_t child = start; degree[child] == 1;) {
+        const std::size_t index = last[child];
+        const Link& link = links[index];
+        const int other = at(link.body_a) == child ? link.body_b : link.body_a;
+        if (other == kFixed || !eliminate(other, static_cast<int>(child), link)) break;
+        degree[child] = 0;
+        --degree[at(other)];
+        last[at(other)] ^= index;
+        child = at(other);
+        leave_out_held(child);
+      }
+    held = held_contacts_.size();  // others may be ends of chains now
+  }
+}
+
+std::vector<std::vector<std::size_t>> LinkElimination::contacts_of_bodies() const {
+  std::vector<std::vector<std::size_t>> result(mobility_.size());
+  for (std::size_t i = 0; i < system_.contacts.size(); ++i)
+    for (const int body : {system_.contacts[i].body_a, system_.contacts[i].body_b})
+      if (body != kFixed) result[at(body)].push_back(i);
+  return result;
+}
+
+/// Whether links leave the bodies nothing of what an impulse along the normal would move them by.
+bool LinkElimination::is_held_along_normal(const ContactBlock& contact) const {
+  double alone = 0, left = 0;
+  for (const auto& [body, g] :
+       {std::pair{contact.body_a, &contact.g_a}, {contact.body_b, &contact.g_b}}) {
+    if (body == kFixed) continue;
+    const Vector6d normal = g->row(0).transpose();
+    alone += normal.squaredNorm();
+    left += is_held_[at(body)] ? normal.dot(mobility_[at(body)] * normal) : normal.squaredNorm();
+  }
+  return alone > 0 && left <= kHeld * alone;
 }
 
 bool LinkElimination::eliminate(int body, int child, const Link& link) {
@@ -202,9 +259,7 @@ void LinkElimination::add_impulses(const std::vector<Vector6d>& lacks, std::vect
   }
 }
 
-bool LinkElimination::build_rest() {
-  std::vector<Vector6d> y(mobility_.size(), Vector6d::Zero());
-  lacks_ = lacks([&](std::size_t row) { return system_.rows[row].base; }, y);
+bool LinkElimination::build_rest(const std::vector<Vector6d>& y) {
   // K of Phi, of bodies that are left; directions in which nothing moves have a zero column
   constexpr double kRounding = 1e-15;
   std::vector<Block6> roots(mobility_.size());
@@ -221,6 +276,7 @@ bool LinkElimination::build_rest() {
   rest_.root_inverse_mass = system_.root_inverse_mass;
   rest_.root_inverse_inertia = system_.root_inverse_inertia;
   rest_.contacts = system_.contacts;
+  for (const std::size_t i : held_contacts_) leave_out(rest_.contacts[i]);
   for (ContactBlock& c : rest_.contacts) {
     if (!is_held(c.body_a) && !is_held(c.body_b)) continue;
     for (const auto& [body, g] : {std::pair{c.body_a, &c.g_a}, {c.body_b, &c.g_b}}) {

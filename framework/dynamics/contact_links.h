@@ -14,6 +14,9 @@
 /// problem. Links to what cannot be pushed go likewise, without c. The contacts that are left have
 /// G K in place of G, Phi = K K^T. Their impulses known, w and lambda follow in the opposite order.
 /// Nothing is divided by a mobility: a chain that hangs on the wall needs no other form.
+/// A contact along whose normal links to what cannot be pushed leave no mobility (the foot of a
+/// robot, bolted to the floor that it stands on) has no say: what it presses with, the links push
+/// back, and any pressure would do. It is left out, with no impulse, unless its bodies approach.
 /// What this leaves in the problem: loops, redundant rows, bodies between two that are touched.
 /// Sources: R. Featherstone, Int. J. Robotics Research 2, 1983 (articulated bodies); D. Baraff,
 /// "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996; K. Kreutz-Delgado, A. Jain, G.
@@ -28,15 +31,21 @@
 
 namespace tumble::contacts {
 
+/// Takes the contact out of its problem: nothing moves by it.
+void leave_out(ContactBlock& contact);
+
 class LinkElimination {
  public:
-  /// @param system  stays where it is as long as this lives
-  explicit LinkElimination(const System& system);
+  /// @param system      stays where it is as long as this lives
+  /// @param negligible  approach of what links hold: rounding [m/s]
+  LinkElimination(const System& system, double negligible);
 
   /// Whether rows were eliminated, and what is left is as well conditioned as the whole.
   bool is_of_use() const { return is_of_use_; }
   /// The contacts, and the rows that are left, of bodies with the mobility that they are left.
   const System& rest() const { return rest_; }
+  /// Contacts that are left out: links hold what they would push.
+  const std::vector<std::size_t>& held_contacts() const { return held_contacts_; }
   /// These impulses of the whole system, as far as they are ones of the rest.
   Impulses of_rest(const Impulses& whole) const;
   /// An answer of the rest, and with it that of the eliminated rows.
@@ -63,6 +72,8 @@ class LinkElimination {
 
   std::vector<Link> find_links() const;
   void eliminate_links(const std::vector<Link>& links);
+  std::vector<std::vector<std::size_t>> contacts_of_bodies() const;
+  bool is_held_along_normal(const ContactBlock& contact) const;
   bool eliminate(int body, int child, const Link& link);
   /// Forward through the steps: C^-1 of what the rows lack, by step, where `velocity` is that of
   /// each row without their impulses; `y` becomes the velocities of bodies with them.
@@ -72,15 +83,16 @@ class LinkElimination {
   void add_impulses(const std::vector<Vector6d>& lacks, std::vector<Vector6d> w,
                     std::vector<double>& rows) const;
   /// False where it is not as well conditioned as the whole.
-  bool build_rest();
+  bool build_rest(const std::vector<Vector6d>& y);
 
   const System& system_;
   System rest_;
   bool is_of_use_ = false;
   std::vector<Step> steps_;
-  std::vector<Block6> mobility_;          // Phi, by body
-  std::vector<char> is_held_;             // by body: whether Phi is not I
-  std::vector<char> is_left_;             // by row
+  std::vector<Block6> mobility_;  // Phi, by body
+  std::vector<char> is_held_;     // by body: whether Phi is not I
+  std::vector<char> is_left_;     // by row
+  std::vector<std::size_t> held_contacts_;
   std::vector<std::size_t> row_of_rest_;  // by row of the rest
   std::vector<Vector6d> lacks_;           // by step
 };

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "framework/dynamics/contact_cone.h"
 #include "framework/dynamics/contact_links.h"
@@ -45,6 +46,8 @@ constexpr int kSweepRounds = 2;  // each of four times as many sweeps as the one
 constexpr int kFewSoftRounds = 10, kManySoftRounds = 200, kFinishEvery = 5;
 // where one pace ends in a fold, another does not
 constexpr contacts::Sharpening kPaces[] = {{0.1, 0.6, 80}, {0.1, 0.2, 80}, {0.01, 0.75, 120}};
+// of the speed: what contacts may approach with where links hold them
+constexpr double kHeldApproach = 1e-6;
 // times the goal: nearly solved
 constexpr double kNearly = 10;
 // soft rounds in which what is nearly solved has to halve its sum of squares
@@ -223,6 +226,7 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
     return;
   }
   contacts::BodyMatrix matrix(goal.system);
+  contacts::hold_rows(goal, matrix, progress);
   contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
   if (progress.accepted || progress.violation.largest <= enough) return;
   if (!contacts::stick(goal, matrix, progress))
@@ -231,9 +235,8 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
 
 /// Without the links that nothing touches. False: none could be left out, or what is left was not
 /// solved well enough; then `progress` is as it was but for its counts.
-bool solve_without_links(const Goal& goal, const ContactOptions& options, double enough,
-                         Progress& progress) {
-  const contacts::LinkElimination links(goal.system);
+bool solve_without_links(const contacts::LinkElimination& links, const Goal& goal,
+                         const ContactOptions& options, double enough, Progress& progress) {
   if (!links.is_of_use()) return false;
   const Goal of_rest{links.rest(), goal.violation};
   Progress rest, whole;
@@ -279,14 +282,22 @@ ContactSolution describe(const ContactProblem& problem, const System& system,
 }  // namespace
 
 ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {
-  const System system = contacts::build_system(problem);
+  System system = contacts::build_system(problem);
   const double speed = system.speed > 0 ? system.speed : 1.0;
   const Goal goal{system, std::max(options.tolerance * speed, options.least_speed)};
   Progress progress;
   progress.impulses = contacts::warm_start_of(system, problem);
   const double enough = options.enough * speed;
-  const bool may_have_links = !system.rows.empty() && options.eliminates_links;
-  if (!may_have_links || !solve_without_links(goal, options, enough, progress)) {
+  std::optional<contacts::LinkElimination> links;
+  if (!system.rows.empty() && options.eliminates_links) {
+    links.emplace(system, std::max(goal.violation, kHeldApproach * speed));
+    for (const std::size_t i : links->held_contacts()) {
+      contacts::leave_out(system.contacts[i]);
+      progress.impulses.contacts[i].setZero();
+    }
+    if (!links->held_contacts().empty()) contacts::sum_impulses(system, progress.impulses);
+  }
+  if (!links || !solve_without_links(*links, goal, options, enough, progress)) {
     goal.measure(progress);
     if (!progress.accepted) iterate(goal, options, enough, progress);
   }

@@ -173,7 +173,7 @@ TEST(ContactsOfLinks, RandomLinkagesObeyTheLawOrSayThatTheyDoNot) {
   for (int k = 0; k < kLinkages; ++k) {
     const ContactProblem problem = random_linkage(random);
     const contacts::System system = contacts::build_system(problem);
-    if (contacts::LinkElimination(system).is_of_use()) ++without_links;
+    if (contacts::LinkElimination(system, 0.0).is_of_use()) ++without_links;
     const ContactSolution solution = solve_contacts(problem);
     if (!solution.converged) continue;
     ++converged;

@@ -69,8 +69,9 @@ struct ContactConstants {
   /// or so. Larger, or fewer: the first step of a contact is of first order.
   double same_pressing = 1e-4;
   int most_pressing_rounds = 6;
-  /// of the longest step: what presses a body in a shorter one alone is not remembered. Larger: it
-  /// is looked for again. Smaller: rounding of impulses is taken for a force.
+  /// of the longest step: what presses a body in a shorter one is not told from it. Larger: forces
+  /// of earlier steps are felt. Smaller: what solvers leave of velocities (`solved`), over such a
+  /// time, is taken for a force.
   double shortest_step_for_pressing = 1e-3;
   /// sweeps of the solver in one step: some 200 problems that all stayed unsolved. Larger: a run
   /// without an answer takes hours. Smaller: hard steps are given up.

@@ -34,8 +34,8 @@ struct ContactMemory {
   double longest_step = 0.0;  // so far, at least that of the scene's grid [s]
   // Warm start: of the last step, and of attempts at the one that has begun.
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
-  // What contacts pressed bodies with, its mean over the last steps that make up one of the grid:
-  // of bodies on which forces act that follow their motion (MovingWorld::lead_pressed).
+  // What contacts pressed bodies with in the last step that was not very short, its mean: of bodies
+  // on which forces act that follow their motion (MovingWorld::lead_pressed).
   std::map<int, Wrench> pressing;
   std::set<Pair> stuck;  // pairs with friction that did not slide in the last step
   // Pairs that rods, joints or walls leave no room for a margin between them, and until when [s].

@@ -437,18 +437,15 @@ bool PersistentContacts::finds_other_pressing(const ContactIsland& island,
       for (const auto& [body, wrench] : found) next_pressing_.erase(body);
       return false;
     }
-  // Of a step that an impact has cut from its grid, or that ends soon after one, the mean says the
-  // less the shorter it is: impulses are known to a part of the bodies' momenta.
-  const double share = std::min(1.0, h / memory_.longest_step);
+  // Of a very short step rounding makes forces of its own: what was known before stays.
+  const bool is_told = h > kContact.shortest_step_for_pressing * memory_.longest_step;
   for (const auto& [body, wrench] : found) {
     felt_[body] = wrench;
     const auto before = memory_.pressing.find(body);
-    if (before != memory_.pressing.end())
-      next_pressing_[body] = {
-          share * wrench.force_world + (1 - share) * before->second.force_world,
-          share * wrench.torque_world + (1 - share) * before->second.torque_world};
-    else if (share > kContact.shortest_step_for_pressing)
+    if (is_told)
       next_pressing_[body] = wrench;
+    else if (before != memory_.pressing.end())
+      next_pressing_.insert(*before);
   }
   if (is_known || is_same ||
       ++pressing_rounds_[island.bodies.front()] > kContact.most_pressing_rounds)
