@@ -35,7 +35,13 @@ std::optional<std::pair<int, int>> ends_of_edge(const VertexLines& lines, double
 struct TurningNormal {
   Vector3d n, rate;
   double speed, acceleration, length;  // bounds on |n'|, |n''|, |n|
+  double error;                        // of the rate, on a numerical path, at most
 };
+
+// How fast the path turns, at most. [rad/s]
+double path_turn(const MotionBounds& bounds) {
+  return bounds.angular_speed + bounds.angular_velocity_error;
+}
 
 /// Heights over the edge along n, or along -n. @param on_edge  an arm to the edge's line
 void collect_lines(const TurningNormal& normal, const EdgeSide& side, std::pair<int, int> ends,
@@ -43,14 +49,16 @@ void collect_lines(const TurningNormal& normal, const EdgeSide& side, std::pair<
   lines.clear();
   const Vector3d turn = normal.rate + normal.n.cross(side.state.omega_world);
   const double half_acceleration =
-      0.5 * (normal.acceleration + 2.0 * normal.speed * side.bounds.angular_speed +
+      0.5 * (normal.acceleration + 2.0 * normal.speed * path_turn(side.bounds) +
              normal.length * acceleration_by_rotation(side.bounds));
+  const double error = normal.error + normal.length * side.bounds.angular_velocity_error;
   for (int i = 0; i < side.piece.size(); ++i) {
     const Vector3d r = arm(side, i) - on_edge;
     if (i == ends.first || i == ends.second)
       lines.push_back({0.0, 0.0, 0.0});
     else
-      lines.push_back({sign * normal.n.dot(r), sign * turn.dot(r), half_acceleration * r.norm()});
+      lines.push_back({sign * normal.n.dot(r), sign * turn.dot(r) - error * r.norm(),
+                       half_acceleration * r.norm()});
   }
 }
 
@@ -58,7 +66,6 @@ void collect_lines(const TurningNormal& normal, const EdgeSide& side, std::pair<
 
 double duration_of_edges(const EdgeSide& a, const EdgeSide& b, const Query& query,
                          const PolytopeGap& found, const Relative& relative, double horizon) {
-  if (a.bounds.angular_velocity_error != 0.0 || b.bounds.angular_velocity_error != 0.0) return 0.0;
   const double rounding = kOnPlane * query.size;
   const auto ends_a = ends_of_edge(a.lines, rounding), ends_b = ends_of_edge(b.lines, rounding);
   if (!ends_a || !ends_b) return 0.0;
@@ -71,11 +78,15 @@ double duration_of_edges(const EdgeSide& a, const EdgeSide& b, const Query& quer
   // n and what bounds it.
   const Vector3d &w_a = a.state.omega_world, &w_b = b.state.omega_world;
   const double scale = (product.dot(found.normal_b_to_a) < 0.0 ? -1.0 : 1.0) / sine,
-               speed = a.bounds.angular_speed + b.bounds.angular_speed,
+               speed = path_turn(a.bounds) + path_turn(b.bounds),
                until = std::min(horizon, kMostTurn / speed);
   TurningNormal normal{
-      scale * product, scale * (w_a.cross(p).cross(q) + p.cross(w_b.cross(q))), speed / sine,
-      (speed * speed + a.bounds.angular_acceleration + b.bounds.angular_acceleration) / sine, 1.0};
+      scale * product,
+      scale * (w_a.cross(p).cross(q) + p.cross(w_b.cross(q))),
+      speed / sine,
+      (speed * speed + a.bounds.angular_acceleration + b.bounds.angular_acceleration) / sine,
+      1.0,
+      (a.bounds.angular_velocity_error + b.bounds.angular_velocity_error) / sine};
   normal.length = std::min(1.0 / sine, 1.0 + normal.speed * until);
 
   // The nearest points of the two lines, and how they part.
@@ -90,14 +101,18 @@ double duration_of_edges(const EdgeSide& a, const EdgeSide& b, const Query& quer
   const double acceleration = relative.acceleration.norm() + relative.deviation +
                               acceleration_by_rotation(a.bounds) * x.norm() +
                               acceleration_by_rotation(b.bounds) * y.norm(),
-               most_parting = parting.norm() + acceleration * until,
+               error = a.bounds.angular_velocity_error * x.norm() +
+                       b.bounds.angular_velocity_error * y.norm(),
+               most_parting = parting.norm() + error + acceleration * until,
                most_apart = apart.norm() + most_parting * until;
 
   VertexLines lines_a, lines_b;
   collect_lines(normal, a, *ends_a, x, 1.0, lines_a);
   collect_lines(normal, b, *ends_b, y, -1.0, lines_b);
   return duration_of_lines(
-      std::max(found.distance, 0.0), normal.rate.dot(apart) + normal.n.dot(parting),
+      std::max(found.distance, 0.0),
+      normal.rate.dot(apart) + normal.n.dot(parting) - normal.error * most_apart -
+          normal.length * error,
       -0.5 * (normal.acceleration * most_apart + 2.0 * normal.speed * most_parting +
               normal.length * acceleration),
       lines_a, lines_b, until);

@@ -12,8 +12,9 @@
 /// and the solids stay apart while the first and the least of each solid's sum to more than 0.
 ///   |n'| <= (|w_A| + |w_B|) / s,   |n''| <= ((|w_A| + |w_B|)^2 + |alpha_A| + |alpha_B|) / s,
 ///   |n| <= 1 / s,   s = |p x q|_0                                                          (E.2)
-/// where |w|, |alpha| bound the whole time, and A_A is of (E.1). The step grows as the root of the
-/// gap, no longer as the gap.
+/// where |w|, |alpha| bound the whole time, and A_A is of (E.1). A numerical path, which turns at
+/// w + e, has |w| + |e| for |w|, and its rates are lower by up to (|e_A| + |e_B|) |D| / s, and by
+/// |n| |e| times the arm. The step grows as the root of the gap, no longer as the gap.
 #pragma once
 
 #include "framework/collision/piece_pairs.h"
@@ -31,7 +32,7 @@ struct EdgeSide {
 /// @param found    of these pieces, apart; solids without rounding radius
 /// @param horizon  how far ahead to look [s]
 /// @return a lower bound on the time until contact [s], at most the horizon; 0 where the nearest
-///   are not two edges that cross, or a path is numerical (an angular velocity error)
+///   are not two edges that cross
 double duration_of_edges(const EdgeSide& a, const EdgeSide& b, const Query& query,
                          const PolytopeGap& found, const Relative& relative, double horizon);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/collision/time_bound.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
@@ -19,6 +20,8 @@ constexpr double kLeastAdvance = 1e-8;
 // 8, where A bounds the relative acceleration and s is the advance: it is limited to kShallow of
 // the smaller solid's size.
 constexpr int kPlainAdvances = 2000;
+// After this many each is worth a closer look at how long it may be.
+constexpr int kFewAdvances = 256;
 constexpr double kGrowth = 1.02;
 constexpr double kShallow = 1e-8;
 
@@ -119,6 +122,25 @@ double largest_acceleration(const Search& search) {
   return (a.acceleration_world - b.acceleration_world).norm() + own(search.a, a) + own(search.b, b);
 }
 
+// Relative to the scale of a gap: what it may be off by.
+constexpr double kRounding = 64 * kEpsilon;
+
+// Where a gap < 0 at t is what rounding makes of one that opens from t0 on, where it was closed:
+// the time at which it has opened by more than that. Without it two solids that part slowly would
+// meet again at once, and time would stand still.
+std::optional<double> seen_open(const Search& search, double gap, double t0, double t) {
+  const MotionState sa = search.motion_a.at(t0), sb = search.motion_b.at(t0);
+  const double rounding = kRounding * gap_scale(search.a, sa.pose, search.b, sb.pose);
+  if (gap < -rounding) return std::nullopt;
+  const Gap at_start = compute_gap(search.a, sa.pose, search.b, sb.pose, search.cache);
+  const double rate = gap_rate(at_start, sa, sb);
+  if (!(rate > 0) || !(at_start.distance <= rounding)) return std::nullopt;
+  const double wait = 2 * rounding / rate;
+  // a path that bends may close it again
+  if (t >= t0 + wait || largest_acceleration(search) * wait > rate) return std::nullopt;
+  return t0 + wait;
+}
+
 // A feature smaller than this fraction of the solid may be missed.
 constexpr double kSmallestFeature = 1e-9;
 
@@ -183,19 +205,30 @@ std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion
   for (int round = 0;; ++round) {
     ++search.cost.gap_evaluations;
     const TimeBound bound = bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t),
-                                             motion_b.bounds, t1 - t, search.cache);
-    if (bound.gap < 0)
-      return t > t_apart ? refine(search, shorten(search, t_apart, t), t) : search.impact_at(t);
-    if (bound.duration >= t1 - t) return std::nullopt;
-    t_apart = t;
-    if (round > 0 && bound.gap < std::numeric_limits<double>::infinity()) {
-      if (const auto behind = behind_the_root(search, t, t1); behind && search.gap_at(*behind) < 0)
-        return refine(search, t, *behind);
+                                             motion_b.bounds, t1 - t, search.cache,
+                                             round < kFewAdvances ? Effort::kUsual : Effort::kMore);
+    double next;
+    if (bound.gap < 0) {
+      const auto later = seen_open(search, bound.gap, t0, t);
+      if (!later)
+        return t > t0 ? refine(search, shorten(search, t_apart, t), t) : search.impact_at(t);
+      next = *later;
+    } else {
+      if (bound.duration >= t1 - t) return std::nullopt;
+      t_apart = t;
+      if (round > 0 && bound.gap < kInfinity) {
+        if (const auto behind = behind_the_root(search, t, t1);
+            behind && search.gap_at(*behind) < 0)
+          return refine(search, t, *behind);
+      }
+      if (round > kPlainAdvances) least = std::max(least, std::min(kGrowth * least, most_least));
+      next = std::max(t + std::max(bound.duration, least), next_after(t));
     }
-    if (round > kPlainAdvances) least = std::max(least, std::min(kGrowth * least, most_least));
-    t = std::min(t1, std::max(t + std::max(bound.duration, least), next_after(t)));
+    t = std::min(t1, next);
     if (t >= t1) {
-      if (search.gap_at(t1) < 0) return refine(search, shorten(search, t_apart, t1), t1);
+      const double gap = search.gap_at(t1);
+      if (gap < 0 && !seen_open(search, gap, t0, t1))
+        return refine(search, shorten(search, t_apart, t1), t1);
       return std::nullopt;
     }
   }

@@ -39,7 +39,8 @@ struct Impact {
 /// then bisection to adjacent doubles. No margin around the bodies biases the time. A wrong result
 /// of the root finder costs time, never correctness.
 /// @param t0, t1  [s], t0 <= t1; the motions' bounds must hold in between
-/// @pre the solids do not overlap at t0 (if they do, the impact is at t0 with the negative gap)
+/// @pre the solids do not overlap at t0 (if they do, the impact is at t0 with the negative gap,
+///   unless that is a rounding and opens)
 /// @return nothing where they stay apart until t1. A grazing contact shallower than round-off may
 ///   be reported or not. Where solids slide along each other and 2000 advances do not reach t1, the
 ///   advances grow: then a grazing contact shallower than 1e-8 of the smaller solid's size may be

@@ -6,6 +6,7 @@
 
 #include "framework/collision/edge_bound.h"
 #include "framework/collision/ellipsoid.h"
+#include "framework/collision/frame_bound.h"
 #include "framework/collision/piece_pairs.h"
 #include "framework/collision/vertex_lines.h"
 #include "framework/core/numbers.h"
@@ -93,9 +94,9 @@ double first_root_of_quadratic(double g, double c, double q) {
 TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
                            const MotionBounds& bounds_a, const CollisionShape& b,
                            const MotionState& state_b, const MotionBounds& bounds_b, double horizon,
-                           PairCache* cache) {
+                           PairCache* cache, Effort effort) {
   if (a.is_half_space())
-    return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon, cache);
+    return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon, cache, effort);
   const double radius = a.radius() + b.radius();
   if (a.is_ball() && b.is_ball() && bounds_a.acceleration_world == bounds_b.acceleration_world &&
       bounds_a.acceleration_deviation + bounds_b.acceleration_deviation == 0.0) {
@@ -151,12 +152,18 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
     collect_lines(query.piece_of_b(j), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
     const double before = bound.duration;
     along(found.distance - radius, found.normal_b_to_a, lines_b);
-    if (radius != 0.0 || bound.duration > kShort * before) return;
     const PlacedPolytope piece_a = query.piece_of_a(i), piece_b = query.piece_of_b(j);
-    bound.duration =
-        std::max(bound.duration, duration_of_edges({piece_a, state_a, bounds_a, lines_a},
-                                                   {piece_b, state_b, bounds_b, lines_b}, query,
-                                                   found, relative, before));
+    if (radius == 0.0 && bound.duration <= kShort * before)
+      bound.duration =
+          std::max(bound.duration, duration_of_edges({piece_a, state_a, bounds_a, lines_a},
+                                                     {piece_b, state_b, bounds_b, lines_b}, query,
+                                                     found, relative, before));
+    if (effort == Effort::kUsual || bound.duration > kShort * before) return;
+    const MovingPiece of_a{piece_a, state_a, bounds_a}, of_b{piece_b, state_b, bounds_b};
+    const double gap = std::max(found.distance - radius, 0.0);
+    bound.duration = std::max(
+        {bound.duration, duration_in_frame(of_b, of_a, gap, found.normal_b_to_a, relative, before),
+         duration_in_frame(of_a, of_b, gap, -found.normal_b_to_a, -relative, before)});
   };
   // The nearest pair first: the shorter its bound, the fewer other pairs can touch before.
   const NearestPieces nearest =

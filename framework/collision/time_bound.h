@@ -11,7 +11,7 @@
 /// term is bounded by |e| |r|; the first changes at the rate alpha x r + w x ((w + e) x r). For
 /// solids that are not convex, every pair of pieces that can come near within the bound is tested.
 /// Two edges that turn while they are near have a longer bound along a normal that turns with them,
-/// (E.2) of edge_bound.h.
+/// (E.2) of edge_bound.h; in the frame of one of the two, (E.3) of frame_bound.h.
 /// For an ellipsoid over a half-space, the support function covers all points of the surface at
 /// once (ellipsoid.h).
 /// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley
@@ -30,12 +30,15 @@ struct TimeBound {
   double gap;
 };
 
+/// kMore: by (E.3) too, which costs as much again and pays where a search takes many steps.
+enum class Effort { kUsual, kMore };
+
 /// @param horizon  [s], >= 0: how far ahead to look; the motion bounds must hold that long
 /// @param cache    of this pair, may be null
 TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
                            const MotionBounds& bounds_a, const CollisionShape& b,
                            const MotionState& state_b, const MotionBounds& bounds_b, double horizon,
-                           PairCache* cache = nullptr);
+                           PairCache* cache = nullptr, Effort effort = Effort::kUsual);
 
 /// First t >= 0 at which g + c t + q t^2 falls below zero, given g >= 0; infinite where it never
 /// does.

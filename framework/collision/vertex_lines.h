@@ -21,6 +21,8 @@ struct Relative {
   Vector3d velocity, acceleration;
   double deviation, turning_reach;  // [m/s^2], [m/s]
 
+  /// B against A.
+  Relative operator-() const { return {-velocity, -acceleration, deviation, turning_reach}; }
   double reach(double t) const {
     return ((velocity.norm() + turning_reach) + 0.5 * (acceleration.norm() + deviation) * t) * t;
   }

@@ -25,4 +25,19 @@ inline collision::Motion flight(const Vector3d& x0, const Vector3d& v0,
   return motion;
 }
 
+/// As a method of integration gives it: the path turns at omega + error, its states say omega.
+inline collision::Motion numerical(const Vector3d& x0, const Vector3d& v0,
+                                   const Vector3d& acceleration, const Vector3d& omega,
+                                   const Vector3d& error, const Quaterniond& q0) {
+  collision::Motion motion = flight(x0, v0, acceleration, omega + error, q0);
+  motion.at = [at = motion.at, omega](double t) {
+    collision::MotionState state = at(t);
+    state.omega_world = omega;
+    return state;
+  };
+  motion.bounds.angular_speed = omega.norm();
+  motion.bounds.angular_velocity_error = error.norm();
+  return motion;
+}
+
 }  // namespace tumble::testing

@@ -11,6 +11,7 @@
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/events/flight_run.h"
 #include "tests/engines/event_scenes.h"
+#include "tests/support/places.h"
 
 namespace tumble::testing {
 namespace {
@@ -484,6 +485,49 @@ TEST(Engines, RefuseSleepAndSaySo) {
       EXPECT_NE(std::string(error.what()).find("--engine rd"), std::string::npos) << error.what();
     }
   }
+}
+
+// Six bodies that do not bounce fly at each other, turning, without persistent contacts.
+scene::Scene cluster(std::uint64_t seed) {
+  Random random(seed);
+  const auto vector = [&](double most) {
+    return Vector3d(random.between(-most, most), random.between(-most, most),
+                    random.between(-most, most));
+  };
+  std::vector<scene::BodySpec> bodies;
+  for (int k = 0; k < 6; ++k) {
+    const Vector3d place = (k % 2 == 0 ? 1.2 : -1.2) * Vector3d::Unit(k / 2) + vector(0.2);
+    bodies.push_back(ball("body" + std::to_string(k), random.between(0.25, 0.35), 1.0, place,
+                          -1.2 * place + vector(0.3)));
+    if (k == 1 || k == 2)
+      bodies.back().shape = scene::ModelSpec{
+          test::source_dir() + (k == 1 ? "/models/l_shape.3ds" : "/models/rock_2.3ds"), "", 0.25};
+    bodies.back().mass_kg = random.between(0.4, 6.0);
+    bodies.back().omega_world_rad_s = vector(4.0);
+    bodies.back().restitution = 0.0;
+  }
+  scene::Scene scene = scene_of(std::move(bodies), 0.7);
+  scene.step_s = 1.0 / 240.0;
+  return scene;
+}
+
+// They press each other, meet within microseconds, and are sent apart at a millimetre a second:
+// time goes on, and what lies between two impacts is found in few looks at gaps.
+TEST(BodiesThatDoNotBounce, MeetAndPartWithoutStandingStill) {
+  int clusters = 0;
+  for (const std::uint64_t seed : {13, 16}) {
+    const scene::Scene scene = cluster(seed);
+    for (const std::string engine : {"rd", "ordered"}) {
+      const Trajectory run = run_by(engine, scene);
+      EXPECT_EQ(run.stopped_by, "") << "seed " << seed << ", " << engine;
+      clusters += run.events.size() > 300 ? 1 : 0;
+      // Ten or so pairs are searched after each, few of them for long (256 looks and some): 150 to
+      // 500 at each. Bounds of fixed normals alone take 2000.
+      EXPECT_LT(run.counters.counts.at("gap_evaluations"), 700 * run.events.size())
+          << "seed " << seed << ", " << engine;
+    }
+  }
+  EXPECT_EQ(clusters, 4) << "the lot does not try what it is about";
 }
 
 }  // namespace
