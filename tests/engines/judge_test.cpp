@@ -266,6 +266,27 @@ TEST(Judge, ADistanceAndAnAngleAreMeasuredFromTheStart) {
   expect_value(made, angle, 14.0);
 }
 
+// A body that turns 40 rad from frame to frame, ever faster or slower: its angle is 400 t + b t^2 / 2.
+// Where its rate changes by 2 pi / 0.1 s and more from one to the next, nobody knows its turns.
+TEST(Judge, AnAngleCountsWholeTurnsBetweenFrames) {
+  for (const double b : {0.0, 500.0, -600.0, 700.0}) {
+    HandMade made(
+        [&](double t) {
+          BodyPose pose = at({0, 0, 0}, turned((400.0 + 0.5 * b * t) * t, Vector3d::UnitZ()));
+          pose.omega_world = (400.0 + b * t) * Vector3d::UnitZ();
+          return pose;
+        },
+        stays({9, 0, 0}));
+    CheckSpec angle = check_of("angle_at", 1e-9);
+    angle.body = "first";
+    angle.axis = Vector3d::UnitZ();
+    angle.expected = {400.0 + 0.5 * b};
+    const CheckResult result = judged(made, angle);
+    EXPECT_EQ(result.passed, b < 628.0) << b << ": " << result.detail;
+    EXPECT_EQ(result.detail.find("too far from frame to frame") != std::string::npos, b > 628.0);
+  }
+}
+
 TEST(Judge, WhatStandsDoesNotLeanAndWhatFallsDoes) {
   HandMade made(
       [](double t) {

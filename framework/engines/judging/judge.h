@@ -32,7 +32,7 @@
 ///   distance_travelled  |displacement of the body from its start - expected| at `at_s`, along
 ///                       `axis` (world) where given [m]
 ///   angle_at            |angle - expected| at `at_s`: rotation of the body about `axis` (world)
-///                       with whole turns, at most half a turn between two frames [rad]
+///                       with whole turns, which rates at frames tell between them [rad]
 ///   stands              largest angle between the own `axis` of `body` or `bodies` and its first
 ///                       direction, at `at_s` [rad]
 ///   falls               the same; the smallest [rad]; right when >= tolerance

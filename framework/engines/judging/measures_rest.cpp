@@ -1,5 +1,7 @@
 // Measures of bodies at rest, sliding, rotating and falling. From positions and velocities alone.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -139,12 +141,24 @@ Finding angle_at(const CheckSpec& check, const Scene&, const Trajectory& run) {
   const Frame* end = frame_at(check.at_s, run);
   if (end == nullptr) return no_frame(check.at_s);
   const auto body = static_cast<std::size_t>(index_of(check.body, run));
-  double angle = 0.0;  // with whole turns: summed from frame to frame, each less than half a turn
+  // Summed from frame to frame: places say each but for whole turns, and these the rates at its
+  // ends, unless they differ by so much that their mean may be half a turn off.
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  double angle = 0.0;
   for (const Frame* frame = &run.frames.front(); frame != end; ++frame) {
-    Quaterniond turn =
-        frame[1].poses[body].world_from_body * frame->poses[body].world_from_body.conjugate();
-    if (turn.w() < 0) turn.coeffs() *= -1.0;
-    angle += 2.0 * std::atan2(check.axis->dot(turn.vec()), turn.w());
+    const BodyPose &from = frame->poses[body], &to = frame[1].poses[body];
+    const double passed = frame[1].time - frame->time,
+                 rate_before = check.axis->dot(from.omega_world),
+                 rate_after = check.axis->dot(to.omega_world);
+    if (std::abs(rate_after - rate_before) * passed >= kTurn)
+      return {kInfinity,
+              fmt::format("turns at {:.3g} rad/s and, {:.3g} s later, at {:.3g} rad/s {}: too far "
+                          "from frame to frame to count its turns",
+                          rate_before, passed, rate_after, at_time(frame[1].time))};
+    const Quaterniond turn = to.world_from_body * from.world_from_body.conjugate();
+    const double about = 0.5 * (rate_before + rate_after) * passed;
+    angle += about +
+             std::remainder(2.0 * std::atan2(check.axis->dot(turn.vec()), turn.w()) - about, kTurn);
   }
   Finding finding;
   finding.worst(std::abs(angle - check.expected[0]),
