@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "framework/effects/build_world.h"
+#include "framework/engines/base/rest_speed.h"
 
 namespace tumble::cli {
 namespace {
@@ -32,11 +33,11 @@ std::vector<const WorldBody*> lossy_bouncers(const World& world) {
 
 std::string note_of_rest_speed(const scene::Scene& scene) {
   // The height of the last bounce over the body's radius; those of bodies of a metre are 5e-8.
-  constexpr double kPartOfSize = 1e-5;
+  constexpr double kPartOfSize = 1.01 * engines::kLastBounceOfRadius;  // rounding is no news
   constexpr double kPartOfSpeed = 0.1;
   // of sqrt(g r): that of a model that is dropped (scene/model_scene.cpp)
   constexpr double kRestSpeed = 5e-4;
-  const double rest = scene.rest_speed_m_s;
+  const double rest = engines::rest_speed_of(scene);
   const World world = build_world(scene);
   const double g = world.gravity_world ? world.gravity_world->norm() : 0.0;
   for (const WorldBody* bouncer : lossy_bouncers(world)) {

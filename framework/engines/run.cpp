@@ -14,6 +14,7 @@
 #include "framework/effects/build_world.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/rest_speed.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
@@ -67,6 +68,13 @@ scene::Scene in_chosen_coordinates(const scene::Scene& scene, const Laws& laws) 
   chosen.coordinates = laws.constraint_multipliers && !laws.rows_are_given
                            ? scene::Coordinates::kMaximal
                            : scene::Coordinates::kReduced;
+  return chosen;
+}
+
+scene::Scene at_its_rest_speed(const scene::Scene& scene) {
+  scene::Scene chosen = scene;
+  chosen.rest_speed_m_s = rest_speed_of(scene);
+  chosen.gives_rest_speed = true;
   return chosen;
 }
 
@@ -193,6 +201,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
                TrajectorySink& sink) {
   if (scene.coordinates == scene::Coordinates::kAutomatic)
     return run_scene(in_chosen_coordinates(scene, laws), laws, asked, sink);
+  if (!scene.gives_rest_speed) return run_scene(at_its_rest_speed(scene), laws, asked, sink);
   RunOptions options = asked;
   if (options.engine.empty()) options.engine = scene.engine.empty() ? "rd" : scene.engine;
   const Engine engine = engine_of(options, laws);

@@ -128,6 +128,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   read(root, "engine", scene.engine);
   scene.duration_s = root.at("duration_s");
   read(root, "step_s", scene.step_s);
+  scene.gives_rest_speed = root.contains("rest_speed_m_s");
   read(root, "rest_speed_m_s", scene.rest_speed_m_s);
   // Bodies first, then the entries that name them.
   read_bodies(document, scene);

@@ -150,6 +150,8 @@ struct Scene {
   double step_s = 1.0 / 60.0;
   // impacts with a smaller separation speed end in rest (restitution threshold)
   double rest_speed_m_s = 1e-3;
+  // false: engines take less where bodies are small or slow (engines/base/rest_speed.h)
+  bool gives_rest_speed = true;
   std::vector<BodySpec> bodies;
   // entries of effects: lists of the types in framework/effects/NAME/NAME.h, such as
   // effects.of<SpringSpec>()

@@ -355,17 +355,22 @@ TEST_F(CommandLine, ARecordingThatCannotBeTrustedIsShownWithAWarning) {
   EXPECT_TRUE(holds(contents_of(folder_ / "p.html"), "energy_rises of 'b'"));
 }
 
-// The rest speed is a fixed one: for a ball of 1 mm it ends bounces of 5e-5 of its radius, for one
-// of 1 m of 5e-8.
+// A rest speed of 1 mm/s that a scene gives: for a ball of 1 mm it ends bounces of 5e-5 of its
+// radius, for one of 1 m of 5e-8. One that it does not give is less for the small ball.
 TEST_F(CommandLine, ExplainSaysWhereTheRestSpeedIsMuchForASmallBody) {
-  const auto scene_of_radius = [](const char* radius) {
+  const auto scene_of_radius = [](const char* radius,
+                                  const char* rest = R"("rest_speed_m_s": 1e-3,)") {
     return fmt::format(
-        R"({{"title": "t", "duration_s": 1, "gravity_m_s2": [0, 0, -9.81], "bodies": [
+        R"({{"title": "t", "duration_s": 1, {1} "gravity_m_s2": [0, 0, -9.81], "bodies": [
       {{"name": "bead", "shape": {{"sphere": {{"radius_m": {0}}}}}, "mass_kg": 0.001,
         "restitution": 0.5, "position_m": [0, 0, 3]}},
       {{"name": "floor", "shape": {{"plane": {{}}}}, "immovable": true}}]}})",
-        radius);
+        radius, rest);
   };
+  write_whole(folder_ / "usual.json", scene_of_radius("0.001", ""));
+  const Said usual = type("explain usual.json");
+  EXPECT_EQ(usual.code, 0) << usual.err;
+  EXPECT_FALSE(holds(usual.out, "rest_speed_m_s")) << usual.out;
   write_whole(folder_ / "small.json", scene_of_radius("0.001"));
   write_whole(folder_ / "large.json", scene_of_radius("1"));
   const Said small = type("explain small.json"), large = type("explain large.json");

@@ -1,6 +1,9 @@
 // A ball on a half-space: closed forms for its bounces, and rest in finite time (Zeno).
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "framework/scene/load_scene.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
 
@@ -51,6 +54,34 @@ TEST(BouncingBall, ComesToRestExactlyOnTheFloorInFewEvents) {
     EXPECT_EQ(end.velocity_world, Vector3d::Zero());
     EXPECT_EQ(result.frames.back().smallest_gap, 0.0);
   }
+}
+
+// A ball of a micrometre that falls from ten: bounces count until they are 1e-5 of its radius high,
+// where no rest speed is given; 1 mm/s, which is given or suits larger balls, ends them at a
+// twentieth of it. The one after bounce k begins at v e^k, and none begins below e v_rest.
+TEST(BouncingBall, OfAMicrometreBouncesUntilNothingIsSeenOfIt) {
+  constexpr double kRadius = 1e-6, kRestitution = 0.5, kHeight = 1e-5;
+  const auto bounces = [&](const std::string& rest, double unit) {
+    const std::string text = fmt::format(
+        R"({{ "title": "t", "duration_s": {}, "step_s": {}, {} "gravity_m_s2": [0, 0, -9.81],
+              "bodies": [ {{ "name": "bead", "shape": {{ "sphere": {{ "radius_m": {} }} }},
+                             "mass_kg": 1, "restitution": {}, "position_m": [0, 0, {}] }},
+                          {{ "name": "floor", "shape": {{ "plane": {{}} }}, "immovable": true }} ]
+           }})",
+        6.0 * std::sqrt(unit), 1e-2 * std::sqrt(unit), rest, kRadius * unit, kRestitution,
+        (kRadius + kHeight) * unit);
+    const Trajectory result = run(scene::parse_scene(text, "bead.json"));
+    EXPECT_EQ(result.stopped_by, "");
+    return static_cast<double>(collision_times(result).size());
+  };
+  const auto expected = [&](double rest_speed, double unit) {
+    return std::ceil(std::log(rest_speed / std::sqrt(2.0 * kGravity * kHeight * unit)) /
+                     std::log(kRestitution)) +
+           1.0;
+  };
+  EXPECT_EQ(bounces("", 1.0), expected(std::sqrt(2.0 * kGravity * 1e-5 * kRadius), 1.0));
+  EXPECT_EQ(bounces(R"("rest_speed_m_s": 1e-3,)", 1.0), expected(1e-3, 1.0));
+  EXPECT_EQ(bounces("", 1e6), expected(1e-3, 1e6));
 }
 
 TEST(BouncingBall, NoFrameHasANegativeGap) {
