@@ -21,6 +21,11 @@ namespace {
 constexpr int kRoundsAmongContacts = 60;
 // impulses at one instant: more are reported as one for each pair
 constexpr std::size_t kMostEventsPerPair = 64;
+// of the largest change of a velocity at that instant: what another order changes and is worth a
+// word
+constexpr double kSeenOrder = 1e-3;
+// pairs at one instant: in a heap of more nothing is symmetric, and both orders take long
+constexpr std::size_t kMostInOrder = 64;
 
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) {
   return {point_world, pair.gap.normal_b_to_a_world};
@@ -356,6 +361,84 @@ void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<Touchi
   work.bodies.write_back();
 }
 
+// @return false: pairs still approach after all rounds
+bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const TouchingPair*>& in_turn,
+                                        double threshold) {
+  bool again = true;
+  const int most = contact_threshold_ ? kRoundsAmongContacts : kMostImpactRounds;
+  for (int rounds = 0; again && ++rounds < most;) {
+    again = false;
+    for (const TouchingPair* pair : in_turn) again = collide(work, *pair, threshold) || again;
+  }
+  return !again;
+}
+
+// Two that approach before the first impulse and share a body that moves: without such, what each
+// impact causes is one order.
+std::optional<SequentialImpacts::Tie> SequentialImpacts::tie_of(
+    Work& work, const std::vector<TouchingPair>& pairs, double threshold) {
+  std::map<int, const TouchingPair*> hit;  // by body
+  std::optional<Tie> tie;
+  for (const TouchingPair& pair : pairs) {
+    const Approach approach =
+        fastest_approach(laws_, region_of(pair), work.body(pair.a), work.body(pair.b), threshold);
+    // what rests on a support meets it with what gravity gives it in a step
+    if (!(approach.velocity < -std::max(threshold, rules_.restitution_threshold))) continue;
+    for (const int body : {pair.a, pair.b}) {
+      if (work.body(body).inertia.inverse_mass == 0.0) continue;
+      const auto [other, is_first] = hit.try_emplace(body, &pair);
+      if (!is_first && !tie) tie = Tie{body, other->second, &pair};
+    }
+  }
+  return tie;
+}
+
+// What the opposite order makes of impacts at one instant. Nothing of it is kept.
+void SequentialImpacts::watch_order(Work& work, const Tie& tie,
+                                    const std::vector<TouchingPair>& pairs, double threshold) {
+  MovingWorld& moving = work.bodies.moving();
+  const RunCounters before = counters_;
+  Work other(moving, laws_);
+  std::vector<const TouchingPair*> backwards;
+  for (const TouchingPair& pair : pairs) backwards.insert(backwards.begin(), &pair);
+  bool is_known = false;
+  try {
+    is_known = collide_in_turn(other, backwards, threshold);
+  } catch (const OutOfTime&) {
+    throw;
+  } catch (const StoppedRun&) {
+    // the order that counts has gone well
+  }
+  counters_ = before;
+  if (!is_known) return;
+  double fastest = 0.0, apart = 0.0;  // [m/s]
+  for (const TouchingPair& pair : pairs)
+    for (const int body : {pair.a, pair.b}) {
+      const Body start = moving.body_at_impact(body);
+      const Body &one = work.body(body), &two = other.body(body);
+      const double arm =
+          moving.shape(body).is_half_space() ? 0.0 : moving.shape(body).bounding_radius();
+      const auto difference = [&](const Vector3d& v, const Vector3d& w) {
+        return (one.velocity_world - v).norm() + arm * (one.omega_world - w).norm();
+      };
+      fastest = std::max(fastest, difference(start.velocity_world, start.omega_world));
+      apart = std::max(apart, difference(two.velocity_world, two.omega_world));
+    }
+  if (!(apart > kSeenOrder * fastest)) return;
+  const auto name = [&](int body) { return "'" + work.world().bodies[body].name + "'"; };
+  const auto partner = [&](const TouchingPair& pair) {
+    return name(pair.a == tie.body ? pair.b : pair.a);
+  };
+  counters_.watch.say(
+      "order of impacts", moving.time(),
+      fmt::format(
+          "at t = {:.6g} s {} meets {} and {} at one instant: impacts act one after the other, in "
+          "the order of bodies in the file, and the opposite order gives velocities that differ by "
+          "{:.2g} m/s. What is symmetric does not stay so; \"contact\": {{\"impact_law\": "
+          "\"simultaneous\"}} and --engine rd resolve impacts of one instant together",
+          moving.time(), name(tie.body), partner(*tie.one), partner(*tie.two), apart));
+}
+
 Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs,
                                       std::size_t trigger) {
   Work work(moving, laws_);
@@ -364,12 +447,17 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     approach_threshold.look(laws_, region_of(pair), work.body(pair.a), work.body(pair.b));
   const double threshold = approach_threshold.value();
 
-  bool again = law_ == scene::ImpactLaw::kSequential;
-  int rounds = 0;
-  if (!again) collide_together(work, pairs, threshold, true);
-  while (again && ++rounds < (contact_threshold_ ? kRoundsAmongContacts : kMostImpactRounds)) {
-    again = false;
-    for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
+  bool again = false;
+  if (law_ == scene::ImpactLaw::kSimultaneous) {
+    collide_together(work, pairs, threshold, true);
+  } else {
+    const std::optional<Tie> tie = pairs.size() > 1 && pairs.size() <= kMostInOrder
+                                       ? tie_of(work, pairs, threshold)
+                                       : std::nullopt;
+    std::vector<const TouchingPair*> in_turn;
+    for (const TouchingPair& pair : pairs) in_turn.push_back(&pair);
+    again = !collide_in_turn(work, in_turn, threshold);
+    if (tie && !again) watch_order(work, *tie, pairs, threshold);
   }
   // what is left of an impact that many bodies in contact pass to and fro is resolved at all at
   // once

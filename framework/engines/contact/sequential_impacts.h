@@ -5,7 +5,8 @@
 /// touch, or, when the middle does not approach, at the corner of that region that approaches
 /// fastest. Rounds follow until no pair approaches faster than round-off. For equal balls in a row
 /// and restitution 1 this is Newton's cradle. With restitution below 1 the outcome depends on the
-/// order, which is therefore part of the law.
+/// order, which is therefore part of the law; where two impacts of one body at one instant give
+/// another result in the opposite order, a notice says so.
 ///
 /// Bodies on rods and joints: the impulse acts on the constrained system (impact_bodies.h). Its
 /// size is that of the laws' collision_impulse for the free bodies, times K_free / K_held, so that
@@ -93,6 +94,16 @@ class SequentialImpacts {
   struct Work;
   bool push_pair_apart(Work& work, const TouchingPair& pair);
   bool collide(Work& work, const TouchingPair& pair, double threshold);
+  bool collide_in_turn(Work& work, const std::vector<const TouchingPair*>& in_turn,
+                       double threshold);
+  /// Impacts whose order decides: two of one body at one instant.
+  struct Tie {
+    int body;
+    const TouchingPair *one, *two;
+  };
+  std::optional<Tie> tie_of(Work& work, const std::vector<TouchingPair>& pairs, double threshold);
+  void watch_order(Work& work, const Tie& tie, const std::vector<TouchingPair>& pairs,
+                   double threshold);
   double friction_at_impact(const World& world, const TouchingPair& pair) const;
   ContactSolution solve_without_gain(const ContactProblem& problem);
   void note_unsolved(const MovingWorld& moving, const std::vector<int>& bodies,

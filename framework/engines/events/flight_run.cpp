@@ -30,6 +30,11 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
   for (std::size_t k = 0; k < callbacks_.size(); ++k)
     callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k),
                               StampKind::kCallback, callbacks_[k].bodies.front(), -1});
+  if (scene.contact && scene.contact->impact_law == scene::ImpactLaw::kSimultaneous)
+    counters.notices.emplace_back(
+        "\"impact_law\": \"simultaneous\" takes impacts within an island together; those of bodies "
+        "that fly freely act one after the other in this engine, also at one instant: --engine rd "
+        "takes all together");
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_},
                         scene.file.empty() ? scene.name : scene.file.string(), counters.notices);

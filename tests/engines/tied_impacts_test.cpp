@@ -1,0 +1,74 @@
+// Two impacts of one body at one instant: the sequential law takes them in the order of bodies, and
+// says so where that decides what comes of them.
+#include <gtest/gtest.h>
+
+#include "tests/engines/reference_runs.h"
+
+namespace tumble::testing::tied_impacts_test {
+namespace {
+
+// A ball of mass 1 rests at the origin; two of mass m, at the same distance and speed, hit it at
+// one instant, from directions that make the angle `between`.
+scene::Scene hit_by_two(double mass, double restitution, double between,
+                        std::optional<scene::ImpactLaw> law) {
+  std::vector<scene::BodySpec> bodies{
+      ball("rests", 0.125, 1.0, Vector3d::Zero(), Vector3d::Zero())};
+  for (const double side : {-0.5, 0.5}) {
+    const Vector3d from(std::cos(side * between), std::sin(side * between), 0.0);
+    bodies.push_back(ball(side < 0 ? "one" : "two", 0.125, mass, 0.75 * from, -from));
+  }
+  for (scene::BodySpec& body : bodies) body.restitution = restitution;
+  scene::Scene scene = scene_of(std::move(bodies), 1.0);
+  if (law) {
+    scene.contact = scene::ContactSpec{};
+    scene.contact->impact_law = *law;
+  }
+  return scene;
+}
+
+bool says_order(const Trajectory& run) {
+  for (const std::string& notice : run.counters.notices)
+    if (notice.find("'rests' meets 'one' and 'two' at one instant") != std::string::npos)
+      return notice.find("impact_law\": \"simultaneous\"") != std::string::npos;
+  return false;
+}
+
+// Across the line of symmetry, which is x, the ball at rest must not move.
+double asymmetry(const Trajectory& run) {
+  return std::abs(run.frames.back().poses[0].velocity_world.y());
+}
+
+constexpr double kThird = M_PI / 3;  // of the balls of a rack
+
+TEST(ImpactsAtOneInstant, WhoseOrderDecidesAreReportedWithTheLawThatIsSymmetric) {
+  const Trajectory run = run_on("rd", hit_by_two(1.0, 0.9, kThird, scene::ImpactLaw::kSequential));
+  EXPECT_GT(asymmetry(run), 0.1);
+  EXPECT_TRUE(says_order(run));
+  const scene::Scene simultaneous = hit_by_two(1.0, 0.9, kThird, scene::ImpactLaw::kSimultaneous);
+  const Trajectory together = run_on("rd", simultaneous);
+  EXPECT_LT(asymmetry(together), 1e-12) << "rounding of speeds of 1 m/s";
+  EXPECT_FALSE(says_order(together));
+  EXPECT_TRUE(together.counters.notices.empty());
+  // events have an order, and so have impacts of bodies that fly freely
+  ASSERT_FALSE(run_on("ordered", simultaneous).counters.notices.empty());
+  EXPECT_NE(run_on("ordered", simultaneous).counters.notices[0].find("--engine rd takes all"),
+            std::string::npos);
+  EXPECT_TRUE(says_order(run_on("rd", hit_by_two(1.0, 0.9, kThird, std::nullopt))));
+  EXPECT_TRUE(says_order(run_on("rd", hit_by_two(0.5, 0.9, M_PI, std::nullopt))));
+}
+
+// Equal elastic balls in a line hand their speeds on, at right angles neither impact feels the
+// other, and a ball that hits a row meets one that meets the next: one result in either order.
+TEST(ImpactsAtOneInstant, WhoseOrderDecidesNothingAreNotReported) {
+  EXPECT_FALSE(says_order(run_on("rd", hit_by_two(1.0, 1.0, M_PI, std::nullopt))));
+  EXPECT_FALSE(says_order(run_on("rd", hit_by_two(2.0, 0.5, M_PI / 2, std::nullopt))));
+  std::vector<scene::BodySpec> row{ball("hits", 0.125, 1.0, {-0.75, 0, 0}, {1, 0, 0})};
+  for (int k = 0; k < 3; ++k)
+    row.push_back(ball("row" + std::to_string(k), 0.125, 1.0, {0.25 * k, 0, 0}, Vector3d::Zero()));
+  for (scene::BodySpec& body : row) body.restitution = 0.9;
+  for (const std::string& notice : run_on("rd", scene_of(std::move(row), 1.0)).counters.notices)
+    EXPECT_EQ(notice.find("at one instant"), std::string::npos) << notice;
+}
+
+}  // namespace
+}  // namespace tumble::testing::tied_impacts_test
