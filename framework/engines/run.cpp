@@ -21,6 +21,7 @@
 #include "framework/engines/rd/retroactive.h"
 #include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/local_origin.h"
+#include "framework/engines/stepping/shared_forces.h"
 #include "framework/engines/stepping/start_overlaps.h"
 #include "framework/engines/stepping/start_watch.h"
 #include "framework/engines/timewarp/taught_timewarp.h"
@@ -251,6 +252,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   for (const Callback& callback : options.callbacks)
     if (callback.time <= 0) pushed.insert(callback.bodies.begin(), callback.bodies.end());
   StartWatch watch(scene, std::move(pushed), sink);
+  if (const auto shared = notice_of_shared_forces(scene, laws)) watch.add(*shared);
   DiscontinuityCount counted(watch);
   counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);

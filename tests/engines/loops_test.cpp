@@ -9,6 +9,7 @@
 
 #include "framework/core/random.h"
 #include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_runs.h"
 
@@ -161,6 +162,56 @@ TEST(Loops, ABennettLinkageIsOfFourthOrderInTheStep) {
     EXPECT_LT(coarse, 1e-3);
     EXPECT_LT(fine, coarse / 64);  // of fourth order 256: steps of 1/30 s are not short
   }
+}
+
+// ---- What statics do not tell
+
+// A beam that hangs on rods of 1 m at these places along it.
+scene::Scene hung_beam(const std::vector<Vector3d>& at) {
+  scene::Scene scene = scene_of(
+      {box("beam", {1.0, 0.5, 0.05}, 2.0, Vector3d::Zero(), Vector3d::Zero())}, 0.1, kEarth);
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    effects::RodSpec rod;
+    rod.name = fmt::format("rod {}", k);
+    rod.a = {"beam", at[k]};
+    rod.b = {"", at[k] + Vector3d::UnitZ()};
+    rod.length_m = 1.0;
+    scene.effects.of<effects::RodSpec>().push_back(rod);
+  }
+  scene.stabilisation = scene::StabilisationSpec{};
+  return scene;
+}
+
+std::string said_of_shares(const scene::Scene& scene, const std::string& engine = "rd") {
+  for (const std::string& notice : run_on(engine, scene).counters.notices)
+    if (const auto end = notice.find(" are not unique"); end != std::string::npos)
+      return notice.substr(0, end);
+  return "";
+}
+
+// Three parallel rods in a row: two equations for three tensions. Four at the corners of a
+// rectangle: three for four. Fewer are told by the levers; a rod beside the row, too, whose share
+// the turning about the row tells.
+TEST(Loops, WhatSharesALoadInManyWaysIsNamed) {
+  const Vector3d left(-0.8, 0, 0), right(0.8, 0, 0), middle(0.1, 0, 0);
+  for (const std::string engine : {"rd", "ordered"})
+    EXPECT_EQ(said_of_shares(hung_beam({left, middle, right}), engine),
+              "the forces of 'rod 0', 'rod 1', 'rod 2'");
+  EXPECT_EQ(
+      said_of_shares(hung_beam({{-0.8, -0.4, 0}, {0.8, -0.4, 0}, {0.8, 0.4, 0}, {-0.8, 0.4, 0}})),
+      "the forces of 'rod 0', 'rod 1', 'rod 2', 'rod 3'");
+  EXPECT_EQ(said_of_shares(hung_beam({left, right})), "");
+  EXPECT_EQ(said_of_shares(hung_beam({left, right, {0.0, 0.4, 0}})), "");
+  EXPECT_EQ(said_of_shares(hung_beam({left, middle, right, {0.0, 0.4, 0}})),
+            "the forces of 'rod 0', 'rod 1', 'rod 2'");
+}
+
+// Its hinges could push along their parallel axes in many ways; under forces in the plane they do
+// not, and statics tell what they carry.
+TEST(Loops, APlaneLinkageSharesNothingInItsPlane) {
+  const std::vector<Vector3d> points = {{0, 0, 0}, {0.1, 0, 0.5}, {0.9, 0, 0.7}, {1.1, 0, 0}},
+                              axes(4, Vector3d::UnitY());
+  EXPECT_EQ(said_of_shares(linkage(points, axes)), "");
 }
 
 }  // namespace loops_test

@@ -131,6 +131,11 @@ class LinkedBodies final : effects::GroupPlaces {
   void measure(const std::vector<RigidBodyState>& states, double t,
                const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
+  /// Raises, for each of its links, by how much what it pulls with changes along the ways in which
+  /// rows that say what others say may share their load, over all multipliers. 0: statics alone
+  /// tell its force. Nothing of contacts is looked at.
+  void measure_shared(const std::vector<RigidBodyState>& states, double t, LinkForces& shared);
+
  private:
   std::string subject() const;  // of messages
   double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
@@ -152,6 +157,8 @@ class LinkedBodies final : effects::GroupPlaces {
   bool closes_loop(const LinkedGroup& group) const;
   void choose_rows(const std::vector<RigidBodyState>& local, double t);
   std::vector<char> spanning(const std::vector<Body>& bodies, std::size_t at_least);
+  struct Directions;
+  Directions directions(const std::vector<Constraint>& all, const std::vector<Body>& bodies) const;
   bool has_redundant_rows();
   static std::vector<Constraint> those_of(const std::vector<char>& chosen,
                                           std::vector<Constraint> all);

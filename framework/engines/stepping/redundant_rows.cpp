@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/core/decompositions.h"
 #include "framework/core/disjoint_sets.h"
 #include "framework/dynamics/state_units.h"
 #include "framework/effects/registry.h"
@@ -98,24 +99,40 @@ void LinkedBodies::choose_rows(const std::vector<RigidBodyState>& local, double 
   if (has_redundant_rows()) obeyed_ = spanning(place_bodies(local, t), *rank_at_start_);
 }
 
-// By row, whether it says something that others do not. Those of a tree come before those that
-// close its loops. No mass counts: rows between a heavy and a light body are as good as others.
-std::vector<char> LinkedBodies::spanning(const std::vector<Body>& bodies, std::size_t at_least) {
-  const std::vector<Constraint> all = rows(bodies);
+// Rows of unit length, in which turnings count by the size of the body.
+struct LinkedBodies::Directions {
+  MatrixXd rows;     // (rows, 6 a body)
+  VectorXd lengths;  // by row: what it had before
+};
+
+LinkedBodies::Directions LinkedBodies::directions(const std::vector<Constraint>& all,
+                                                  const std::vector<Body>& bodies) const {
   const auto m = static_cast<Eigen::Index>(all.size());
-  MatrixXd J = MatrixXd::Zero(m, 6 * static_cast<Eigen::Index>(bodies_.size()));
+  Directions found{MatrixXd::Zero(m, 6 * static_cast<Eigen::Index>(bodies_.size())),
+                   VectorXd::Ones(m)};
+  MatrixXd& J = found.rows;
   for (Eigen::Index k = 0; k < m; ++k) {
     const auto& [a, b, row] = all[static_cast<std::size_t>(k)];
     for (const auto& [place, jacobian] :
          {std::pair{a, &row.jacobian_a}, std::pair{b, &row.jacobian_b}}) {
       if (static_cast<std::size_t>(place) >= bodies_.size()) continue;
-      // turnings by the body's size
       const double size = radius_of_gyration(bodies[static_cast<std::size_t>(place)].inertia);
       J.row(k).segment<3>(6 * place) += jacobian->head<3>();
       if (size > 0) J.row(k).segment<3>(6 * place + 3) += jacobian->tail<3>() / size;
     }
-    if (const double length = J.row(k).norm(); length > 0) J.row(k) /= length;
+    if (const double length = J.row(k).norm(); length > 0) {
+      J.row(k) /= length;
+      found.lengths[k] = length;
+    }
   }
+  return found;
+}
+
+// By row, whether it says something that others do not. Those of a tree come before those that
+// close its loops. No mass counts: rows between a heavy and a light body are as good as others.
+std::vector<char> LinkedBodies::spanning(const std::vector<Body>& bodies, std::size_t at_least) {
+  const std::vector<Constraint> all = rows(bodies);
+  const MatrixXd J = directions(all, bodies).rows;
   std::vector<char> last(all.size(), 0);
   for (const int row : loop_rows_) last[static_cast<std::size_t>(row)] = 1;
   return spanning_rows(J * J.transpose(), last, at_least,
@@ -143,6 +160,44 @@ std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBod
     row.body_b = std::min(row.body_b, fixed_end());
   }
   return all;
+}
+
+// Multipliers that do nothing together, J^T lambda = 0, may be added to any answer. What each link
+// pulls with then changes to first order, by both signs of a small part; to second order it changes
+// across a force that statics tell, as in a plane linkage by forces along its hinges.
+void LinkedBodies::measure_shared(const std::vector<RigidBodyState>& states, double t,
+                                  LinkForces& shared) {
+  constexpr double kPart = 1e-3;  // of all multipliers
+  if (!has_redundant_rows()) return;
+  const std::vector<RigidBodyState> local = take(states);
+  time_of_stage_ = t;
+  const std::vector<Body> bodies = place_bodies(local, t);
+  const std::vector<Constraint> all = rows(bodies);
+  std::vector<Wrench> wrenches = forces(local, bodies);
+  const VectorXd multipliers = add_constraint_forces(all, bodies, local, wrenches);
+  const Directions found = directions(all, bodies);
+  const double size = found.lengths.cwiseProduct(multipliers).norm();
+  if (!(size > 0.0)) return;
+  const SymmetricEigen modes = symmetric_eigen(MatrixXd(found.rows * found.rows.transpose()));
+  const double redundant = left_of_redundant(open_part(bodies, all));
+  for (Eigen::Index mode = 0; mode < modes.values.size(); ++mode) {
+    if (modes.values[mode] > redundant) continue;
+    const VectorXd change = kPart * size * modes.vectors.col(mode).cwiseQuotient(found.lengths);
+    Eigen::Index at = 0;
+    for (const Terms& terms : terms_) {
+      const auto count = static_cast<Eigen::Index>(terms.acting->row_count());
+      std::vector<double>& most = shared.of_effects[terms.effect];
+      if (!most.empty() && count > 0) {
+        std::vector<double> more(most.size(), 0.0), less(most.size(), 0.0);
+        const VectorXd here = multipliers.segment(at, count), by = change.segment(at, count);
+        terms.acting->measure(bodies, here + by, more);
+        terms.acting->measure(bodies, here - by, less);
+        for (std::size_t k = 0; k < most.size(); ++k)
+          most[k] = std::max(most[k], std::abs(more[k] - less[k]) / (2.0 * kPart * size));
+      }
+      at += count;
+    }
+  }
 }
 
 }  // namespace tumble::engines
