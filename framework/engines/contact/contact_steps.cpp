@@ -281,18 +281,21 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island,
 
 // Where a pair that slid and would stick at the end of the step stops sliding: when the friction
 // that stops it is all there can be. What stops the slip is A + F s, with F the steady forces along
-// it, the available friction M s; two steps of different lengths tell A and F.
+// it, the available friction M s; two steps of different lengths tell A and F. A pair that slides
+// back at the end of the step has stopped within it, too: there its friction turns round.
 std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem,
                                                           const std::vector<StepContact>& contacts,
                                                           const ContactSolution& solution,
                                                           double h) {
+  constexpr double kTurnsBack = 0.99;  // cosine: against the way that it slid, but for turning
   if (contacts.size() > kContact.few_contacts) return std::nullopt;
   const Pair* stopping = nullptr;
   double least = 1.0, stopping_impulse = 0.0, available = 0.0;
+  double turns_back = 1.0;  // of the step: where the first pair does
   for (std::size_t i = 0; i < contacts.size();) {
     const Pair& pair = contacts[i].pair;
     Vector3d along = Vector3d::Zero();
-    Vector3d slips = Vector3d::Zero();  // of the point that slides fastest
+    Vector3d slips = Vector3d::Zero(), slips_at_end = Vector3d::Zero();  // of the fastest point
     double limit = 0.0, slip = 0.0, speed = 0.0;
     bool sticks = true;
     for (; i < contacts.size() && contacts[i].pair == pair; ++i) {
@@ -310,20 +313,31 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
       if (const Vector3d slides = relative - relative.dot(n) * n; slides.norm() > slip) {
         slips = slides;
         slip = slides.norm();
+        const Vector3d end =
+            relative_velocity(problem, i, solution.velocities) - c.slip_target_world;
+        slips_at_end = end - end.dot(n) * n;
       }
       speed = std::max({speed, va.norm(), vb.norm()});
       const double normal = solution.impulses_world[i].dot(n);
       along += solution.impulses_world[i] - normal * n;
       limit += c.friction * normal;
-      sticks = sticks && (solution.modes[i] == ContactMode::kStick ||
-                          (solution.modes[i] == ContactMode::kOpen && normal == 0.0));
+      // Points share what stops a pair: one may give all that it can, and others not.
+      sticks = sticks &&
+               (solution.modes[i] == ContactMode::kStick ||
+                (solution.modes[i] == ContactMode::kOpen && normal == 0.0) ||
+                (solution.modes[i] == ContactMode::kSlide &&
+                 slip_speed(problem, i, solution.velocities) <= kCreep * restitution_threshold_));
     }
     // What friction stops within a billionth of the step has stopped.
     const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass +
                                         moving_.world().bodies[pair.second].inertia.inverse_mass);
-    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) ||
-        slip <= kNegligible * (speed + within_step))
+    if (memory_.stuck.contains(pair) || !(limit > 0) || slip <= kNegligible * (speed + within_step))
       continue;
+    // With the friction that brakes it, it would end by twice what friction gives more slowly.
+    if (const double back = -slips_at_end.dot(slips) / slip;
+        !sticks && back > kTurnsBack * slips_at_end.norm())
+      turns_back = std::min(turns_back, slip / (slip + back + 2 * within_step));
+    if (!sticks) continue;
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
@@ -331,12 +345,16 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
     stopping_impulse = -along.dot(slips) / slip;
     available = limit;
   }
-  if (!stopping) return std::nullopt;
+  if (!stopping && turns_back == 1.0) return std::nullopt;
   if (!(moving_.time() < memory_.searched_from + memory_.longest_step)) {
     memory_.searched_from = moving_.time();
     memory_.searches = 0;
   }
   if (++memory_.searches > kContact.most_searches) return std::nullopt;
+  if (!stopping) {
+    if (h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
+    return moving_.time() + h * std::max(turns_back, kContact.soon);
+  }
   if (memory_.sliding_search && memory_.sliding_search->pair == *stopping &&
       memory_.sliding_search->start == moving_.time()) {
     if (memory_.sliding_search->found) return std::nullopt;

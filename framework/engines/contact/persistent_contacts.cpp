@@ -322,7 +322,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   require_numbers(island, solution);
   if (finds_other_pressing(island, used, problem, solution, h, is_midway))
     return take_step(island, h);
-  // A pair that stops sliding ends the step there.
+  // A pair that stops sliding, or slides back, ends the step there.
   if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt)
     return stop;
   // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts

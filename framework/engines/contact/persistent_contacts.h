@@ -18,7 +18,7 @@
 ///    first thing of the next. A slower one closes its gap by the step's end. A large
 ///    island that would cut a step many times for that is solved in steps until it rests, unless
 ///    the scene says "located": v' acts from the middle of the step on, x' = x + h v'
-///    (large_islands.cpp). A pair that stops sliding ends the step there.
+///    (large_islands.cpp). A pair that stops sliding, or slides back, ends the step there.
 /// 4. Position correction removes the overlaps that rotation leaves.
 ///
 /// Parts: contact_memory.h (what is kept from step to step), contact_geometry.h (where bodies
