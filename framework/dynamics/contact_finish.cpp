@@ -143,13 +143,15 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
 
 }  // namespace
 
-void hold_rows(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
-  if (goal.system.rows.empty() || progress.accepted) return;
+bool hold_rows(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
+  if (goal.system.rows.empty() || progress.accepted) return false;
   Progress trial = progress;
   hold(goal, std::vector<bool>(goal.system.contacts.size(), false), matrix, trial);
   progress.factorisations = trial.factorisations;
   goal.measure(trial);
-  if (trial.violation.squares < progress.violation.squares) progress = std::move(trial);
+  if (!(trial.violation.squares < progress.violation.squares)) return false;
+  progress = std::move(trial);
+  return true;
 }
 
 bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {

@@ -60,9 +60,9 @@ struct Goal {
 void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress);
 
 /// Impulses of rows that go with those of contacts, from a warm start that knows none of rows:
-/// without them modes would be told from velocities that no row has. Changes nothing where that
-/// lessens no violation.
-void hold_rows(const Goal& goal, BodyMatrix& matrix, Progress& progress);
+/// without them modes would be told from velocities that no row has.
+/// @return false, and nothing is changed: that lessens no violation
+bool hold_rows(const Goal& goal, BodyMatrix& matrix, Progress& progress);
 
 /// Contacts held in all directions, those that would have to pull open: a structure that stands.
 /// True, and `progress` is that, if none leaves its cone; otherwise it is as it was.

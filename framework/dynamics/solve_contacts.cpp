@@ -226,8 +226,15 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
     return;
   }
   contacts::BodyMatrix matrix(goal.system);
-  contacts::hold_rows(goal, matrix, progress);
+  Progress with_rows = progress;
   contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
+  if (progress.accepted || progress.violation.largest <= enough) return;
+  // once more, from impulses of rows that go with those of the warm start
+  with_rows.factorisations = progress.factorisations;
+  if (contacts::hold_rows(goal, matrix, with_rows))
+    contacts::finish(goal, kFirstNewtonSteps, matrix, with_rows);
+  progress.factorisations = with_rows.factorisations;
+  if (with_rows.violation.squares < progress.violation.squares) progress = with_rows;
   if (progress.accepted || progress.violation.largest <= enough) return;
   if (!contacts::stick(goal, matrix, progress))
     Turns(goal, enough, matrix, progress).run(options.most_sweeps);
