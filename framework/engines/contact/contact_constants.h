@@ -66,7 +66,8 @@ struct ContactConstants {
   int curved_rounds = 2;
   /// of a force: as near what presses a body and what springs, drag and water felt of it are to be
   /// where a contact begins, and how often that is looked for. A round leaves a tenth of the error
-  /// or so. Larger, or fewer: the first step of a contact is of first order.
+  /// or so; after as many that are not enough, as many more look where the rounds lead to. Larger,
+  /// or fewer: the first step of a contact is of first order.
   double same_pressing = 1e-4;
   int most_pressing_rounds = 6;
   /// of the longest step: what presses a body in a shorter one is not told from it. Larger: forces

@@ -455,6 +455,13 @@ bool PersistentContacts::finds_other_pressing(const ContactIsland& island,
       for (const auto& [body, wrench] : found) next_pressing_.erase(body);
       return false;
     }
+  const int first = island.bodies.front();
+  const bool ends =
+      is_known || is_same || ++pressing_rounds_[first] > 2 * kContact.most_pressing_rounds;
+  if (!ends && pressing_rounds_[first] > kContact.most_pressing_rounds)
+    found = limit_of_pressing(first, found);
+  else if (!ends)
+    pressing_changes_[first] = changes_of_pressing(found);
   // Of a very short step rounding makes forces of its own: what was known before stays.
   const bool is_told = h > kContact.shortest_step_for_pressing * memory_.longest_step;
   for (const auto& [body, wrench] : found) {
@@ -465,11 +472,52 @@ bool PersistentContacts::finds_other_pressing(const ContactIsland& island,
     else if (before != memory_.pressing.end())
       next_pressing_.insert(*before);
   }
-  if (is_known || is_same ||
-      ++pressing_rounds_[island.bodies.front()] > kContact.most_pressing_rounds)
-    return false;
+  if (ends) return false;
   moving_.lead_pressed(found);
   return true;
+}
+
+std::map<int, Wrench> PersistentContacts::changes_of_pressing(
+    const std::map<int, Wrench>& found) const {
+  std::map<int, Wrench> changes;
+  for (const auto& [body, wrench] : found) {
+    Wrench change = wrench;
+    if (const auto felt = felt_.find(body); felt != felt_.end()) {
+      change.force_world -= felt->second.force_world;
+      change.torque_world -= felt->second.torque_world;
+    }
+    changes.emplace(body, change);
+  }
+  return changes;
+}
+
+// Where forces take most of a motion within the step, each round leaves a part rho near 1 of the
+// change d of the last one: then d + rho d + rho^2 d + ... = d / (1 - rho) is left (Aitken), which
+// two rounds in a row tell.
+std::map<int, Wrench> PersistentContacts::limit_of_pressing(int first,
+                                                            const std::map<int, Wrench>& found) {
+  constexpr double kSlowest = 0.999;  // of rho: what is slower is no sequence that ends
+  const std::map<int, Wrench> changes = changes_of_pressing(found);
+  const std::map<int, Wrench> before = std::exchange(pressing_changes_[first], changes);
+  double along = 0.0, square = 0.0;  // (N m)^2
+  for (const auto& [body, change] : changes) {
+    const auto last = before.find(body);
+    if (last == before.end()) return found;
+    const double size = std::pow(moving_.shape(body).bounding_radius(), 2);
+    along += size * change.force_world.dot(last->second.force_world) +
+             change.torque_world.dot(last->second.torque_world);
+    square +=
+        size * last->second.force_world.squaredNorm() + last->second.torque_world.squaredNorm();
+  }
+  const double rho = square > 0.0 ? along / square : 0.0;
+  if (!(rho < kSlowest)) return found;
+  pressing_changes_[first].clear();  // two plain rounds tell the next
+  std::map<int, Wrench> limit = found;
+  for (auto& [body, wrench] : limit) {
+    wrench.force_world += rho / (1.0 - rho) * changes.at(body).force_world;
+    wrench.torque_world += rho / (1.0 - rho) * changes.at(body).torque_world;
+  }
+  return limit;
 }
 
 // The angle that the fastest of the island's bodies turns in the step; a ball looks the same

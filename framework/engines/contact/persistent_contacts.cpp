@@ -180,6 +180,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
 void PersistentContacts::lead_pressed() {
   felt_.clear();
   pressing_rounds_.clear();
+  pressing_changes_.clear();
   if (memory_.pressing.empty()) return;
   for (const ContactIsland& island : islands_)
     for (const int body : island.bodies)

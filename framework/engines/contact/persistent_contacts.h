@@ -195,6 +195,8 @@ class PersistentContacts {
   bool finds_other_pressing(const ContactIsland& island, const std::vector<StepContact>& contacts,
                             const ContactProblem& problem, const ContactSolution& solution,
                             double h, bool inertia_at_ends);
+  std::map<int, Wrench> changes_of_pressing(const std::map<int, Wrench>& found) const;
+  std::map<int, Wrench> limit_of_pressing(int first, const std::map<int, Wrench>& found);
   double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends,
                       double h) const;
   double turn_of_normals(const ContactIsland& island,
@@ -263,6 +265,9 @@ class PersistentContacts {
   // by body: what it was led with (MovingWorld::lead_pressed); and how often that was looked for
   std::map<int, Wrench> felt_;
   std::map<int, int> pressing_rounds_;  // by an island's first body
+  // by an island's first body, of its bodies: how far the last round was from what they were led
+  // with; empty: not known
+  std::map<int, std::map<int, Wrench>> pressing_changes_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
   // By body, of the island whose step is taken: where it comes out, and the middle of the way
