@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/engines/base/rest_speed.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
@@ -82,6 +83,23 @@ TEST(BouncingBall, OfAMicrometreBouncesUntilNothingIsSeenOfIt) {
   EXPECT_EQ(bounces("", 1.0), expected(std::sqrt(2.0 * kGravity * 1e-5 * kRadius), 1.0));
   EXPECT_EQ(bounces(R"("rest_speed_m_s": 1e-3,)", 1.0), expected(1e-3, 1.0));
   EXPECT_EQ(bounces("", 1e6), expected(1e-3, 1e6));
+}
+
+// Nothing falls: a hundredth of the fastest speed at the start, that of a turning surface too; what
+// a scene gives stays.
+TEST(RestSpeed, OfSlowBodiesInFreeSpaceIsAPartOfTheirSpeed) {
+  const auto rest_speed = [](const std::string& more) {
+    return engines::rest_speed_of(scene::parse_scene(
+        R"({ "title": "t", "duration_s": 1, )" + more + R"( "mass_kg": 1 } ] })", "slow.json"));
+  };
+  const std::string ball =
+      R"("bodies": [ { "name": "ball", "shape": { "sphere": { "radius_m": 0.5 } }, )";
+  EXPECT_DOUBLE_EQ(rest_speed(ball + R"("velocity_m_s": [0, 1e-4, 0],)"), 1e-6);
+  EXPECT_DOUBLE_EQ(rest_speed(ball + R"("angular_velocity_rad_s": [0, 0, 4e-4],)"), 2e-6);
+  EXPECT_EQ(rest_speed(ball + R"("velocity_m_s": [0, 3, 0],)"), 1e-3);
+  EXPECT_EQ(rest_speed(ball), 1e-3);
+  EXPECT_EQ(rest_speed(R"("rest_speed_m_s": 0.01, )" + ball + R"("velocity_m_s": [0, 1e-4, 0],)"),
+            0.01);
 }
 
 TEST(BouncingBall, NoFrameHasANegativeGap) {
