@@ -22,9 +22,6 @@ struct ContactConstants {
   /// margins: nearer than this two touch at the start of a step; farther, a point becomes active
   /// in it. Larger: gaps close late. Smaller: contacts at rest are activated again and again.
   double touching_band = 8.0;
-  /// steps: a gap that so many may open between linked bodies by what is left of their velocities
-  /// (`solved`) is none. Larger: gaps close late. Smaller: contacts are activated again and again.
-  double steps_open = 16.0;
   /// margins: farther than this, and than the restitution threshold goes in a step, a contact has
   /// ended. Larger: contacts outlast their end. Smaller: contacts flicker.
   double open_band = 32.0;

@@ -98,15 +98,11 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
 std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of(
     const ContactIsland& island) {
   std::vector<StepContact> contacts;
-  // What the solver leaves of velocities opens gaps between bodies that rods and joints tie.
-  const double opened =
-      island.linked.empty() ? 0.0 : kContact.steps_open * kContact.solved * speed(island) * step_;
   for (const Pair& pair : island.pairs)
     for (const collision::ManifoldPoint& point : points_.at(pair)) {
       if (!locates() && !may_close(pair, point, moving_.target() - moving_.time())) continue;
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
-      const bool activates =
-          distance > kContact.touching_band * margin + kNegligible * reach(pair) + opened;
+      const bool activates = distance > kContact.touching_band * margin + kNegligible * reach(pair);
       contacts.push_back({pair, point,
                           activates ? -distance / (moving_.target() - moving_.time()) : 0.0,
                           activates, Vector3d::Zero(), point.gap});
