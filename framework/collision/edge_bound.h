@@ -22,10 +22,7 @@
 
 namespace tumble::collision {
 
-struct EdgeSide {
-  const PlacedPolytope& piece;
-  const MotionState& state;
-  const MotionBounds& bounds;
+struct EdgeSide : MovingPiece {
   const VertexLines& lines;  ///< along `found`: what lies at height 0 is nearest
 };
 

@@ -12,17 +12,9 @@
 /// where |w|, |alpha|, |u| and |d| bound the whole time. The step grows as the root of the gap.
 #pragma once
 
-#include "framework/collision/piece_pairs.h"
 #include "framework/collision/vertex_lines.h"
 
 namespace tumble::collision {
-
-/// A piece, and how its solid moves.
-struct MovingPiece {
-  const PlacedPolytope& piece;
-  const MotionState& state;
-  const MotionBounds& bounds;
-};
 
 /// @param gap        of the two pieces, >= 0 [m]
 /// @param normal     of that gap, unit, from `frame` to `other`

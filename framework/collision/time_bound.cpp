@@ -153,13 +153,11 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
     const double before = bound.duration;
     along(found.distance - radius, found.normal_b_to_a, lines_b);
     const PlacedPolytope piece_a = query.piece_of_a(i), piece_b = query.piece_of_b(j);
-    if (radius == 0.0 && bound.duration <= kShort * before)
-      bound.duration =
-          std::max(bound.duration, duration_of_edges({piece_a, state_a, bounds_a, lines_a},
-                                                     {piece_b, state_b, bounds_b, lines_b}, query,
-                                                     found, relative, before));
-    if (effort == Effort::kUsual || bound.duration > kShort * before) return;
     const MovingPiece of_a{piece_a, state_a, bounds_a}, of_b{piece_b, state_b, bounds_b};
+    if (radius == 0.0 && bound.duration <= kShort * before)
+      bound.duration = std::max(bound.duration, duration_of_edges({of_a, lines_a}, {of_b, lines_b},
+                                                                  query, found, relative, before));
+    if (effort == Effort::kUsual || bound.duration > kShort * before) return;
     const double gap = std::max(found.distance - radius, 0.0);
     bound.duration = std::max(
         {bound.duration, duration_in_frame(of_b, of_a, gap, found.normal_b_to_a, relative, before),

@@ -4,6 +4,7 @@
 
 #include "framework/collision/inline_vector.h"
 #include "framework/collision/motion.h"
+#include "framework/collision/piece_pairs.h"
 
 namespace tumble::collision {
 
@@ -15,6 +16,13 @@ struct VertexLine {
 };
 
 using VertexLines = InlineVector<VertexLine, 32>;
+
+/// A piece, and how its solid moves.
+struct MovingPiece {
+  const PlacedPolytope& piece;
+  const MotionState& state;
+  const MotionBounds& bounds;
+};
 
 /// How the centres of two solids move against each other, A against B.
 struct Relative {

@@ -3,6 +3,7 @@
 // trees and loops drawn at random.
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -25,7 +26,6 @@ namespace {
 // Closed forms of numbers of the size of 1: some hundred roundings, of the impact and of the ten
 // steps about it.
 constexpr double kRounding = 1e-12;
-const char* const kEngines[] = {"rd", "ca", "ordered", "tw"};
 
 const Laws& laws() {
   static const Laws all = reference_laws();
@@ -57,7 +57,7 @@ scene::Scene linked_scene(std::vector<scene::BodySpec> bodies, double e, double 
 template <class Look>
 void in_all_engines(const scene::Scene& scene, const Look& look, bool needs_contact = false) {
   for (const auto& [law, asked] : under_all_laws(scene))
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       if (needs_contact && !asked.contact) continue;
       SCOPED_TRACE(std::string(engine) + ", " + law);
       const Trajectory run = run_by(engine, asked, {}, 1000.0, laws());
@@ -359,7 +359,7 @@ TEST(ImpactsOnLinks, FrictionOnABobSlidesOrSticksWithItsRod) {
     }
     scene.contact = scene::ContactSpec{};
     for (const auto law : {scene::ImpactLaw::kSequential, scene::ImpactLaw::kSimultaneous})
-      for (const char* engine : kEngines) {
+      for (const std::string& engine : kEngines) {
         scene.contact->impact_law = law;
         const Trajectory run = run_by(engine, scene, {}, 1000.0, laws());
         const Event& event = first_collision(run);
@@ -531,7 +531,7 @@ TEST(ImpactsOnLinks, WhereRodsHoldBothBodiesNoImpulseSeparatesThemAndTheRunRepor
       {"rod", {"driver", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   for (const auto& [law, asked] : under_all_laws(scene)) {
     if (law == "simultaneous") continue;
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       const Trajectory run = run_by(engine, asked, {}, 60.0, laws());
       EXPECT_NE(run.stopped_by.find("hold both completely"), std::string::npos)
           << engine << ", " << law << ": " << run.stopped_by;
@@ -607,7 +607,7 @@ TEST(ImpactsOnLinks, ACradleOfTouchingBallsKeepsItsEnergy) {
     scene.step_s = 1.0 / steps_a_second;
     // J: above what RK4 leaves at the longest step; a contact instead of a rebound takes 1.05 J
     const double tolerance = 1e-3 * fallen;
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       SCOPED_TRACE(std::string(engine) + ", " + std::to_string(steps_a_second));
       const Trajectory run = run_by(engine, scene, {}, 60.0, laws());
       EXPECT_EQ(run.stopped_by, "");
@@ -636,7 +636,7 @@ TEST(ImpactEnergy, IsJudgedAtEveryImpact) {
   };
   for (const auto& [law, asked] : under_all_laws(scene)) {
     if (law == "simultaneous") continue;  // does not ask the law
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       EXPECT_TRUE(engines::judge_run(asked, run_by(engine, asked, {}, 60.0, laws())).empty())
           << engine;
       const auto results = engines::judge_run(asked, run_by(engine, asked, {}, 60.0, wrong));

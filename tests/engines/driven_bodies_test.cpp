@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kG = 9.81;
 const Vector3d kGravity(0, 0, -kG);
-const char* const kEngines[] = {"rd", "ca", "ordered", "tw"};
 
 const Laws& laws() {
   static const Laws all = reference_laws();
@@ -42,7 +41,7 @@ scene::Scene with_contact(std::vector<scene::BodySpec> bodies, double duration, 
   return scene;
 }
 
-Trajectory run_in(const char* engine, const scene::Scene& scene) {
+Trajectory run_in(const std::string& engine, const scene::Scene& scene) {
   const Trajectory run = run_by(engine, scene, {}, 60.0, laws());
   EXPECT_EQ(run.stopped_by, "") << engine;
   return run;
@@ -98,7 +97,7 @@ TEST(DrivenFloors, ABallBouncesWhereTheyAreWhenItComes) {
         with_contact({driven_plane("floor", {0, 0, c.velocity}, {0, 0, c.amplitude}, c.frequency),
                       ball("ball", radius, 1.0, {0, 0, 1.0 + radius}, Vector3d::Zero())},
                      duration, 0.3, c.e);
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       const std::vector<double> times = collision_times(run_in(engine, scene));
       ASSERT_EQ(times.size(), expected.size())
           << engine << ", velocity " << c.velocity << ", amplitude " << c.amplitude;
@@ -117,7 +116,7 @@ TEST(DrivenFloors, ABallOnABeltIsDraggedUntilItRolls) {
                    1.0, mu, 0.0);
   const double rolls = 2.0 / 7 * speed / (mu * kG),
                way = 0.5 * mu * kG * rolls * rolls + 2.0 / 7 * speed * (1.0 - rolls);
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     const BodyPose end = run_in(engine, scene).frames.back().poses[1];
     EXPECT_NEAR(end.velocity_world.x(), 2.0 / 7 * speed, 1e-9) << engine;
     // m; the end of sliding is located to a millionth of the step
@@ -134,7 +133,7 @@ TEST(DrivenFloors, ABoxOnABeltIsDraggedUntilItMovesAlong) {
                    1.0, mu, 0.0);
   const double sticks = speed / (mu * kG),
                way = speed * (1.0 - sticks) + 0.5 * mu * kG * sticks * sticks;
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     const BodyPose end = run_in(engine, scene).frames.back().poses[1];
     EXPECT_NEAR(end.velocity_world.x(), speed, 1e-9) << engine;
     EXPECT_NEAR(end.com_world.x(), way, 1e-8) << engine;
@@ -149,7 +148,7 @@ TEST(DrivenFloors, ABoxIsCarriedByAFloorThatIsShakenSideways) {
   scene::Scene scene =
       with_contact({driven_plane("floor", Vector3d::Zero(), {amplitude, 0, 0}, frequency), carried},
                    1.0, mu, 0.0);
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     double worst[2];
     for (int k = 0; k < 2; ++k) {
       scene.step_s = 1.0 / (240 << k);
@@ -173,7 +172,7 @@ TEST(DrivenWalls, PushABlockBeforeThem) {
       with_contact({plane("floor", Vector3d::Zero(), Vector3d::UnitZ()), wall,
                     box("block", {h, h, h}, 2.0, {0.4 + h, 0, h}, Vector3d::Zero())},
                    1.0, mu, 0.0);
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     const BodyPose end = run_in(engine, scene).frames.back().poses[2];
     EXPECT_NEAR(end.velocity_world.x(), speed, 1e-9) << engine;
     EXPECT_NEAR(end.com_world.x(), speed * 1.0 + h, 1e-8) << engine;
@@ -213,7 +212,7 @@ TEST(DrivenBodies, ATrainMovesAsTheStation) {
       {"rod", {"hook", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   scene.stabilisation = scene::StabilisationSpec{};
   for (const Vector3d& V : {Vector3d(0.5, 0, 0), Vector3d(0.25, -0.5, 1.0)})
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       const Trajectory station = run_in(engine, scene),
                        train = run_in(engine, moving_along(scene, V));
       const double duration = station.frames.back().time;
@@ -242,7 +241,7 @@ TEST(DrivenFloors, SmallBallsStayOnAFloorThatShakesGently) {
                     ball("high", radius, 2e-3, {0, 0, 3 * radius + 1.5e-3}, Vector3d::Zero())},
                    duration, 0.5, 0.0);
   scene.step_s = 0.001;
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     const Trajectory run = run_in(engine, scene);
     EXPECT_LT(run.counters.counts.at("steps"), 1000u) << engine;  // 200, and some for each impact
     const double floor = amplitude * std::sin(frequency * run.frames.back().time);

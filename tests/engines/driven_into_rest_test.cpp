@@ -1,6 +1,7 @@
 // What is driven into a ball at rest, without persistent contacts, in all four engines: walls, a
 // plate and a plane from below. Velocities and places after the impact in closed form.
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@
 namespace tumble::testing {
 namespace driven_into_rest_test {
 
-const char* const kEngines[] = {"rd", "ca", "ordered", "tw"};
 constexpr double kG = 9.81, kRadius = 0.1, kRestitution = 0.5;
 // m and m/s of about 1: some hundred roundings of the time of impact, and of RK4's steps. Without
 // the impact the ball is off by 0.1.
@@ -25,7 +25,7 @@ After after(double time, double speed_of_wall) {
   return {time, (1 + kRestitution) * speed_of_wall};
 }
 
-Trajectory run_in(const char* engine, const scene::Scene& scene) {
+Trajectory run_in(const std::string& engine, const scene::Scene& scene) {
   const Trajectory run = run_by(engine, scene);
   EXPECT_EQ(run.stopped_by, "") << engine;
   return run;
@@ -41,7 +41,7 @@ void expect_the_references_traces(const scene::Scene& scene) {
 
 // Along x the floor, without friction, does nothing.
 void expect_pushed_along(const scene::Scene& scene, const After& expected) {
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const Trajectory run = run_in(engine, scene);
     const Frame& end = run.frames.back();
@@ -80,7 +80,7 @@ TEST(DrivenIntoRest, AShakenWallPushesTheBallAndLeaves) {
 void expect_lifted(const scene::BodySpec& rising) {
   const scene::Scene scene = ball_and_driven(driven(rising, {0, 0, 0.5}), 0.0, 0.24);
   const After expected = after(0.2, 0.5);
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const Frame end = run_in(engine, scene).frames.back();
     const double s = end.time - expected.time;
@@ -107,7 +107,7 @@ TEST(DrivenIntoRest, ABallThatNothingMeetsKeepsItsPlaceToTheLastBit) {
   for (const scene::BodySpec& other :
        {driven(passing, Vector3d::Zero(), {0.25, 0, 0}, 5.0), driven(passing, {-0.5, 0, 0}),
         driven(below, Vector3d::Zero(), {0, 0, 0.15}, 5.0)})
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       SCOPED_TRACE(engine);
       const Trajectory run = run_in(engine, ball_and_driven(other, 0.0, 1.0));
       for (const Frame& frame : run.frames) {
@@ -123,7 +123,7 @@ TEST(DrivenIntoRest, ABallThatNothingMeetsKeepsItsPlaceToTheLastBit) {
 // checks all pairs, and this one at each window.
 TEST(DrivenIntoRest, AWallFarAwayCostsNothing) {
   const scene::BodySpec wall = wall_with_face_at(-3.0);
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const auto count = [&](const Vector3d& velocity, const char* what) {
       return run_in(engine, ball_and_driven(driven(wall, velocity), 0.0, 1.0))

@@ -1,6 +1,7 @@
 // Drag, springs and water beside contacts that press: what these forces feel is the path that the
 // contact allows, and not the one on which nothing holds the body up.
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,6 @@ namespace tumble::testing {
 namespace pressed_in_motion_test {
 
 constexpr double kG = 9.81;
-const char* const kEngines[] = {"rd", "ca", "ordered", "tw"};
 
 scene::Scene pressed(std::vector<scene::BodySpec> bodies, double duration, double step) {
   for (scene::BodySpec& body : bodies) body.restitution = 0.0;
@@ -23,13 +23,6 @@ scene::Scene pressed(std::vector<scene::BodySpec> bodies, double duration, doubl
   scene.contact.emplace();
   scene.step_s = step;
   return scene;
-}
-
-Trajectory run_well(const char* engine, const scene::Scene& scene) {
-  const Trajectory run = run_on(engine, scene);
-  EXPECT_EQ(run.stopped_by, "");
-  EXPECT_EQ(faults_of(run), "");
-  return run;
 }
 
 Vector3d force_on(int body, const Frame& frame) {
@@ -52,7 +45,7 @@ TEST(PressedInMotion, ABoxAtRestInSyrupWeighsWhatItWeighs) {
   for (const double step : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
     scene::Scene scene = pressed({kFloor, kBox}, 0.5, step);
     scene.effects.of<effects::DragSpec>().push_back({"box", 10.0, 1.0});
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       SCOPED_TRACE(engine);
       const Trajectory run = run_well(engine, scene);
       EXPECT_LT((force_on(1, run.frames.back()) - Vector3d(0, 0, kG)).norm(), 1e-8 * kG);
@@ -71,7 +64,7 @@ TEST(PressedInMotion, ABoxAtRestInStiffSyrupWeighsWhatItWeighsFromTheFirstStepOn
   for (const double stiffness : {1.0, 2.1, 2.7}) {
     scene::Scene scene = pressed({kFloor, kBox}, 0.2, kStep);
     scene.effects.of<effects::DragSpec>().push_back({"box", stiffness / kStep, 1.0});
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       const Trajectory run = run_well(engine, scene);
       // as near as the rounds look
       for (std::size_t k = 1; k < run.frames.size(); ++k)
@@ -86,7 +79,7 @@ TEST(PressedInMotion, ABoxUnderARoofInWaterIsPressedByItsBuoyancy) {
   scene::Scene scene = pressed({roof, kBox}, 0.5, 1.0 / 60);
   scene.effects.of<effects::WaterSpec>().push_back({{0, 0, 2}, 1000.0, 3.0});
   const double lift = (1000.0 * 0.4 * 0.4 * 0.1 - 1.0) * kG;
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const Trajectory run = run_well(engine, scene);
     EXPECT_LT((force_on(1, run.frames.back()) - Vector3d(0, 0, -lift)).norm(), 1e-8 * lift);
@@ -105,7 +98,7 @@ double slides(double v0, double mu, double c, double t) {
 
 // Of the speed the errors of first order cancel: friction is too small by as much as drag is too
 // large. Of the force that presses it they do not: c g h / 2m of it is 1/60 at 1/60 s.
-double error_of_sliding(const char* engine, double step) {
+double error_of_sliding(const std::string& engine, double step) {
   constexpr double kMu = 0.2, kC = 2.0, kSpeed = 2.0, kTime = 0.4;
   scene::BodySpec box = kBox;
   box.velocity_m_s = {kSpeed, 0, 0};
@@ -119,7 +112,7 @@ double error_of_sliding(const char* engine, double step) {
 }
 
 TEST(PressedInMotion, ABoxThatSlidesInSyrupIsOfSecondOrderInTheStep) {
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const double coarse = error_of_sliding(engine, 1.0 / 60),
                  fine = error_of_sliding(engine, 1.0 / 120);
@@ -149,7 +142,7 @@ scene::Scene box_on_sprung_block(double lifted, double damping, double duration,
 //   x'' = -w^2 x:  h^2 / 2 of it, and w h of that again.
 TEST(PressedInMotion, ABoxThatLiesOnASprungBlockLiesStill) {
   const scene::Scene scene = box_on_sprung_block(0.0, 30.0, 2.0, 1.0 / 60);
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const Trajectory run = run_well(engine, scene);
     for (const Frame& frame : run.frames)
@@ -172,7 +165,7 @@ TEST(PressedInMotion, ABoxLiesStillOnASprungBlockByOtherMethods) {
 
 // Together they swing as one mass of 5 kg, as long as the box is not thrown off (w^2 A < g):
 //   x'' + 2 d x' + w^2 x = 0,   from rest.
-double error_of_swing(const char* engine, double step) {
+double error_of_swing(const std::string& engine, double step) {
   constexpr double kAmplitude = 0.005, kTime = 0.5, kDamping = 5.0;  // N s/m, of each spring
   const Trajectory run = run_well(engine, box_on_sprung_block(kAmplitude, kDamping, kTime, step));
   const double d = 4 * kDamping / (2 * 5.0), w = std::sqrt(4000.0 / 5.0 - d * d);
@@ -182,7 +175,7 @@ double error_of_swing(const char* engine, double step) {
 }
 
 TEST(PressedInMotion, ABoxThatSwingsOnASprungBlockIsOfSecondOrderInTheStep) {
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     const double coarse = error_of_swing(engine, 1.0 / 240),
                  fine = error_of_swing(engine, 1.0 / 480);

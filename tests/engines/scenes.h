@@ -1,12 +1,17 @@
 /// Small scenes for tests of the engines, built without files.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "framework/core/shortest_turn.h"
 #include "framework/effects/gravity/gravity.h"
 #include "framework/engines/run.h"
 #include "tests/support/test_laws.h"
 
 namespace tumble::testing {
+
+inline const std::vector<std::string> kEngines{"rd", "ca", "ordered", "tw"};
 
 inline scene::BodySpec ball(const std::string& name, double radius, double mass,
                             const Vector3d& position, const Vector3d& velocity) {

@@ -2,6 +2,7 @@
 // what is constant besides is followed exactly, by every engine and with every step.
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +16,6 @@ namespace tumble::testing {
 namespace sliding_back_test {
 
 constexpr double kG = 9.81;
-const char* const kEngines[] = {"rd", "ca", "ordered", "tw"};
 
 /// A flat box of a kilogram on a plane through the origin that is inclined by `slope` and goes down
 /// along x.
@@ -37,13 +37,6 @@ scene::Scene box_on_a_slope(double slope, double friction, double speed, double 
   return scene;
 }
 
-Trajectory run_well(const char* engine, const scene::Scene& scene) {
-  const Trajectory run = run_on(engine, scene);
-  EXPECT_EQ(run.stopped_by, "");
-  EXPECT_EQ(faults_of(run), "");
-  return run;
-}
-
 // Up with g (sin + mu cos) against it, back with g (sin - mu cos). Taken with the step, the turn is
 // off by up to mu g h, 0.01 m/s at 1/240 s.
 TEST(SlidingBack, ABoxThrownUpASlopeComesBackAsItShould) {
@@ -57,7 +50,7 @@ TEST(SlidingBack, ABoxThrownUpASlopeComesBackAsItShould) {
                  up = speed / braking, back = random.between(0.05, 0.4);
     const double expected = falling * back;
     const scene::Scene scene = box_on_a_slope(slope, friction, -speed, up + back, step);
-    for (const char* engine : kEngines) {
+    for (const std::string& engine : kEngines) {
       const Trajectory run = run_well(engine, scene);
       // 1e-9: the solver's residue, 1e-12 of some m/s in each of 100 steps, ten times
       EXPECT_NEAR(run.frames.back().poses[1].velocity_world.norm(), expected, 1e-9)
@@ -74,7 +67,7 @@ double swing_with_friction(double start, double w, double friction, double time)
   return sign * off + (from - sign * off) * std::cos(w * time);
 }
 
-double error_of_swing(const char* engine, double step) {
+double error_of_swing(const std::string& engine, double step) {
   constexpr double kStiffness = 60.0, kFriction = 0.05, kStart = 0.3, kTime = 2.0, kAnchor = 2.0;
   scene::Scene scene = box_on_a_slope(0.0, kFriction, 0.0, kTime, step);
   scene.bodies[1].position_m.x() = kStart;
@@ -87,7 +80,7 @@ double error_of_swing(const char* engine, double step) {
 
 // Five turns in two seconds. Steps of first order at them leave millimetres.
 TEST(SlidingBack, ABoxOnASpringSwingsOutAsItShould) {
-  for (const char* engine : kEngines) {
+  for (const std::string& engine : kEngines) {
     SCOPED_TRACE(engine);
     // m: RK4 leaves (w h)^5 / 120 of the way in each of 120 steps, 1e-5; the rest is of the turns,
     // located to the third power of the step

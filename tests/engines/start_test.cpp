@@ -13,8 +13,6 @@
 namespace tumble::testing {
 namespace {
 
-const std::vector<std::string> kEngines{"rd", "ca", "ordered", "tw"};
-
 Trajectory run_in(const std::string& engine, const scene::Scene& scene) {
   static const Laws laws = reference_laws();
   engines::RunOptions options;

@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "tests/engines/reference_laws.h"
+#include "tests/engines/scenes.h"
 
 namespace tumble::testing {
-
-inline const std::vector<std::string> kEngines = {"rd", "ca", "ordered", "tw"};
 
 inline Trajectory run_by(const std::string& engine, scene::Scene scene,
                          const Laws& laws = reference_laws()) {

@@ -85,6 +85,11 @@ void RunWatch::say(const std::string& subject, double time, const std::string& w
   if (!is_new && time < known->second.first) known->second = {time, words};
 }
 
+bool RunWatch::has_said(const std::string& subject, double t) const {
+  const auto known = notices_.find(subject);
+  return known != notices_.end() && known->second.first <= t;
+}
+
 void RunWatch::add(const RunWatch& other) {
   if (std::isnan(named_step_)) named_step_ = other.named_step_;
   large_island_at_ = std::min(large_island_at_, other.large_island_at_);

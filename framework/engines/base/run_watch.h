@@ -83,6 +83,8 @@ class RunWatch {
   void note(Kind kind, const std::string& subject, const Size& size);
   /// What a reader is to know, and is no fault: of each subject what was said of it first.
   void say(const std::string& subject, double time, const std::string& words);
+  /// Whether something of that subject is said as of t or before. [s]
+  bool has_said(const std::string& subject, double t) const;
   /// An island has been solved in steps, not at instants (contact/large_islands.cpp).
   void note_large_island(double time) { large_island_at_ = std::min(large_island_at_, time); }
   bool has_large_islands() const { return large_island_at_ < kInfinity; }

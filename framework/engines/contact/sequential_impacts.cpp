@@ -24,6 +24,7 @@ constexpr std::size_t kMostEventsPerPair = 64;
 // of the largest change of a velocity at that instant: what another order changes and is worth a
 // word
 constexpr double kSeenOrder = 1e-3;
+const char* const kOrder = "order of impacts";
 // pairs at one instant: in a heap of more nothing is symmetric, and both orders take long
 constexpr std::size_t kMostInOrder = 64;
 
@@ -400,7 +401,7 @@ void SequentialImpacts::watch_order(Work& work, const Tie& tie,
   const RunCounters before = counters_;
   Work other(moving, laws_);
   std::vector<const TouchingPair*> backwards;
-  for (const TouchingPair& pair : pairs) backwards.insert(backwards.begin(), &pair);
+  for (auto pair = pairs.rbegin(); pair != pairs.rend(); ++pair) backwards.push_back(&*pair);
   bool is_known = false;
   try {
     is_known = collide_in_turn(other, backwards, threshold);
@@ -430,7 +431,7 @@ void SequentialImpacts::watch_order(Work& work, const Tie& tie,
     return name(pair.a == tie.body ? pair.b : pair.a);
   };
   counters_.watch.say(
-      "order of impacts", moving.time(),
+      kOrder, moving.time(),
       fmt::format(
           "at t = {:.6g} s {} meets {} and {} at one instant: impacts act one after the other, in "
           "the order of bodies in the file, and the opposite order gives velocities that differ by "
@@ -451,9 +452,9 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   if (law_ == scene::ImpactLaw::kSimultaneous) {
     collide_together(work, pairs, threshold, true);
   } else {
-    const std::optional<Tie> tie = pairs.size() > 1 && pairs.size() <= kMostInOrder
-                                       ? tie_of(work, pairs, threshold)
-                                       : std::nullopt;
+    const bool is_watched = pairs.size() > 1 && pairs.size() <= kMostInOrder &&
+                            !counters_.watch.has_said(kOrder, moving.time());
+    const std::optional<Tie> tie = is_watched ? tie_of(work, pairs, threshold) : std::nullopt;
     std::vector<const TouchingPair*> in_turn;
     for (const TouchingPair& pair : pairs) in_turn.push_back(&pair);
     again = !collide_in_turn(work, in_turn, threshold);
