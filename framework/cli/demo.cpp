@@ -155,19 +155,20 @@ void write_index(const Context& context, const std::vector<Graded>& all,
 // @return the number of unexpected scores
 int print_table(const std::vector<Graded>& all) {
   int surprises = 0;
-  fmt::print("{:<22} {:<12} {:>6} {:>5} {:>7} {:>7} {:>15} {:>7}\n", "assignment", "submission",
-             "score", "of", "right", "wrong", "not attempted", "scenes");
+  constexpr const char* kRow = "{:<19} {:<10} {:>5} {:>4} {:>6} {:>6} {:>14} {:>8} {:>12}{}\n";
+  fmt::print(kRow, "assignment", "submission", "score", "of", "right", "wrong", "not attempted",
+             "crashed", "out of time", "");
   for (const Graded& graded : all) {
     for (std::size_t i = 0; i < graded.grades.size(); ++i) {
       const Grade& grade = graded.grades[i];
       const std::string wrong = surprise(static_cast<int>(i), grade);
       surprises += wrong.empty() ? 0 : 1;
-      fmt::print("{:<22} {:<12} {:>6g} {:>5g} {:>7} {:>7} {:>15} {:>7}{}\n",
-                 graded.kind->id + " " + graded.kind->title, grade.name, grade.score,
-                 grade.possible, grade.count(grading::Verdict::kRight),
-                 grade.count(grading::Verdict::kWrong),
-                 grade.count(grading::Verdict::kNotAttempted), grade.media.size(),
-                 wrong.empty() ? "" : "   <- " + wrong);
+      fmt::print(
+          kRow, graded.kind->id + " " + graded.kind->title, grade.name,
+          fmt::format("{:g}", grade.score), fmt::format("{:g}", grade.possible),
+          grade.count(grading::Verdict::kRight), grade.count(grading::Verdict::kWrong),
+          grade.count(grading::Verdict::kNotAttempted), grade.count(grading::Verdict::kCrashed),
+          grade.count(grading::Verdict::kOutOfResources), wrong.empty() ? "" : "   <- " + wrong);
     }
   }
   return surprises;
