@@ -19,7 +19,8 @@ namespace tumble::grading {
 ///   judge_a1 --list [PATTERN...]
 /// --list prints the names of the tests, one per line, and runs none.
 /// --plain runs the submission without a sandbox: for trusted code only.
-/// --quick has the short limits of a student's own check, because the user waits.
+/// --quick has the short limits of a student's own check, because the user waits, and runs every
+/// second test in a second process.
 /// @param attach  sets the connection's proxy as the module under test
 int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach,
                       int argc, char** argv);
