@@ -12,31 +12,6 @@
 
 namespace tumble::engines {
 
-// Of A against B at a contact, with these velocities of theirs. [m/s]
-Vector3d PersistentContacts::relative_velocity(const ContactProblem& problem, std::size_t contact,
-                                               const std::vector<Velocity>& velocities) {
-  const PushingContact& c = problem.contacts[contact];
-  const auto velocity = [&](int body) -> Vector3d {
-    return velocities[body].linear_world +
-           velocities[body].angular_world.cross(c.point_world - problem.bodies[body].com_world);
-  };
-  return velocity(c.body_a) - velocity(c.body_b);
-}
-
-// How fast the two come together there. [m/s], > 0 approaching
-double PersistentContacts::approach(const ContactProblem& problem, std::size_t contact,
-                                    const std::vector<Velocity>& velocities) {
-  return -problem.contacts[contact].normal_b_to_a_world.dot(
-      relative_velocity(problem, contact, velocities));
-}
-
-double PersistentContacts::slip_speed(const ContactProblem& problem, std::size_t contact,
-                                      const std::vector<Velocity>& velocities) {
-  const PushingContact& c = problem.contacts[contact];
-  const Vector3d relative = relative_velocity(problem, contact, velocities) - c.slip_target_world;
-  return (relative - relative.dot(c.normal_b_to_a_world) * c.normal_b_to_a_world).norm();
-}
-
 bool PersistentContacts::is_active(const StepContact& step_contact) const {
   const double margin = geometry_.margin(step_contact.pair);
   return step_contact.point.gap - margin <=
@@ -45,7 +20,7 @@ bool PersistentContacts::is_active(const StepContact& step_contact) const {
 
 // At the step's start; the problem's own are those of its end, of driven bodies too.
 std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& island,
-                                                         const std::vector<StepContact>& contacts,
+                                                         const StepContacts& contacts,
                                                          const ContactProblem& problem) const {
   std::vector<Velocity> now = velocities_of(problem);
   // the problem's first bodies are the island's
@@ -72,15 +47,14 @@ std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& is
 // that rocks would be lifted by v0 h / 2 each time, which is more energy than it has wherever v0 <
 // g h.
 // @return whether there are any
-bool PersistentContacts::allow_separation(const ContactIsland& island,
-                                          std::vector<StepContact>& contacts,
+bool PersistentContacts::allow_separation(const ContactIsland& island, StepContacts& contacts,
                                           ContactProblem& problem) const {
   // what hangs on links is not lifted by itself: their reactions are part of what parts it
   if (!island.linked.empty()) return false;
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   bool any = false;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const double separation = -approach(problem, i, now);
+    const double separation = -approach_speed(problem, i, now);
     if (contacts[i].activates || !(separation > kSlow * restitution_threshold_)) continue;
     contacts[i].target = problem.contacts[i].target = -separation;
     any = true;
@@ -88,22 +62,16 @@ bool PersistentContacts::allow_separation(const ContactIsland& island,
   return any;
 }
 
-void PersistentContacts::keep_together(std::vector<StepContact>& contacts,
-                                       ContactProblem& problem) {
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    if (!contacts[i].activates) contacts[i].target = problem.contacts[i].target = 0.0;
-}
-
 // Does a point that is apart press, or would its path be under the surface, with this answer?
-bool PersistentContacts::is_activated(const ContactIsland& island,
-                                      const std::vector<StepContact>& contacts,
+bool PersistentContacts::is_activated(const ContactIsland& island, const StepContacts& contacts,
                                       const ContactProblem& problem,
                                       const ContactSolution& solution, double h) const {
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!contacts[i].activates) continue;
     const double way =
-        0.5 * h * (approach(problem, i, now) + approach(problem, i, solution.velocities));
+        0.5 * h *
+        (approach_speed(problem, i, now) + approach_speed(problem, i, solution.velocities));
     if (solution.impulses_world[i].squaredNorm() > 0.0 ||
         way > contacts[i].point.gap - geometry_.margin(contacts[i].pair))
       return true;
@@ -114,8 +82,8 @@ bool PersistentContacts::is_activated(const ContactIsland& island,
 // When gaps close that nothing keeps open, from the velocities at the step's ends:
 //   gap(t) = r + v0 t + (v1 - v0) t^2 / (2 h).
 std::vector<PersistentContacts::Activation> PersistentContacts::predict_activations(
-    const ContactIsland& island, const std::vector<StepContact>& contacts, double h) {
-  std::vector<StepContact> active;
+    const ContactIsland& island, const StepContacts& contacts, double h) {
+  StepContacts active;
   std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(active),
                [](const StepContact& step_contact) { return !step_contact.activates; });
   const ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
@@ -129,7 +97,7 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!contacts[i].activates) continue;
     const double distance = contacts[i].point.gap - geometry_.margin(contacts[i].pair);
-    const double v0 = approach(problem, i, now), v1 = approach(problem, i, then),
+    const double v0 = approach_speed(problem, i, now), v1 = approach_speed(problem, i, then),
                  bend = (v1 - v0) / h;
     const double square = v0 * v0 + 2 * bend * distance, speed = std::sqrt(std::max(0.0, square));
     const bool comes = square >= 0 && v0 + speed > 0;
@@ -145,8 +113,7 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
 // then; others must not come nearer than that.
 // @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::handle_activations(const ContactIsland& island,
-                                                             std::vector<StepContact>& contacts,
-                                                             double h) {
+                                                             StepContacts& contacts, double h) {
   const std::vector<Activation> activations = predict_activations(island, contacts, h);
   std::vector<bool> stays(contacts.size(), true);
   double first = h;
@@ -158,7 +125,7 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
   if (first < h && end < (1 - kContact.shortest_step) * h &&
       h > kContact.shortest_step * kContact.soon * memory_.longest_step)
     return moving_.time() + end;
-  std::vector<StepContact> impacts;
+  StepContacts impacts;
   for (const Activation& activation : activations) {
     StepContact& step_contact = contacts[activation.step_contact];
     stays[activation.step_contact] =
@@ -183,13 +150,13 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
 
 // Points that touch and come together: their velocities jump. @return whether any did
 bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island,
-                                                 const std::vector<StepContact>& contacts) {
+                                                 const StepContacts& contacts) {
   if (std::none_of(contacts.begin(), contacts.end(),
                    [&](const StepContact& step_contact) { return is_active(step_contact); }))
     return false;
   // The corners of an edge that lands flat take part together, though by rounding one of them
   // closes its gap first.
-  std::vector<StepContact> down;
+  StepContacts down;
   for (const StepContact& step_contact : contacts) {
     const double size = geometry_.size_of(step_contact.pair);
     if (is_active(step_contact) || step_contact.point.gap < kSixDigits * size)
@@ -198,17 +165,7 @@ bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island,
   return apply_impact(island, std::move(down));
 }
 
-std::vector<int> PersistentContacts::touched_bodies(const ContactIsland& island,
-                                                    const std::vector<StepContact>& contacts) {
-  std::vector<int> bodies = island.bodies;
-  for (const StepContact& step_contact : contacts) {
-    bodies.push_back(step_contact.pair.first);
-    bodies.push_back(step_contact.pair.second);
-  }
-  return bodies;
-}
-
-bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<StepContact> down) {
+bool PersistentContacts::apply_impact(const ContactIsland& island, StepContacts down) {
   std::stable_sort(down.begin(), down.end(),
                    [](const StepContact& a, const StepContact& b) { return a.pair < b.pair; });
   const ContactProblem problem = problem_of(island, down, moving_.states(), 0.0);
@@ -217,7 +174,7 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
   const bool any = [&] {
     for (std::size_t i = 0; i < down.size(); ++i)
       if ((is_active(down[i]) || down[i].target < 0) &&
-          approach(problem, i, before) + down[i].target >
+          approach_speed(problem, i, before) + down[i].target >
               std::max(kCreep * restitution_threshold_,
                        geometry_.margin(down[i].pair) / memory_.longest_step))
         return true;
@@ -268,12 +225,12 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
           solution.impulses_world[largest].squaredNorm())
         largest = to;
     }
-    const double speed = approach(problem, largest, before);
+    const double speed = approach_speed(problem, largest, before);
     if (!(speed > restitution_threshold_)) continue;
     const PushingContact& c = problem.contacts[largest];
     sink_.event({moving_.time(), EventKind::kCollision, down[largest].pair.first,
                  down[largest].pair.second, c.point_world, c.normal_b_to_a_world, impulse, -speed,
-                 -approach(problem, largest, solution.velocities), energy.change, excess});
+                 -approach_speed(problem, largest, solution.velocities), energy.change, excess});
     energy.change = excess = 0.0;
   }
   return true;

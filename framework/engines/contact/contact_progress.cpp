@@ -1,4 +1,5 @@
-// What ends a run whose contacts would be solved for ever.
+#include "framework/engines/contact/contact_progress.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -7,7 +8,6 @@
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 namespace {
@@ -17,18 +17,16 @@ constexpr const char* kLeaveRoom = "what drives them together (\"motion\") must 
 }  // namespace
 
 // Driven bodies that touch the island: what they do does not depend on what resists them.
-std::vector<int> PersistentContacts::driven_against(const ContactIsland& island) const {
+std::vector<int> ContactProgress::driven_against(const ContactIsland& island) const {
   std::vector<int> driven;
-  for (const Pair& pair : island.pairs)
+  for (const auto& pair : island.pairs)
     for (const int body : {pair.first, pair.second})
       if (moving_.is_driven(body) && std::find(driven.begin(), driven.end(), body) == driven.end())
         driven.push_back(body);
   return driven;
 }
 
-// A problem has stayed unsolved. Where a driven body presses the island against another, shorter
-// parts of the step have the same one.
-void PersistentContacts::require_room(const ContactIsland& island, double residual) {
+void ContactProgress::require_room(const ContactIsland& island, double residual) {
   if (!(residual > kContact.jammed)) return;
   const std::vector<int> driven = driven_against(island);
   if (driven.empty()) return;
@@ -41,9 +39,7 @@ void PersistentContacts::require_room(const ContactIsland& island, double residu
       memory_.longest_step, kLeaveRoom));
 }
 
-// A step has been cut once more. Contacts that ask for ever shorter ones, or problems that all stay
-// unsolved, would take hours.
-void PersistentContacts::require_progress() {
+void ContactProgress::require(const std::vector<ContactIsland>& islands) {
   const double t = moving_.time();
   if (!(memory_.cut_since <= t && t < memory_.cut_since + memory_.longest_step)) {
     memory_.cut_since = t;
@@ -51,16 +47,15 @@ void PersistentContacts::require_progress() {
     memory_.sweeps = 0;
   }
   ++memory_.cuts;
-  const auto asked =
-      std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) {
-        return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last);
-      });
+  const auto asked = std::find_if(islands.begin(), islands.end(), [&](const ContactIsland& island) {
+    return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last);
+  });
   const auto names = [&] {
-    return asked == islands_.end() ? std::string("bodies")
-                                   : names_of(moving_.world(), asked->bodies);
+    return asked == islands.end() ? std::string("bodies")
+                                  : names_of(moving_.world(), asked->bodies);
   };
   const char* const remedy =
-      asked != islands_.end() && !driven_against(*asked).empty()
+      asked != islands.end() && !driven_against(*asked).empty()
           ? kLeaveRoom
           : "masses or sizes that differ less, or a shorter \"step_s\", may help";
   if (memory_.sweeps > kContact.most_sweeps_a_step)

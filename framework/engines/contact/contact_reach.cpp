@@ -1,34 +1,38 @@
-// Which pairs and points a step can bring together, where impacts are solved in steps: the fewer,
-// the smaller are its problems.
+#include "framework/engines/contact/contact_reach.h"
+
 #include <algorithm>
 #include <utility>
 
 #include "framework/collision/gap.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 
-// How much nearer the two can come in the step.
-double PersistentContacts::reach(Pair pair) {
+void ContactReach::clear() {
+  speeds_.clear();
+  bends_.clear();
+  reach_of_.clear();
+}
+
+double ContactReach::of(Pair pair) const {
   if (const auto known = reach_of_.find(pair); known != reach_of_.end()) return known->second;
-  return farthest_reach(pair);
+  return farthest(pair);
 }
 
 // The same from speeds alone.
-double PersistentContacts::farthest_reach(Pair pair) {
+double ContactReach::farthest(Pair pair) const {
   const double h = moving_.target() - moving_.time();
   const double size = geometry_.size_of(pair);
   const double way =
-      (reaches_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second)
-                        : reaches_[pair.first] + reaches_[pair.second]) *
+      (speeds_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second)
+                       : speeds_[pair.first] + speeds_[pair.second]) *
       h;
   return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 
 // Where impacts are solved in the step, a body may be as fast by its end as any that can meet it.
 // [m/s], by body
-std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& candidates) {
+std::vector<double> ContactReach::speeds_about(const std::vector<Pair>& candidates) const {
   std::vector<double> speeds(moving_.size(), 0.0);
   std::vector<char> meets(moving_.size(), 0);
   for (const auto& [a, b] : candidates) meets[a] = meets[b] = 1;
@@ -53,12 +57,12 @@ std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& ca
 }
 
 // How much nearer than on their paths without contacts impacts may bring the two. [m]
-double PersistentContacts::bend(Pair pair) const {
+double ContactReach::bend(Pair pair) const {
   return kContact.levers * (bends_[pair.first] + bends_[pair.second]);
 }
 
 // How much nearer any two points of the two come along a normal in the step, at most. [m]
-double PersistentContacts::way(Pair pair, const Vector3d& normal_b_to_a_world) const {
+double ContactReach::way(Pair pair, const Vector3d& normal_b_to_a_world) const {
   const Vector3d& n = normal_b_to_a_world;
   const double h = moving_.target() - moving_.time();
   double speed = 0.0;
@@ -71,15 +75,12 @@ double PersistentContacts::way(Pair pair, const Vector3d& normal_b_to_a_world) c
   return h * std::max(0.0, speed);
 }
 
-// At the step's start, of what meets others in it.
-Vector3d PersistentContacts::velocity_of_point(int body, const Vector3d& point_world) const {
+Vector3d ContactReach::velocity_of_point(int body, const Vector3d& point_world) const {
   return velocities_[body].linear_world +
          velocities_[body].angular_world.cross(point_world - moving_.state(body).com_world);
 }
 
-// Whether a point may close its gap within this time. [s]
-bool PersistentContacts::may_close(Pair pair, const collision::ManifoldPoint& point,
-                                   double time) const {
+bool ContactReach::may_close(Pair pair, const collision::ManifoldPoint& point, double time) const {
   const Vector3d at = geometry_.point_of(pair, point);
   const double approach = point.normal_b_to_a_world.dot(velocity_of_point(pair.second, at) -
                                                         velocity_of_point(pair.first, at));
@@ -87,20 +88,20 @@ bool PersistentContacts::may_close(Pair pair, const collision::ManifoldPoint& po
          time * std::max(0.0, approach) + bend(pair) + 2 * geometry_.large_island_margin(pair);
 }
 
-// Where impacts are solved in steps: the pairs that their speeds may bring together in the step,
-// and in reach_of_ those among them that may meet. Along the normal of their gap two solids are
+// Along the normal of their gap two solids are
 // apart at the step's start, and without contacts at its end: between the two they come nearer by
 // what turning bends. Impacts of the step, which the pairs that would overlap at its end have, take
 // bodies off such paths, and with them pairs together that would pass each other; by about as much
 // as an impact takes off.
-std::vector<PersistentContacts::Pair> PersistentContacts::near_pairs(
-    const std::vector<Pair>& candidates) {
+std::vector<ContactReach::Pair> ContactReach::look(const std::vector<Pair>& candidates,
+                                                   const std::set<Pair>& persistent,
+                                                   const std::function<bool(Pair)>& plastic) {
   struct Near {
     Pair pair;
     double distance, reach;  // [m]
   };
   reach_of_.clear();
-  reaches_ = speeds_about(candidates);
+  speeds_ = speeds_about(candidates);
   bends_.assign(static_cast<std::size_t>(moving_.size()), 0.0);
   velocities_.resize(static_cast<std::size_t>(moving_.size()));
   std::vector<char> known(velocities_.size(), 0);
@@ -114,8 +115,8 @@ std::vector<PersistentContacts::Pair> PersistentContacts::near_pairs(
   std::vector<Pair> pairs;
   for (const Pair& pair : candidates) {
     const auto& [a, b] = pair;
-    if (!memory_.persistent.contains(pair) && !plastic(pair)) continue;
-    const double within = farthest_reach(pair);
+    if (!persistent.contains(pair) && !plastic(pair)) continue;
+    const double within = farthest(pair);
     if (geometry_.least_gap_of(pair, moving_.states()) > within) continue;
     const collision::CollisionShape &shape_a = moving_.shape(a), &shape_b = moving_.shape(b);
     if (!collision::has_separations(shape_a, shape_b)) {
@@ -141,14 +142,14 @@ std::vector<PersistentContacts::Pair> PersistentContacts::near_pairs(
   }
   for (const Near& of : near) {
     const double room = bend(of.pair) + 2 * geometry_.large_island_margin(of.pair);
-    if (of.distance <= room || memory_.persistent.contains(of.pair))
-      reach_of_[of.pair] = std::min(farthest_reach(of.pair), of.reach + room);
+    if (of.distance <= room || persistent.contains(of.pair))
+      reach_of_[of.pair] = std::min(farthest(of.pair), of.reach + room);
   }
   return pairs;
 }
 
 // How far a point of a body that turns is from the chord of its arc in the step, at most. [m]
-double PersistentContacts::chord_depth(int body) const {
+double ContactReach::chord_depth(int body) const {
   if (!moving_.can_move(body)) return 0.0;
   const double turn = (moving_.target() - moving_.time()) * velocities_[body].angular_world.norm();
   return 0.125 * turn * turn * moving_.shape(body).bounding_radius();

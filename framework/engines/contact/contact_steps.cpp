@@ -33,7 +33,7 @@ Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vec
 // body's momenta would be other velocities, and impulses change momenta. Without that, a body that
 // spins about its slender axis gains or loses energy in proportion to the step.
 ContactProblem PersistentContacts::problem_of(const ContactIsland& island,
-                                              const std::vector<StepContact>& contacts,
+                                              const StepContacts& contacts,
                                               const std::vector<RigidBodyState>& states, double h,
                                               const std::vector<RigidBodyState>* ends) {
   ContactProblem problem;
@@ -59,7 +59,7 @@ ContactProblem PersistentContacts::problem_of(const ContactIsland& island,
     problem.contacts.push_back(contact);
   }
   if (!at_once)
-    warm_start(
+    warm_start_.set(
         contacts, states, h,
         island.large ? kContact.warm_start_within_in_large_island : kContact.warm_start_within,
         problem);
@@ -86,41 +86,6 @@ const std::vector<RigidBodyState>& PersistentContacts::middle_of_step(
                      0.5 * (from.angular_momentum_world + to.angular_momentum_world)};
   }
   return middle_;
-}
-
-// What an earlier attempt at this step has found for the pair, or else the last step.
-const std::vector<KnownImpulse>* PersistentContacts::known_impulses(Pair pair) const {
-  for (const auto* store : {&memory_.tried_impulses, &memory_.last_impulses})
-    if (const auto known = store->find(pair); known != store->end()) return &known->second;
-  return nullptr;
-}
-
-// Impulses that are known already, each to the point that is nearest to where it acted.
-void PersistentContacts::warm_start(const std::vector<StepContact>& contacts,
-                                    const std::vector<RigidBodyState>& states, double h,
-                                    double farthest, ContactProblem& problem) const {
-  for (std::size_t from = 0, to = 0; from < contacts.size(); from = to) {
-    const Pair& pair = contacts[from].pair;
-    while (to < contacts.size() && contacts[to].pair == pair) ++to;
-    const std::vector<KnownImpulse>* const warm = known_impulses(pair);
-    if (!warm) continue;
-    const RigidBodyState& a = states[pair.first];
-    const double size = geometry_.size_of(pair);
-    for (const KnownImpulse& known : *warm) {
-      const Vector3d acted = a.com_world + a.world_from_body * known.point_body_a;
-      PushingContact* nearest = nullptr;
-      double least = farthest * size;
-      for (std::size_t i = from; i < to; ++i) {
-        const double distance = (problem.contacts[i].point_world - acted).norm();
-        if (distance >= least) continue;
-        least = distance;
-        nearest = &problem.contacts[i];
-      }
-      // A longer step needs more where the force lasts, no more where it was an impact.
-      if (nearest)
-        nearest->warm_start_world += std::min(1.0, h / known.duration) * known.impulse_world;
-    }
-  }
 }
 
 // Where rods and joints hold bodies still, all that is left of velocities is what places and
@@ -175,7 +140,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island,
     counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
     if (!solution.converged) {
       ++counters_.contact_unsolved;
-      require_room(island, solution.residual);
+      progress_.require_room(island, solution.residual);
     }
     return solution;
   }
@@ -240,32 +205,12 @@ void PersistentContacts::require_numbers(const ContactIsland& island,
                        moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
 }
 
-// Puts a solution's impulses where the next problem of these pairs finds its warm start.
-void PersistentContacts::remember(const std::vector<StepContact>& contacts,
-                                  const ContactProblem& problem, const ContactSolution& solution,
-                                  double h,
-                                  std::map<Pair, std::vector<KnownImpulse>>& store) const {
-  for (std::size_t from = 0, to = 0; from < contacts.size(); from = to) {
-    const Pair& pair = contacts[from].pair;
-    while (to < contacts.size() && contacts[to].pair == pair) ++to;
-    std::vector<KnownImpulse>& known = store[pair];
-    known.clear();
-    known.reserve(to - from);
-    const RigidBodyState& a = moving_.state(pair.first);
-    for (std::size_t i = from; i < to; ++i)
-      known.push_back(
-          {a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world),
-           solution.impulses_world[i], h});
-  }
-}
-
 // What the next step remembers of this one's impulses.
-void PersistentContacts::keep_warm_start(const ContactIsland& island,
-                                         const std::vector<StepContact>& contacts,
+void PersistentContacts::keep_warm_start(const ContactIsland& island, const StepContacts& contacts,
                                          const ContactProblem& problem,
                                          const ContactSolution& solution, double h) {
   note_unsolved(island, solution, h);
-  remember(contacts, problem, solution, h, next_impulses_);
+  warm_start_.remember(contacts, problem, solution, h);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
     const bool slides =
@@ -277,109 +222,6 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island,
       forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point,
                          contacts[i].point.normal_b_to_a_world, force, solution.by_contact_forces});
   }
-}
-
-// Where a pair that slid and would stick at the end of the step stops sliding: when the friction
-// that stops it is all there can be. What stops the slip is A + F s, with F the steady forces along
-// it, the available friction M s; two steps of different lengths tell A and F. A pair that slides
-// back at the end of the step has stopped within it, too: there its friction turns round.
-std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem,
-                                                          const std::vector<StepContact>& contacts,
-                                                          const ContactSolution& solution,
-                                                          double h) {
-  constexpr double kTurnsBack = 0.99;  // cosine: against the way that it slid, but for turning
-  if (contacts.size() > kContact.few_contacts) return std::nullopt;
-  const Pair* stopping = nullptr;
-  double least = 1.0, stopping_impulse = 0.0, available = 0.0;
-  double turns_back = 1.0;  // of the step: where the first pair does
-  for (std::size_t i = 0; i < contacts.size();) {
-    const Pair& pair = contacts[i].pair;
-    Vector3d along = Vector3d::Zero();
-    Vector3d slips = Vector3d::Zero(), slips_at_end = Vector3d::Zero();  // of the fastest point
-    double limit = 0.0, slip = 0.0, speed = 0.0;
-    bool sticks = true;
-    for (; i < contacts.size() && contacts[i].pair == pair; ++i) {
-      const PushingContact& c = problem.contacts[i];
-      const Vector3d& n = c.normal_b_to_a_world;
-      const auto velocity = [&](int body) -> Vector3d {
-        const Body b = moving_.body_at_impact(body);
-        const Vector3d arm = geometry_.point_of(pair, contacts[i].point) - b.com_world;
-        if (!moving_.world().bodies[body].immovable())
-          speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
-        return b.velocity_world + b.omega_world.cross(arm);
-      };
-      // at the step's start, where it touched then
-      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;
-      if (const Vector3d slides = relative - relative.dot(n) * n; slides.norm() > slip) {
-        slips = slides;
-        slip = slides.norm();
-        const Vector3d end =
-            relative_velocity(problem, i, solution.velocities) - c.slip_target_world;
-        slips_at_end = end - end.dot(n) * n;
-      }
-      speed = std::max({speed, va.norm(), vb.norm()});
-      const double normal = solution.impulses_world[i].dot(n);
-      along += solution.impulses_world[i] - normal * n;
-      limit += c.friction * normal;
-      // Points share what stops a pair: one may give all that it can, and others not.
-      sticks = sticks &&
-               (solution.modes[i] == ContactMode::kStick ||
-                (solution.modes[i] == ContactMode::kOpen && normal == 0.0) ||
-                (solution.modes[i] == ContactMode::kSlide &&
-                 slip_speed(problem, i, solution.velocities) <= kCreep * restitution_threshold_));
-    }
-    // What friction stops within a billionth of the step has stopped.
-    const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass +
-                                        moving_.world().bodies[pair.second].inertia.inverse_mass);
-    if (memory_.stuck.contains(pair) || !(limit > 0) || slip <= kNegligible * (speed + within_step))
-      continue;
-    // With the friction that brakes it, it would end by twice what friction gives more slowly.
-    if (const double back = -slips_at_end.dot(slips) / slip;
-        !sticks && back > kTurnsBack * slips_at_end.norm())
-      turns_back = std::min(turns_back, slip / (slip + back + 2 * within_step));
-    if (!sticks) continue;
-    if (along.norm() >= least * limit) continue;
-    least = along.norm() / limit;
-    stopping = &pair;
-    // signed: on a slope gravity may do more than stop it, and friction holds it then
-    stopping_impulse = -along.dot(slips) / slip;
-    available = limit;
-  }
-  if (!stopping && turns_back == 1.0) return std::nullopt;
-  if (!(moving_.time() < memory_.searched_from + memory_.longest_step)) {
-    memory_.searched_from = moving_.time();
-    memory_.searches = 0;
-  }
-  if (++memory_.searches > kContact.most_searches) return std::nullopt;
-  if (!stopping) {
-    if (h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
-    return moving_.time() + h * std::max(turns_back, kContact.soon);
-  }
-  if (memory_.sliding_search && memory_.sliding_search->pair == *stopping &&
-      memory_.sliding_search->start == moving_.time()) {
-    if (memory_.sliding_search->found) return std::nullopt;
-    const double F = (memory_.sliding_search->impulse - stopping_impulse) /
-                     (memory_.sliding_search->duration - h),
-                 A = stopping_impulse - F * h, M = available / h;
-    const double stop = A / (M - F);
-    if (!(stop > kContact.shortest_step * memory_.longest_step) ||
-        !(stop < memory_.sliding_search->duration))
-      return std::nullopt;
-    memory_.sliding_search->found = true;
-    return moving_.time() + stop;
-  }
-  if (least >= 1 - kSolverResidue || h <= kContact.shortest_step * memory_.longest_step)
-    return std::nullopt;
-  memory_.sliding_search = SlidingSearch{*stopping, moving_.time(), h, stopping_impulse, false};
-  return moving_.time() + h * std::max(least, kContact.soon);
-}
-
-// Does a contact become active in this step that did not touch before?
-bool PersistentContacts::activates(const std::vector<StepContact>& contacts,
-                                   const ContactSolution& solution) {
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    if (contacts[i].activates && solution.impulses_world[i].squaredNorm() > 0.0) return true;
-  return false;
 }
 
 // Where the island's bodies come out with these impulses: ends_.
@@ -412,112 +254,6 @@ void PersistentContacts::find_ends(const ContactIsland& island, const ContactPro
     }
     end.momentum_world = inertia.mass * after.linear_world;
   }
-}
-
-// What contacts press the island's bodies with, its mean over the step: for the next step of those
-// on which forces act that follow their motion. Where these bodies were not pressed in the step
-// before, they are led anew by what has been found, until it stays the same.
-// @return whether they have been: the step is taken again
-bool PersistentContacts::finds_other_pressing(const ContactIsland& island,
-                                              const std::vector<StepContact>& contacts,
-                                              const ContactProblem& problem,
-                                              const ContactSolution& solution, double h,
-                                              bool inertia_at_ends) {
-  std::map<int, Wrench> found;
-  bool is_known = true, is_same = true;
-  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
-    const int body = island.bodies[k];
-    if (!moving_.has_forces_of_motion(body)) continue;
-    const Inertia& inertia = moving_.world().bodies[body].inertia;
-    const RigidBodyState& at = inertia_at_ends ? ends_[body] : moving_.path_end(body);
-    const Velocity& after = solution.velocities[k];
-    const Wrench now{(inertia.mass / h) * (after.linear_world - problem.bodies[k].velocity_world),
-                     angular_momentum_of(after.angular_world - problem.bodies[k].omega_world,
-                                         at.world_from_body, inertia) /
-                         h};
-    found.emplace(body, now);
-    is_known = is_known && memory_.pressing.contains(body);
-    const auto felt = felt_.find(body);
-    const Wrench before =
-        felt == felt_.end() ? Wrench{Vector3d::Zero(), Vector3d::Zero()} : felt->second;
-    const double largest = now.force_world.norm() * moving_.shape(body).bounding_radius() +
-                           now.torque_world.norm();  // N m
-    is_same = is_same &&
-              (before.force_world - now.force_world).norm() <=
-                  kContact.same_pressing * now.force_world.norm() &&
-              (before.torque_world - now.torque_world).norm() <= kContact.same_pressing * largest;
-  }
-  if (found.empty()) return false;
-  // what acts at a landing does not last
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    if (contacts[i].activates && !lasts(contacts[i].pair) &&
-        !solution.impulses_world[i].isZero(0.0)) {
-      for (const auto& [body, wrench] : found) next_pressing_.erase(body);
-      return false;
-    }
-  const int first = island.bodies.front();
-  const bool ends =
-      is_known || is_same || ++pressing_rounds_[first] > 2 * kContact.most_pressing_rounds;
-  if (!ends && pressing_rounds_[first] > kContact.most_pressing_rounds)
-    found = limit_of_pressing(first, found);
-  else if (!ends)
-    pressing_changes_[first] = changes_of_pressing(found);
-  // Of a very short step rounding makes forces of its own: what was known before stays.
-  const bool is_told = h > kContact.shortest_step_for_pressing * memory_.longest_step;
-  for (const auto& [body, wrench] : found) {
-    felt_[body] = wrench;
-    const auto before = memory_.pressing.find(body);
-    if (is_told)
-      next_pressing_[body] = wrench;
-    else if (before != memory_.pressing.end())
-      next_pressing_.insert(*before);
-  }
-  if (ends) return false;
-  moving_.lead_pressed(found);
-  return true;
-}
-
-std::map<int, Wrench> PersistentContacts::changes_of_pressing(
-    const std::map<int, Wrench>& found) const {
-  std::map<int, Wrench> changes;
-  for (const auto& [body, wrench] : found) {
-    Wrench change = wrench;
-    if (const auto felt = felt_.find(body); felt != felt_.end()) {
-      change.force_world -= felt->second.force_world;
-      change.torque_world -= felt->second.torque_world;
-    }
-    changes.emplace(body, change);
-  }
-  return changes;
-}
-
-// Where forces take most of a motion within the step, each round leaves a part rho near 1 of the
-// change d of the last one: then d + rho d + rho^2 d + ... = d / (1 - rho) is left (Aitken), which
-// two rounds in a row tell.
-std::map<int, Wrench> PersistentContacts::limit_of_pressing(int first,
-                                                            const std::map<int, Wrench>& found) {
-  constexpr double kSlowest = 0.999;  // of rho: what is slower is no sequence that ends
-  const std::map<int, Wrench> changes = changes_of_pressing(found);
-  const std::map<int, Wrench> before = std::exchange(pressing_changes_[first], changes);
-  double along = 0.0, square = 0.0;  // (N m)^2
-  for (const auto& [body, change] : changes) {
-    const auto last = before.find(body);
-    if (last == before.end()) return found;
-    const double size = std::pow(moving_.shape(body).bounding_radius(), 2);
-    along += size * change.force_world.dot(last->second.force_world) +
-             change.torque_world.dot(last->second.torque_world);
-    square +=
-        size * last->second.force_world.squaredNorm() + last->second.torque_world.squaredNorm();
-  }
-  const double rho = square > 0.0 ? along / square : 0.0;
-  if (!(rho < kSlowest)) return found;
-  pressing_changes_[first].clear();  // two plain rounds tell the next
-  std::map<int, Wrench> limit = found;
-  for (auto& [body, wrench] : limit) {
-    wrench.force_world += rho / (1.0 - rho) * changes.at(body).force_world;
-    wrench.torque_world += rho / (1.0 - rho) * changes.at(body).torque_world;
-  }
-  return limit;
 }
 
 // The angle that the fastest of the island's bodies turns in the step; a ball looks the same
@@ -555,8 +291,8 @@ double PersistentContacts::turn_of_normals(const ContactIsland& island,
 // targets that make the velocities at the step's end fit the surfaces there: J_middle v' = target -
 // (J_end - J_middle) v'. Without that a body that tips over its edge gains or loses energy in
 // proportion to the step.
-std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway(
-    const ContactIsland& island, const std::vector<StepContact>& contacts) {
+StepContacts PersistentContacts::contacts_midway(const ContactIsland& island,
+                                                 const StepContacts& contacts) {
   const std::vector<RigidBodyState>& starts = moving_.states();
   const std::vector<RigidBodyState>& ends = ends_;
   std::vector<RigidBodyState>& middle = midway_;
@@ -576,7 +312,7 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway
     };
     return velocity(pair.first) - velocity(pair.second);
   };
-  std::vector<StepContact> result;
+  StepContacts result;
   std::size_t from = 0;
   for (const Pair& pair : island.pairs) {
     std::size_t to = from;
@@ -620,8 +356,7 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway
 }
 
 // @return whether no overlap was left
-bool PersistentContacts::set_paths(const ContactIsland& island,
-                                   const std::vector<StepContact>& contacts,
+bool PersistentContacts::set_paths(const ContactIsland& island, const StepContacts& contacts,
                                    const std::vector<RigidBodyState>& contacts_at,
                                    const ContactProblem& problem, const ContactSolution& solution,
                                    double h, bool activation) {

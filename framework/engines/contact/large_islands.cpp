@@ -75,24 +75,25 @@ std::vector<RigidBodyState> PersistentContacts::middle_of(const ContactIsland& i
   return middle;
 }
 
-std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_large_island(
-    const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h) {
-  std::vector<StepContact> contacts;
+StepContacts PersistentContacts::contacts_of_large_island(const ContactIsland& island,
+                                                          const std::vector<RigidBodyState>& middle,
+                                                          double h) {
+  StepContacts contacts;
   for (const Pair& pair : island.pairs) {
-    if (!reach_of_.contains(pair)) continue;
-    const double margin = geometry_.large_island_margin(pair), within = reach(pair);
+    if (!reach_.may_meet(pair)) continue;
+    const double margin = geometry_.large_island_margin(pair), within = reach_.of(pair);
     ContactManifold points = geometry_.points_at(pair, middle, within);
     const bool passed = std::any_of(points.begin(), points.end(),
                                     [](const collision::ManifoldPoint& p) { return p.gap < 0; });
     if (passed) points = geometry_.points_at(pair, moving_.states(), within);
     for (const collision::ManifoldPoint& p : points) {
       // from the middle the half of the way is left
-      if (!may_close(pair, p, passed ? h : 0.5 * h)) continue;
+      if (!reach_.may_close(pair, p, passed ? h : 0.5 * h)) continue;
       double target = (margin - p.gap) / h;
       if (!passed) {
         const Vector3d point = geometry_.point_of(pair, p);
-        target += 0.5 * p.normal_b_to_a_world.dot(velocity_of_point(pair.first, point) -
-                                                  velocity_of_point(pair.second, point));
+        target += 0.5 * p.normal_b_to_a_world.dot(reach_.velocity_of_point(pair.first, point) -
+                                                  reach_.velocity_of_point(pair.second, point));
       }
       // not / h: in a step cut short that would be an impact
       if (target > 0)
@@ -107,7 +108,7 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_lar
 std::optional<double> PersistentContacts::take_large_island_step(const ContactIsland& island,
                                                                  double h) {
   const std::vector<RigidBodyState> middle = middle_of(island, h);
-  const std::vector<StepContact> contacts = contacts_of_large_island(island, middle, h);
+  const StepContacts contacts = contacts_of_large_island(island, middle, h);
   const ContactProblem problem = problem_of(island, contacts, middle, h);
   ContactOptions options;
   options.tolerance = kContact.solved_in_large_island;

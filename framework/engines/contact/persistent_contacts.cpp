@@ -17,9 +17,7 @@ void PersistentContacts::recall(ContactMemory memory) {
   memory_.longest_step = std::max(memory_.longest_step, step_);
   islands_.clear();
   points_.clear();
-  reaches_.clear();
-  bends_.clear();
-  reach_of_.clear();
+  reach_.clear();
   forces_.clear();
   unsolved_ = {};
 }
@@ -95,14 +93,14 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
   return result;
 }
 
-std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of(
-    const ContactIsland& island) {
-  std::vector<StepContact> contacts;
+StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
+  StepContacts contacts;
   for (const Pair& pair : island.pairs)
     for (const collision::ManifoldPoint& point : points_.at(pair)) {
-      if (!locates() && !may_close(pair, point, moving_.target() - moving_.time())) continue;
+      if (!locates() && !reach_.may_close(pair, point, moving_.target() - moving_.time())) continue;
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
-      const bool activates = distance > kContact.touching_band * margin + kNegligible * reach(pair);
+      const bool activates =
+          distance > kContact.touching_band * margin + kNegligible * reach_.of(pair);
       contacts.push_back({pair, point,
                           activates ? -distance / (moving_.target() - moving_.time()) : 0.0,
                           activates, Vector3d::Zero(), point.gap});
@@ -122,13 +120,13 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   // where impacts are solved in steps.
   std::vector<Pair> touching;
   const bool in_step = !locates() || !memory_.in_large_island.empty();
-  reaches_.clear();
-  bends_.clear();
-  reach_of_.clear();
-  if (in_step) touching = near_pairs(candidates);
+  reach_.clear();
+  if (in_step)
+    touching =
+        reach_.look(candidates, memory_.persistent, [&](Pair pair) { return plastic(pair); });
   for (const Pair& pair : candidates) {
     if (in_step || (!memory_.persistent.contains(pair) && !plastic(pair))) continue;
-    ContactManifold points = geometry_.points_at(pair, moving_.states(), reach(pair));
+    ContactManifold points = geometry_.points_at(pair, moving_.states(), reach_.of(pair));
     if (points.empty()) continue;
     touching.push_back(pair);
     points_.emplace(pair, std::move(points));
@@ -149,40 +147,24 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   if (in_step)
     for (ContactIsland& island : islands_) {
       for (const Pair& pair : island.pairs)
-        points_.emplace(pair, island.large || !reach_of_.contains(pair)
+        points_.emplace(pair, island.large || !reach_.may_meet(pair)
                                   ? ContactManifold{}
-                                  : geometry_.points_at(pair, moving_.states(), reach(pair)));
+                                  : geometry_.points_at(pair, moving_.states(), reach_.of(pair)));
     }
   note_near_pairs(candidates);
-  lead_pressed();
+  pressed_.begin_step(islands_);
   // Every island gets its paths; where one asks for a shorter step, the step begins again for all.
-  next_impulses_.clear();
-  next_pressing_.clear();
+  warm_start_.begin_step();
   next_stuck_.clear();
   if (const auto earlier = take_steps(h)) {
-    require_progress();
+    progress_.require(islands_);
     return earlier;
   }
   // The next step begins with these impulses.
-  memory_.last_impulses = std::move(next_impulses_);
-  memory_.tried_impulses.clear();
-  memory_.pressing = std::move(next_pressing_);
+  warm_start_.end_step();
+  memory_.pressing = pressed_.take_next();
   memory_.stuck = std::move(next_stuck_);
   return std::nullopt;
-}
-
-// Springs, drag and water feel what pressed their bodies in the last step, as long as these touch
-// anything.
-void PersistentContacts::lead_pressed() {
-  felt_.clear();
-  pressing_rounds_.clear();
-  pressing_changes_.clear();
-  if (memory_.pressing.empty()) return;
-  for (const ContactIsland& island : islands_)
-    for (const int body : island.bodies)
-      if (const auto known = memory_.pressing.find(body); known != memory_.pressing.end())
-        felt_.insert(*known);
-  moving_.lead_pressed(felt_);
 }
 
 // Every island's step.
@@ -259,7 +241,7 @@ double PersistentContacts::speed(const ContactIsland& island) const {
 // One island's step.
 // @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::take_step(const ContactIsland& island, double h) {
-  std::vector<StepContact> contacts = contacts_of(island);
+  StepContacts contacts = contacts_of(island);
   const bool located = locates(),
              moves = located && speed(island) > kContact.moving * restitution_threshold_;
   // Points that touch and approach: their velocities jump, without rebound, and the step begins
@@ -270,7 +252,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
   const bool separates = allow_separation(island, contacts, problem);
   ContactSolution solution = solve(island, problem, h);
-  remember(contacts, problem, solution, h, memory_.tried_impulses);
+  warm_start_.remember_attempt(contacts, problem, solution, h);
   bool activation = activates(contacts, solution);
   // Contacts that become active within the step: it ends where the first does, or their gaps close
   // by its end. Too many, and the island is solved in steps.
@@ -295,7 +277,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   // the curve that its rods and joints ask for.
   const bool stays_curved = moves && !island.linked.empty();
   bool is_midway = false;
-  std::vector<StepContact> used = contacts;
+  StepContacts used = contacts;
   const int rounds = turn <= kContact.even_turn ? 0
                      : is_curved(island)        ? kContact.curved_rounds
                                                 : 1;
@@ -317,10 +299,10 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     activation = activates(used, solution);
   }
   require_numbers(island, solution);
-  if (finds_other_pressing(island, used, problem, solution, h, is_midway))
+  if (pressed_.finds_other(island, used, problem, solution, h, is_midway ? &ends_ : nullptr))
     return take_step(island, h);
   // A pair that stops sliding, or slides back, ends the step there.
-  if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt)
+  if (const auto stop = located ? sliding_stop_.of(problem, contacts, solution, h) : std::nullopt)
     return stop;
   // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts
   // bring no energy in.

@@ -22,9 +22,12 @@
 /// 4. Position correction removes the overlaps that rotation leaves.
 ///
 /// Parts: contact_memory.h (what is kept from step to step), contact_geometry.h (where bodies
-/// touch), contact_island.h (which bodies are solved together), position_correction.h; here the
-/// step, with its strategies: one island's step and its solver (contact_steps.cpp), contacts that
-/// become active within it (contact_activation.cpp), large islands (large_islands.cpp), energy
+/// touch), contact_reach.h (what can meet in a step), contact_island.h (which bodies are solved
+/// together), step_contact.h (a point of the step), warm_start.h (impulses that are known),
+/// pressed_bodies.h (forces that follow a motion which contact stops), sliding_stop.h (where
+/// friction has stopped a pair), position_correction.h, contact_progress.h (when to give up); here
+/// the step, with its strategies: one island's step and its solver (contact_steps.cpp), contacts
+/// that become active within it (contact_activation.cpp), large islands (large_islands.cpp), energy
 /// (contact_energy.cpp). Tolerances: contact_constants.h.
 /// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
 #pragma once
@@ -36,7 +39,13 @@
 #include <vector>
 
 #include "framework/dynamics/contact_problem.h"
+#include "framework/engines/contact/contact_progress.h"
+#include "framework/engines/contact/contact_reach.h"
 #include "framework/engines/contact/position_correction.h"
+#include "framework/engines/contact/pressed_bodies.h"
+#include "framework/engines/contact/sliding_stop.h"
+#include "framework/engines/contact/step_contact.h"
+#include "framework/engines/contact/warm_start.h"
 
 namespace tumble::engines {
 
@@ -57,7 +66,12 @@ class PersistentContacts {
         counters_(counters),
         sink_(sink),
         geometry_(moving),
-        correction_(moving, geometry_, memory_, restitution_threshold, counters) {
+        correction_(moving, geometry_, memory_, restitution_threshold, counters),
+        reach_(moving, geometry_),
+        pressed_(moving, memory_),
+        warm_start_(moving, geometry_, memory_),
+        sliding_stop_(moving, geometry_, restitution_threshold, memory_),
+        progress_(moving, memory_) {
     memory_.longest_step = step;
   }
   PersistentContacts(const PersistentContacts&) = delete;
@@ -123,41 +137,18 @@ class PersistentContacts {
   ContactMemory take_memory() { return std::move(memory_); }
 
  private:
-  /// A contact point of the step.
-  struct StepContact {
-    Pair pair;
-    collision::ManifoldPoint point;
-    double target;                                  // least normal velocity afterwards [m/s]
-    bool activates;                                 // apart at the start of the step
-    Vector3d slip_target_world = Vector3d::Zero();  // [m/s], see PushingContact
-    double start_gap = 0.0;  // at the start of the step, wherever `point` is looked at [m]
-  };
   struct Activation {
     std::size_t step_contact;  // which
     double time, speed;        // since the step's start [s], with which it comes down [m/s]
     double approach;           // at the step's start [m/s]
     bool within;               // the step
   };
-  using StepContacts = std::vector<StepContact>;
 
   // ---- Which contacts there are in the step (persistent_contacts.cpp)
   bool plastic(Pair pair) const;
   bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
-  double reach(Pair pair);
-  std::vector<double> speeds_about(const std::vector<Pair>& candidates);
-  double farthest_reach(Pair pair);
-  Vector3d velocity_of_point(int body, const Vector3d& point_world) const;
-  double bend(Pair pair) const;
-  double way(Pair pair, const Vector3d& normal_b_to_a_world) const;
-  std::vector<Pair> near_pairs(const std::vector<Pair>& candidates);
-  double chord_depth(int body) const;
-  bool may_close(Pair pair, const collision::ManifoldPoint& point, double time) const;
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
-  void lead_pressed();
-  std::vector<int> driven_against(const ContactIsland& island) const;
-  void require_room(const ContactIsland& island, double residual);
-  void require_progress();
   StepContacts contacts_of(const ContactIsland& island);
   bool is_curved(const ContactIsland& island) const;
   double speed(const ContactIsland& island) const;
@@ -176,27 +167,14 @@ class PersistentContacts {
                             const std::vector<RigidBodyState>* ends = nullptr);
   const std::vector<RigidBodyState>& middle_of_step(const ContactIsland& island,
                                                     const std::vector<RigidBodyState>* ends);
-  void warm_start(const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h,
-                  double farthest, ContactProblem& problem) const;
-  const std::vector<KnownImpulse>* known_impulses(Pair pair) const;
   ContactSolution solve(const ContactIsland& island, const ContactProblem& problem, double h);
-  void remember(const StepContacts& contacts, const ContactProblem& problem,
-                const ContactSolution& solution, double h,
-                std::map<Pair, std::vector<KnownImpulse>>& store) const;
   void keep_warm_start(const ContactIsland& island, const StepContacts& contacts,
                        const ContactProblem& problem, const ContactSolution& solution, double h);
   void note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h);
   void require_numbers(const ContactIsland& island, const ContactSolution& solution) const;
-  std::optional<double> stop_of_sliding(const ContactProblem& problem, const StepContacts& contacts,
-                                        const ContactSolution& solution, double h);
   void find_ends(const ContactIsland& island, const ContactProblem& problem,
                  const ContactSolution& solution, double h, bool activation,
                  bool inertia_at_ends = false);
-  bool finds_other_pressing(const ContactIsland& island, const std::vector<StepContact>& contacts,
-                            const ContactProblem& problem, const ContactSolution& solution,
-                            double h, bool inertia_at_ends);
-  std::map<int, Wrench> changes_of_pressing(const std::map<int, Wrench>& found) const;
-  std::map<int, Wrench> limit_of_pressing(int first, const std::map<int, Wrench>& found);
   double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends,
                       double h) const;
   double turn_of_normals(const ContactIsland& island,
@@ -209,19 +187,11 @@ class PersistentContacts {
   bool gains_energy(const ContactIsland& island);
 
   // ---- Points that come down within the step (contact_activation.cpp)
-  static Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact,
-                                    const std::vector<Velocity>& velocities);
-  static double approach(const ContactProblem& problem, std::size_t contact,
-                         const std::vector<Velocity>& velocities);
-  static double slip_speed(const ContactProblem& problem, std::size_t contact,
-                           const std::vector<Velocity>& velocities);
   bool is_active(const StepContact& step_contact) const;
   std::vector<Velocity> velocities_now(const ContactIsland& island, const StepContacts& contacts,
                                        const ContactProblem& problem) const;
   bool allow_separation(const ContactIsland& island, StepContacts& contacts,
                         ContactProblem& problem) const;
-  static void keep_together(StepContacts& contacts, ContactProblem& problem);
-  static bool activates(const StepContacts& contacts, const ContactSolution& solution);
   bool is_activated(const ContactIsland& island, const StepContacts& contacts,
                     const ContactProblem& problem, const ContactSolution& solution, double h) const;
   std::vector<Activation> predict_activations(const ContactIsland& island,
@@ -230,7 +200,6 @@ class PersistentContacts {
                                            double h);
   bool apply_impacts_of_active(const ContactIsland& island, const StepContacts& contacts);
   bool apply_impact(const ContactIsland& island, StepContacts down);
-  static std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& contacts);
 
   // ---- Large islands (large_islands.cpp)
   bool is_large(const ContactIsland& island) const;
@@ -251,23 +220,14 @@ class PersistentContacts {
   ContactMemory memory_;
   ContactGeometry geometry_;
   PositionCorrection correction_;
+  ContactReach reach_;
+  PressedBodies pressed_;
+  WarmStart warm_start_;
+  SlidingStop sliding_stop_;
+  ContactProgress progress_;
   // Of the step that has begun:
   std::vector<ContactIsland> islands_;
   std::map<Pair, ContactManifold> points_;
-  // by body, where impacts are solved in steps: how fast it or what it meets is [m/s]
-  std::vector<double> reaches_;
-  // the same: how far the path of the step may be from where it leads without contacts [m]
-  std::vector<double> bends_;
-  std::vector<Velocity> velocities_;  // the same: at the step's start
-  std::map<Pair, double> reach_of_;   // the same, of pairs that may meet [m]
-  std::map<Pair, std::vector<KnownImpulse>> next_impulses_;
-  std::map<int, Wrench> next_pressing_;
-  // by body: what it was led with (MovingWorld::lead_pressed); and how often that was looked for
-  std::map<int, Wrench> felt_;
-  std::map<int, int> pressing_rounds_;  // by an island's first body
-  // by an island's first body, of its bodies: how far the last round was from what they were led
-  // with; empty: not known
-  std::map<int, std::map<int, Wrench>> pressing_changes_;
   std::set<Pair> next_stuck_;
   std::vector<ContactPoint> forces_;
   // By body, of the island whose step is taken: where it comes out, and the middle of the way
