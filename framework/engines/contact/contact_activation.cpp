@@ -1,5 +1,5 @@
-// Contacts that become active within a step: when their gaps close, and the impact there.
-// Part of PersistentContacts.
+#include "framework/engines/contact/contact_activation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,20 +8,19 @@
 #include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/impact_bodies.h"
-#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 
-bool PersistentContacts::is_active(const StepContact& step_contact) const {
+bool ContactActivation::is_active(const StepContact& step_contact) const {
   const double margin = geometry_.margin(step_contact.pair);
   return step_contact.point.gap - margin <=
          margin + kContact.still * restitution_threshold_ * memory_.longest_step;
 }
 
 // At the step's start; the problem's own are those of its end, of driven bodies too.
-std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& island,
-                                                         const StepContacts& contacts,
-                                                         const ContactProblem& problem) const {
+std::vector<Velocity> ContactActivation::velocities_now(const ContactIsland& island,
+                                                        const StepContacts& contacts,
+                                                        const ContactProblem& problem) const {
   std::vector<Velocity> now = velocities_of(problem);
   // the problem's first bodies are the island's
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
@@ -40,15 +39,8 @@ std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& is
   return now;
 }
 
-// Points that touch and separate at the step's start, more slowly than they could leave in it:
-// their gap closes again by its end,
-//   gap(h) = h (v0 + v1) / 2 = 0,  so that  v1 = -v0.
-// Without that they would end at rest where half of their first velocity has taken them: an edge
-// that rocks would be lifted by v0 h / 2 each time, which is more energy than it has wherever v0 <
-// g h.
-// @return whether there are any
-bool PersistentContacts::allow_separation(const ContactIsland& island, StepContacts& contacts,
-                                          ContactProblem& problem) const {
+bool ContactActivation::allow_separation(const ContactIsland& island, StepContacts& contacts,
+                                         ContactProblem& problem) const {
   // what hangs on links is not lifted by itself: their reactions are part of what parts it
   if (!island.linked.empty()) return false;
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
@@ -62,10 +54,9 @@ bool PersistentContacts::allow_separation(const ContactIsland& island, StepConta
   return any;
 }
 
-// Does a point that is apart press, or would its path be under the surface, with this answer?
-bool PersistentContacts::is_activated(const ContactIsland& island, const StepContacts& contacts,
-                                      const ContactProblem& problem,
-                                      const ContactSolution& solution, double h) const {
+bool ContactActivation::is_activated(const ContactIsland& island, const StepContacts& contacts,
+                                     const ContactProblem& problem, const ContactSolution& solution,
+                                     double h) const {
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!contacts[i].activates) continue;
@@ -81,16 +72,18 @@ bool PersistentContacts::is_activated(const ContactIsland& island, const StepCon
 
 // When gaps close that nothing keeps open, from the velocities at the step's ends:
 //   gap(t) = r + v0 t + (v1 - v0) t^2 / (2 h).
-std::vector<PersistentContacts::Activation> PersistentContacts::predict_activations(
-    const ContactIsland& island, const StepContacts& contacts, double h) {
+std::vector<ContactActivation::Activation> ContactActivation::predict(const ContactIsland& island,
+                                                                      const StepContacts& contacts,
+                                                                      double h) {
   StepContacts active;
   std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(active),
                [](const StepContact& step_contact) { return !step_contact.activates; });
-  const ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
+  const ContactProblem problem = problems_.of(island, contacts, moving_.states(), h);
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
   std::vector<Velocity> then = velocities_of(problem);
   if (!active.empty() || !problem.rows.empty()) {
-    const ContactSolution free = solve(island, problem_of(island, active, moving_.states(), h), h);
+    const ContactSolution free =
+        problems_.solve(island, problems_.of(island, active, moving_.states(), h), h);
     std::copy_n(free.velocities.begin(), island.bodies.size(), then.begin());
   }
   std::vector<Activation> activations;
@@ -108,13 +101,9 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
   return activations;
 }
 
-// Points that are apart at the step's start: where one closes its gap faster than the restitution
-// threshold the step ends; slower ones stay, with the velocity at the end that closes the gap by
-// then; others must not come nearer than that.
-// @return an earlier target (or the same after an impact) to begin the step again with
-std::optional<double> PersistentContacts::handle_activations(const ContactIsland& island,
-                                                             StepContacts& contacts, double h) {
-  const std::vector<Activation> activations = predict_activations(island, contacts, h);
+std::optional<double> ContactActivation::handle(const ContactIsland& island, StepContacts& contacts,
+                                                double h) {
+  const std::vector<Activation> activations = predict(island, contacts, h);
   std::vector<bool> stays(contacts.size(), true);
   double first = h;
   for (const Activation& activation : activations)
@@ -148,9 +137,8 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
   return std::nullopt;
 }
 
-// Points that touch and come together: their velocities jump. @return whether any did
-bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island,
-                                                 const StepContacts& contacts) {
+bool ContactActivation::apply_impacts_of_active(const ContactIsland& island,
+                                                const StepContacts& contacts) {
   if (std::none_of(contacts.begin(), contacts.end(),
                    [&](const StepContact& step_contact) { return is_active(step_contact); }))
     return false;
@@ -165,10 +153,10 @@ bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island,
   return apply_impact(island, std::move(down));
 }
 
-bool PersistentContacts::apply_impact(const ContactIsland& island, StepContacts down) {
+bool ContactActivation::apply_impact(const ContactIsland& island, StepContacts down) {
   std::stable_sort(down.begin(), down.end(),
                    [](const StepContact& a, const StepContact& b) { return a.pair < b.pair; });
-  const ContactProblem problem = problem_of(island, down, moving_.states(), 0.0);
+  const ContactProblem problem = problems_.of(island, down, moving_.states(), 0.0);
   const std::vector<Velocity> before = velocities_of(problem);
   // An approach by less than a margin in a step is left to the step's impulses.
   const bool any = [&] {
@@ -184,8 +172,8 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, StepContacts 
   if (memory_.activated_at != moving_.time()) memory_.activations_there = 0;
   memory_.activated_at = moving_.time();
   if (++memory_.activations_there > kMostIdleSteps) return false;
-  const ContactSolution solution = solve(island, problem, 1.0);
-  note_unsolved(island, solution, memory_.longest_step);
+  const ContactSolution solution = problems_.solve(island, problem, 1.0);
+  problems_.note_unsolved(island, solution, memory_.longest_step);
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
     const int body = island.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;

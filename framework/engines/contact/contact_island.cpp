@@ -1,5 +1,7 @@
 #include "framework/engines/contact/contact_island.h"
 
+#include <algorithm>
+
 namespace tumble::engines {
 namespace {
 
@@ -44,6 +46,17 @@ void add_island_rows(MovingWorld& moving, const ContactIsland& island,
   problem.row_targets.resize(static_cast<Eigen::Index>(problem.rows.size()));
   for (std::size_t k = 0; k < problem.rows.size(); ++k)
     problem.row_targets[static_cast<Eigen::Index>(k)] = -problem.rows[k].row.value;
+}
+
+double fastest_speed(const MovingWorld& moving, const ContactIsland& island) {
+  double fastest = 0.0;
+  for (const int index : island.bodies) {
+    const Body body = moving.body_at_impact(index);
+    fastest =
+        std::max(fastest, body.velocity_world.norm() +
+                              body.omega_world.norm() * moving.shape(index).bounding_radius());
+  }
+  return fastest;
 }
 
 }  // namespace tumble::engines

@@ -37,4 +37,7 @@ void add_island_rows(MovingWorld& moving, const ContactIsland& island,
                      const std::vector<RigidBodyState>& states, double t, const BodyPlaces& places,
                      bool of_places, ContactProblem& problem);
 
+/// Of the fastest point of the island's bodies. [m/s]
+double fastest_speed(const MovingWorld& moving, const ContactIsland& island);
+
 }  // namespace tumble::engines

@@ -1,37 +1,27 @@
-// Steps of large islands: many bodies without restitution, solved in steps and not at instants.
-// Part of PersistentContacts.
-//
-// One impact changes dozens of others in the same instant, so nothing is gained by locating any of
-// them. A large island goes
-//   x' = x + h v',   q' = q turned by h omega'
-// with the velocities v' that solve the contact problem at the middle of the step, where surfaces
-// are met evenly (Moreau's midpoint); contacts that would be passed by then are met at the start.
-// The answer is good to a hundred-thousandth of the island's speed; a margin of that size around
-// each body takes up the error, so that gaps stay open.
-// Source: J. J. Moreau, "Numerical aspects of the sweeping process", 1999.
+#include "framework/engines/contact/large_islands.h"
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "framework/dynamics/solve_contacts.h"
-#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 
-bool PersistentContacts::is_large(const ContactIsland& island) const {
+bool LargeIslands::is_large(const ContactIsland& island) const {
   if (!island.linked.empty()) return false;
   if (!locates()) return island.bodies.size() > kContact.few_bodies;
   const bool in_large_island =
       std::any_of(island.bodies.begin(), island.bodies.end(),
                   [&](int body) { return memory_.in_large_island.contains(body); });
   // what comes to rest is let down to the last digit
-  return in_large_island && speed(island) > kContact.moving * restitution_threshold_;
+  return in_large_island &&
+         fastest_speed(moving_, island) > kContact.moving * restitution_threshold_;
 }
 
-void PersistentContacts::report_large_islands() {
+void LargeIslands::report() {
   const std::string words = fmt::format(
       "islands of more than {} bodies with more than {} impacts a step are solved in steps until "
       "they rest (large_island_steps): right to first order in the step. "
@@ -41,9 +31,7 @@ void PersistentContacts::report_large_islands() {
   counters_.watch.say("large islands", moving_.time(), words);
 }
 
-// An impact is about to cut the step for this island. Too many of them, and it is solved in steps
-// from now on, until it rests or separates.
-bool PersistentContacts::becomes_large(const ContactIsland& island) {
+bool LargeIslands::becomes_large(const ContactIsland& island) {
   if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() ||
       island.bodies.size() <= kContact.few_bodies)
     return false;
@@ -54,13 +42,12 @@ bool PersistentContacts::becomes_large(const ContactIsland& island) {
   if (++memory_.impacts_counted[island.bodies.front()] <= kContact.most_located_impacts)
     return false;
   memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
-  report_large_islands();
+  report();
   return true;
 }
 
 // Where the island's bodies are at the middle of the step if nothing stops them.
-std::vector<RigidBodyState> PersistentContacts::middle_of(const ContactIsland& island,
-                                                          double h) const {
+std::vector<RigidBodyState> LargeIslands::middle_of(const ContactIsland& island, double h) const {
   std::vector<RigidBodyState> middle = moving_.states();
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].immovable())
@@ -75,11 +62,10 @@ std::vector<RigidBodyState> PersistentContacts::middle_of(const ContactIsland& i
   return middle;
 }
 
-StepContacts PersistentContacts::contacts_of_large_island(const ContactIsland& island,
-                                                          const std::vector<RigidBodyState>& middle,
-                                                          double h) {
+StepContacts LargeIslands::contacts_of(const ContactIsland& island,
+                                       const std::vector<RigidBodyState>& middle, double h) {
   StepContacts contacts;
-  for (const Pair& pair : island.pairs) {
+  for (const auto& pair : island.pairs) {
     if (!reach_.may_meet(pair)) continue;
     const double margin = geometry_.large_island_margin(pair), within = reach_.of(pair);
     ContactManifold points = geometry_.points_at(pair, middle, within);
@@ -104,46 +90,15 @@ StepContacts PersistentContacts::contacts_of_large_island(const ContactIsland& i
   return contacts;
 }
 
-// @return an earlier target to begin the step again with
-std::optional<double> PersistentContacts::take_large_island_step(const ContactIsland& island,
-                                                                 double h) {
+LargeIslands::Step LargeIslands::solve(const ContactIsland& island, double h) {
   const std::vector<RigidBodyState> middle = middle_of(island, h);
-  const StepContacts contacts = contacts_of_large_island(island, middle, h);
-  const ContactProblem problem = problem_of(island, contacts, middle, h);
-  ContactOptions options;
-  options.tolerance = kContact.solved_in_large_island;
-  options.least_speed = kContact.still * restitution_threshold_;
-  options.most_sweeps_alone = kContact.sweeps_in_large_island;
-  if (locates()) {  // the scene does not ask for steps: their problems are solved at least
-    options.enough = kContact.solved_in_large_island;
-    options.most_sweeps = kContact.sweeps_in_large_island;
-  } else {
-    options.largest_direct = 0;
-  }
+  StepContacts contacts = contacts_of(island, middle, h);
+  ContactProblem problem = problems_.of(island, contacts, middle, h);
   ++counters_.large_island_steps;
   counters_.watch.note_large_island(moving_.time());
-  ++counters_.contact_solves;
-  counters_.contact_points += problem.contacts.size();
-  const ContactSolution solution = laws_.friction_impulses
-                                       ? laws_.friction_impulses(problem, options)
-                                       : solve_contacts(problem, options);
-  counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
-  counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
-  if (!solution.converged) ++counters_.contact_unsolved;
-  require_numbers(island, solution);
-  find_ends(island, problem, solution, h, true);
-  // Pairs with bodies of other groups may meet within the step: that is for the finding of impacts.
-  std::vector<double> gaps(island.pairs.size(), 0.0);
-  const bool apart =
-      correction_.correct_large_island(island, island.pairs, ends_, moving_.target(), gaps);
-  for (const int body : moving_.driven_bodies()) ends_[body] = moving_.state(body);
-  if (!apart && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
-  for (const int body : island.bodies) {
-    set_straight_path(body, ends_[body]);
-    moving_.refuse_fast_turning(body);
-  }
-  keep_warm_start(island, contacts, problem, solution, h);
-  return std::nullopt;
+  ContactSolution solution = problems_.solve_large(problem);
+  problems_.require_numbers(island, solution);
+  return {std::move(contacts), std::move(problem), std::move(solution)};
 }
 
 }  // namespace tumble::engines

@@ -19,7 +19,7 @@ void PersistentContacts::recall(ContactMemory memory) {
   points_.clear();
   reach_.clear();
   forces_.clear();
-  unsolved_ = {};
+  problems_.take_unsolved();
 }
 
 void PersistentContacts::begin(Pair pair, const collision::Gap& gap) {
@@ -115,7 +115,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   points_.clear();
   forces_.clear();
   islands_.clear();
-  unsolved_ = {};
+  problems_.take_unsolved();
   // Which pairs touch in this step: those in persistent contact, and those without restitution
   // where impacts are solved in steps.
   std::vector<Pair> touching;
@@ -139,7 +139,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   // What touches or is linked is solved together, island by island; large islands without
   // restitution are solved in steps.
   islands_ = islands(touching);
-  for (ContactIsland& island : islands_) island.large = is_large(island);
+  for (ContactIsland& island : islands_) island.large = large_.is_large(island);
   memory_.in_large_island.clear();
   for (const ContactIsland& island : islands_)
     if (island.large && locates())
@@ -226,45 +226,33 @@ bool PersistentContacts::is_curved(const ContactIsland& island) const {
                      [&](const Pair& pair) { return geometry_.are_balls(pair); });
 }
 
-// Of the fastest point of the island's bodies. [m/s]
-double PersistentContacts::speed(const ContactIsland& island) const {
-  double fastest = 0.0;
-  for (const int index : island.bodies) {
-    const Body body = moving_.body_at_impact(index);
-    fastest =
-        std::max(fastest, body.velocity_world.norm() +
-                              body.omega_world.norm() * moving_.shape(index).bounding_radius());
-  }
-  return fastest;
-}
-
 // One island's step.
 // @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::take_step(const ContactIsland& island, double h) {
   StepContacts contacts = contacts_of(island);
-  const bool located = locates(),
-             moves = located && speed(island) > kContact.moving * restitution_threshold_;
+  const bool located = locates(), moves = located && fastest_speed(moving_, island) >
+                                                         kContact.moving * restitution_threshold_;
   // Points that touch and approach: their velocities jump, without rebound, and the step begins
   // again.
-  if (moves && apply_impacts_of_active(island, contacts)) return moving_.target();
+  if (moves && activation_.apply_impacts_of_active(island, contacts)) return moving_.target();
   // The impulses that keep what touches from approaching; points that separate slowly close their
   // gap again by the step's end.
-  ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
-  const bool separates = allow_separation(island, contacts, problem);
-  ContactSolution solution = solve(island, problem, h);
+  ContactProblem problem = problems_.of(island, contacts, moving_.states(), h);
+  const bool separates = activation_.allow_separation(island, contacts, problem);
+  ContactSolution solution = problems_.solve(island, problem, h);
   warm_start_.remember_attempt(contacts, problem, solution, h);
   bool activation = activates(contacts, solution);
   // Contacts that become active within the step: it ends where the first does, or their gaps close
   // by its end. Too many, and the island is solved in steps.
-  if (moves && is_activated(island, contacts, problem, solution, h)) {
-    if (becomes_large(island)) return moving_.target();
-    if (const auto again = handle_activations(island, contacts, h)) return again;
-    problem = problem_of(island, contacts, moving_.states(), h);
-    solution = solve(island, problem, h);
+  if (moves && activation_.is_activated(island, contacts, problem, solution, h)) {
+    if (large_.becomes_large(island)) return moving_.target();
+    if (const auto again = activation_.handle(island, contacts, h)) return again;
+    problem = problems_.of(island, contacts, moving_.states(), h);
+    solution = problems_.solve(island, problem, h);
     activation = false;
   } else if (activation && separates) {  // on straight paths what separates has not left
     keep_together(contacts, problem);
-    solution = solve(island, problem, h);
+    solution = problems_.solve(island, problem, h);
     activation = activates(contacts, solution);
   }
   // An island that turns too far gets a shorter step; one that turns at all meets its contacts at
@@ -285,20 +273,20 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     if (round > 0) find_ends(island, problem, solution, h, activation, true);
     is_midway = true;
     used = contacts_midway(island, contacts);
-    problem = problem_of(island, used, midway_, h, &ends_);
+    problem = problems_.of(island, used, midway_, h, &ends_);
     // the same points, a little farther on
     for (std::size_t i = 0; i < used.size(); ++i)
       problem.contacts[i].warm_start_world = solution.impulses_world[i];
-    solution = solve(island, problem, h);
+    solution = problems_.solve(island, problem, h);
     activation = !stays_curved && activates(used, solution);
     if (!activation || !separates) continue;
     // A contact becomes active after all: paths are straight then, and what was to separate stays.
     for (std::size_t i = 0; i < used.size(); ++i)
       if (!contacts[i].activates) problem.contacts[i].target = used[i].target -= contacts[i].target;
-    solution = solve(island, problem, h);
+    solution = problems_.solve(island, problem, h);
     activation = activates(used, solution);
   }
-  require_numbers(island, solution);
+  problems_.require_numbers(island, solution);
   if (pressed_.finds_other(island, used, problem, solution, h, is_midway ? &ends_ : nullptr))
     return take_step(island, h);
   // A pair that stops sliding, or slides back, ends the step there.
@@ -314,6 +302,26 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   if (located && h > kContact.shortest_step_for_energy * memory_.longest_step &&
       gains_energy(island))
     return moving_.time() + 0.5 * h;
+  keep_warm_start(island, contacts, problem, solution, h);
+  return std::nullopt;
+}
+
+// The same of a large one.
+// @return an earlier target to begin the step again with
+std::optional<double> PersistentContacts::take_large_island_step(const ContactIsland& island,
+                                                                 double h) {
+  const auto [contacts, problem, solution] = large_.solve(island, h);
+  find_ends(island, problem, solution, h, true);
+  // Pairs with bodies of other groups may meet within the step: that is for the finding of impacts.
+  std::vector<double> gaps(island.pairs.size(), 0.0);
+  const bool apart =
+      correction_.correct_large_island(island, island.pairs, ends_, moving_.target(), gaps);
+  for (const int body : moving_.driven_bodies()) ends_[body] = moving_.state(body);
+  if (!apart && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
+  for (const int body : island.bodies) {
+    set_straight_path(body, ends_[body]);
+    moving_.refuse_fast_turning(body);
+  }
   keep_warm_start(island, contacts, problem, solution, h);
   return std::nullopt;
 }
@@ -424,7 +432,7 @@ bool PersistentContacts::commit() {
   // A pair that was out of reach in the whole step, as after a cut within the one before.
   end_where_apart();
   if (islands_.empty()) return true;
-  counters_.watch.add(std::exchange(unsolved_, {}));
+  counters_.watch.add(problems_.take_unsolved());
   bool apart = true;
   std::vector<RigidBodyState> states = moving_.states();
   for (const ContactIsland& island : islands_) {

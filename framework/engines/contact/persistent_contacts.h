@@ -23,12 +23,12 @@
 ///
 /// Parts: contact_memory.h (what is kept from step to step), contact_geometry.h (where bodies
 /// touch), contact_reach.h (what can meet in a step), contact_island.h (which bodies are solved
-/// together), step_contact.h (a point of the step), warm_start.h (impulses that are known),
-/// pressed_bodies.h (forces that follow a motion which contact stops), sliding_stop.h (where
-/// friction has stopped a pair), position_correction.h, contact_progress.h (when to give up); here
-/// the step, with its strategies: one island's step and its solver (contact_steps.cpp), contacts
-/// that become active within it (contact_activation.cpp), large islands (large_islands.cpp), energy
-/// (contact_energy.cpp). Tolerances: contact_constants.h.
+/// together), step_contact.h (a point of the step), island_problems.h (an island's problem and who
+/// solves it), warm_start.h (impulses that are known), contact_activation.h (contacts that become
+/// active within the step), sliding_stop.h (where friction has stopped a pair), pressed_bodies.h
+/// (forces that follow a motion which contact stops), large_islands.h, position_correction.h,
+/// contact_progress.h (when to give up); here the step, with one island's ends and paths
+/// (contact_steps.cpp) and its energy (contact_energy.cpp). Tolerances: contact_constants.h.
 /// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
 #pragma once
 
@@ -39,8 +39,10 @@
 #include <vector>
 
 #include "framework/dynamics/contact_problem.h"
+#include "framework/engines/contact/contact_activation.h"
 #include "framework/engines/contact/contact_progress.h"
 #include "framework/engines/contact/contact_reach.h"
+#include "framework/engines/contact/large_islands.h"
 #include "framework/engines/contact/position_correction.h"
 #include "framework/engines/contact/pressed_bodies.h"
 #include "framework/engines/contact/sliding_stop.h"
@@ -59,7 +61,6 @@ class PersistentContacts {
                      double restitution_threshold, double step, RunCounters& counters,
                      TrajectorySink& sink)
       : moving_(moving),
-        laws_(laws),
         rules_(rules),
         restitution_threshold_(restitution_threshold),
         step_(step),
@@ -71,7 +72,13 @@ class PersistentContacts {
         pressed_(moving, memory_),
         warm_start_(moving, geometry_, memory_),
         sliding_stop_(moving, geometry_, restitution_threshold, memory_),
-        progress_(moving, memory_) {
+        progress_(moving, memory_),
+        problems_(moving, laws, rules, restitution_threshold, counters, geometry_, warm_start_,
+                  progress_, memory_),
+        activation_(moving, laws, restitution_threshold, counters, sink, geometry_, problems_,
+                    memory_),
+        large_(moving, rules, restitution_threshold, counters, geometry_, reach_, problems_,
+               memory_) {
     memory_.longest_step = step;
   }
   PersistentContacts(const PersistentContacts&) = delete;
@@ -137,13 +144,6 @@ class PersistentContacts {
   ContactMemory take_memory() { return std::move(memory_); }
 
  private:
-  struct Activation {
-    std::size_t step_contact;  // which
-    double time, speed;        // since the step's start [s], with which it comes down [m/s]
-    double approach;           // at the step's start [m/s]
-    bool within;               // the step
-  };
-
   // ---- Which contacts there are in the step (persistent_contacts.cpp)
   bool plastic(Pair pair) const;
   bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
@@ -151,8 +151,6 @@ class PersistentContacts {
   void note_near_pairs(const std::vector<Pair>& candidates);
   StepContacts contacts_of(const ContactIsland& island);
   bool is_curved(const ContactIsland& island) const;
-  double speed(const ContactIsland& island) const;
-  double speed_of_rounding(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
   double near_distance(Pair pair, bool lasted, bool is_large,
                        const std::vector<RigidBodyState>& states) const;
@@ -162,16 +160,8 @@ class PersistentContacts {
   // ---- One island's step (persistent_contacts.cpp, contact_steps.cpp)
   std::optional<double> take_steps(double h);
   std::optional<double> take_step(const ContactIsland& island, double h);
-  ContactProblem problem_of(const ContactIsland& island, const StepContacts& contacts,
-                            const std::vector<RigidBodyState>& states, double h,
-                            const std::vector<RigidBodyState>* ends = nullptr);
-  const std::vector<RigidBodyState>& middle_of_step(const ContactIsland& island,
-                                                    const std::vector<RigidBodyState>* ends);
-  ContactSolution solve(const ContactIsland& island, const ContactProblem& problem, double h);
   void keep_warm_start(const ContactIsland& island, const StepContacts& contacts,
                        const ContactProblem& problem, const ContactSolution& solution, double h);
-  void note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h);
-  void require_numbers(const ContactIsland& island, const ContactSolution& solution) const;
   void find_ends(const ContactIsland& island, const ContactProblem& problem,
                  const ContactSolution& solution, double h, bool activation,
                  bool inertia_at_ends = false);
@@ -185,33 +175,9 @@ class PersistentContacts {
                  const ContactSolution& solution, double h, bool activation);
   void set_straight_path(int body, const RigidBodyState& end);
   bool gains_energy(const ContactIsland& island);
-
-  // ---- Points that come down within the step (contact_activation.cpp)
-  bool is_active(const StepContact& step_contact) const;
-  std::vector<Velocity> velocities_now(const ContactIsland& island, const StepContacts& contacts,
-                                       const ContactProblem& problem) const;
-  bool allow_separation(const ContactIsland& island, StepContacts& contacts,
-                        ContactProblem& problem) const;
-  bool is_activated(const ContactIsland& island, const StepContacts& contacts,
-                    const ContactProblem& problem, const ContactSolution& solution, double h) const;
-  std::vector<Activation> predict_activations(const ContactIsland& island,
-                                              const StepContacts& contacts, double h);
-  std::optional<double> handle_activations(const ContactIsland& island, StepContacts& contacts,
-                                           double h);
-  bool apply_impacts_of_active(const ContactIsland& island, const StepContacts& contacts);
-  bool apply_impact(const ContactIsland& island, StepContacts down);
-
-  // ---- Large islands (large_islands.cpp)
-  bool is_large(const ContactIsland& island) const;
-  bool becomes_large(const ContactIsland& island);
-  void report_large_islands();
-  std::vector<RigidBodyState> middle_of(const ContactIsland& island, double h) const;
-  StepContacts contacts_of_large_island(const ContactIsland& island,
-                                        const std::vector<RigidBodyState>& middle, double h);
   std::optional<double> take_large_island_step(const ContactIsland& island, double h);
 
   MovingWorld& moving_;
-  const Laws& laws_;
   scene::ContactSpec rules_;
   double restitution_threshold_;  // [m/s]
   double step_;                   // of the scene's grid [s]
@@ -225,6 +191,9 @@ class PersistentContacts {
   WarmStart warm_start_;
   SlidingStop sliding_stop_;
   ContactProgress progress_;
+  IslandProblems problems_;
+  ContactActivation activation_;
+  LargeIslands large_;
   // Of the step that has begun:
   std::vector<ContactIsland> islands_;
   std::map<Pair, ContactManifold> points_;
@@ -234,9 +203,6 @@ class PersistentContacts {
   // there. Others stand where the step began; those of islands whose steps have been taken are
   // stale.
   std::vector<RigidBodyState> ends_, midway_;
-  BodyPlaces places_;                   // in the problem that is being set up
-  std::vector<RigidBodyState> middle_;  // of a linked island's step, by body; others are stale
-  RunWatch unsolved_;                   // what it leaves unsolved, until it is committed
 };
 
 }  // namespace tumble::engines
