@@ -13,7 +13,7 @@ namespace tumble::collision {
 namespace {
 
 // relative to the query's size: error of a search against its limit
-constexpr double kRounding = 1e-14;
+constexpr double kRoundingOfGaps = 1e-14;
 // likewise: far above the error of any search
 constexpr double kCertain = 1e-11;
 
@@ -132,7 +132,7 @@ double gap_distance(const CollisionShape& a, const Pose& pose_a, const Collision
     return cache->measured;
   const Query query(a, pose_a, b, pose_b);
   const double radii = a.radius() + b.radius(),
-               widened_limit = std::max(limit, 0.0) + radii + kRounding * query.size;
+               widened_limit = std::max(limit, 0.0) + radii + kRoundingOfGaps * query.size;
   double distance =
       nearest_pieces(query, widened_limit, cache, Points::kUnwanted).gap.distance - radii;
   if (!(distance <= limit)) distance = std::nextafter(limit, kInfinity);
@@ -174,7 +174,7 @@ std::optional<Separation> largest_separation(const CollisionShape& a, const Pose
     const Query query(a, pose_a, b, pose_b);
     const double radii = a.radius() + b.radius();
     const PolytopeGap gap =
-        nearest_pieces(query, std::max(limit, 0.0) + radii + kRounding * query.size, cache,
+        nearest_pieces(query, std::max(limit, 0.0) + radii + kRoundingOfGaps * query.size, cache,
                        Points::kUnwanted)
             .gap;
     found = {gap.distance - radii, gap.normal_b_to_a};
