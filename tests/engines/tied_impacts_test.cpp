@@ -70,5 +70,34 @@ TEST(ImpactsAtOneInstant, WhoseOrderDecidesNothingAreNotReported) {
     EXPECT_EQ(notice.find("at one instant"), std::string::npos) << notice;
 }
 
+constexpr const char* kEventEngines[] = {"ordered", "ca", "tw"};
+
+// Bodies that fly freely meet pair by pair. A light ball leaves the first of two heavy ones at 1.9
+// times their speed: at 45 degrees to the second one's way that is faster than the second follows,
+// and no second impact is left to see.
+TEST(ImpactsAtOneInstant, OfBodiesThatFlyFreelyAreReportedByEventEngines) {
+  const scene::Scene escapes = hit_by_two(1e3, 0.9, M_PI / 4, std::nullopt);
+  for (const char* engine : kEventEngines) {
+    SCOPED_TRACE(engine);
+    const Trajectory run = run_on(engine, hit_by_two(1.0, 0.9, kThird, std::nullopt));
+    EXPECT_GT(asymmetry(run), 0.1);
+    EXPECT_TRUE(says_order(run));
+    EXPECT_TRUE(
+        says_order(run_on(engine, hit_by_two(1.0, 0.9, kThird, scene::ImpactLaw::kSequential))));
+    EXPECT_TRUE(says_order(run_on(engine, hit_by_two(0.5, 0.9, M_PI, std::nullopt))));
+    const std::vector<Event> events = run_on(engine, escapes).events;
+    EXPECT_GT(events.at(1).time, events.at(0).time);
+    EXPECT_TRUE(says_order(run_on(engine, escapes)));
+  }
+}
+
+TEST(ImpactsAtOneInstant, WhoseOrderDecidesNothingAreNotReportedByEventEngines) {
+  for (const char* engine : kEventEngines) {
+    SCOPED_TRACE(engine);
+    EXPECT_FALSE(says_order(run_on(engine, hit_by_two(1.0, 1.0, M_PI, std::nullopt))));
+    EXPECT_FALSE(says_order(run_on(engine, hit_by_two(2.0, 0.5, M_PI / 2, std::nullopt))));
+  }
+}
+
 }  // namespace
 }  // namespace tumble::testing::tied_impacts_test

@@ -24,7 +24,6 @@ constexpr std::size_t kMostEventsPerPair = 64;
 // of the largest change of a velocity at that instant: what another order changes and is worth a
 // word
 constexpr double kSeenOrder = 1e-3;
-const char* const kOrder = "order of impacts";
 // pairs at one instant: in a heap of more nothing is symmetric, and both orders take long
 constexpr std::size_t kMostInOrder = 64;
 
@@ -431,7 +430,7 @@ void SequentialImpacts::watch_order(Work& work, const Tie& tie,
     return name(pair.a == tie.body ? pair.b : pair.a);
   };
   counters_.watch.say(
-      kOrder, moving.time(),
+      kOrderOfImpacts, moving.time(),
       fmt::format(
           "at t = {:.6g} s {} meets {} and {} at one instant: impacts act one after the other, in "
           "the order of bodies in the file, and the opposite order gives velocities that differ by "
@@ -453,7 +452,7 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     collide_together(work, pairs, threshold, true);
   } else {
     const bool is_watched = pairs.size() > 1 && pairs.size() <= kMostInOrder &&
-                            !counters_.watch.has_said(kOrder, moving.time());
+                            !counters_.watch.has_said(kOrderOfImpacts, moving.time());
     const std::optional<Tie> tie = is_watched ? tie_of(work, pairs, threshold) : std::nullopt;
     std::vector<const TouchingPair*> in_turn;
     for (const TouchingPair& pair : pairs) in_turn.push_back(&pair);

@@ -27,6 +27,9 @@
 
 namespace tumble::engines {
 
+/// The subject of what a run says of them (RunWatch::say).
+inline constexpr const char* kOrderOfImpacts = "order of impacts";
+
 /// Two bodies that touch at the committed time.
 struct TouchingPair {
   int a, b;  // a < b

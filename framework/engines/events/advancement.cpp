@@ -157,6 +157,7 @@ class AdvancementRun {
   void work_at(const EventStamp& key) {
     const int a = key.body_a, b = key.body_b;
     Discontinuity discontinuity = outcome_of(key);
+    run_.watch_order(key, flight_of());
     run_.commit(discontinuity);
     // The flights that begin replace those of the pair or of the processes.
     std::vector<int> changed;

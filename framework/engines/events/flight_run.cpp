@@ -23,6 +23,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}),
       impacts_(world_, laws_.find_impact_time, step_),
       meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}),
+      tied_impacts_(world_, laws_, {step_, scene.rest_speed_m_s}),
       sink_(sink),
       on_membership_(options.on_membership),
       callbacks_(options.callbacks),

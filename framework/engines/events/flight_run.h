@@ -9,6 +9,7 @@
 #include "framework/engines/events/flight_impact_detection.h"
 #include "framework/engines/events/link_measures.h"
 #include "framework/engines/events/flight_impact_response.h"
+#include "framework/engines/events/tied_impacts.h"
 #include "framework/engines/base/frame_times.h"
 #include "framework/engines/base/run_options.h"
 #include "framework/engines/base/run_counters.h"
@@ -66,6 +67,11 @@ class FlightRun {
   ///   finite
   Discontinuity call(const EventStamp& callback, const FlightOf& flight_of);
 
+  /// Looks at what is about to be committed: whether the order of impacts at its instant decides.
+  /// @param before  the flights of all bodies before that instant
+  void watch_order(const EventStamp& key, const FlightOf& before) {
+    tied_impacts_.look(key, before, counters.watch);
+  }
   /// Commits an impact. @pre keys come in order
   void commit(const EventStamp& key, const Event& first, const std::vector<Event>& more);
   void commit(const Discontinuity& discontinuity);
@@ -117,6 +123,7 @@ class FlightRun {
   FlightWorld world_;
   FlightImpactDetection impacts_;
   FlightImpactResponse meetings_;
+  TiedImpacts tied_impacts_;
   TrajectorySink& sink_;
   EventStamp last_{-1.0, 0, StampKind::kCollision, -1, -1};
   std::vector<Event> switches_;  // of point forces, in order of time; known from the start

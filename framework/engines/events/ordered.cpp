@@ -59,6 +59,7 @@ class OrderedRun {
 
   void process(const EventStamp& key) {
     const Discontinuity discontinuity = outcome_of(key);
+    run_.watch_order(key, flight_of());
     run_.commit(discontinuity);
     std::vector<int> changed;
     if (discontinuity.begun.empty()) {

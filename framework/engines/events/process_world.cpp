@@ -305,7 +305,7 @@ std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) 
         pairs.emplace_back(a, b);
         continue;
       }
-      if (!moving_.world().contact || !moving_.may_collide(a, b)) continue;
+      if (!moving_.may_collide(a, b)) continue;
       const double reach = moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius();
       if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() >
           reach * (1 + kSixDigits))
@@ -332,7 +332,8 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   // The step ends here, as in a world of all bodies: contacts that have opened in it take no part.
   if (has_contacts()) world_step_.contacts().end_where_apart();
   const std::size_t ended = collector_.events.size();
-  const std::vector<BodyPair> pairs = near_pairs(trigger);
+  const std::vector<BodyPair> pairs =
+      has_contacts() ? near_pairs(trigger) : std::vector<BodyPair>{trigger};
   world_step_.impact_detection().separate(pairs);
   // An impact that is resolved within its step is resolved in the step that begins here, together
   // with all contacts of the two bodies and friction, as in a world of all bodies. Resolved alone
@@ -353,6 +354,14 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   Change change{save(), take_events()};
   notes.move_to(change.noted);
   return change;
+}
+
+void ProcessWorld::watch_order(BodyPair pair, const ProcessState& state) {
+  load(state);
+  const BodyPair trigger = local(pair);
+  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) return;
+  Stages stages(*this);
+  world_step_.respond(near_pairs(trigger), trigger, false, stages);
 }
 
 }  // namespace tumble::engines

@@ -117,6 +117,11 @@ class ProcessWorld {
   /// The impact of a pair, of which one or both are members.
   Change collide(BodyPair pair, const ProcessState& state);
 
+  /// Resolves all impacts of the members at one instant, for what is said of their order. The notes
+  /// are those of the counters.
+  /// @pre the members fly freely up to here
+  void watch_order(BodyPair pair, const ProcessState& state);
+
  private:
   struct Collector final : TrajectorySink {
     void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}

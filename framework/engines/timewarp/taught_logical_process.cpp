@@ -74,6 +74,13 @@ const KeptState* TaughtLogicalProcess::at(double t) const {
   return later == states_.begin() ? nullptr : &*std::prev(later);
 }
 
+const Flight& TaughtLogicalProcess::before(double t) const {
+  const auto not_before =
+      std::lower_bound(states_.begin(), states_.end(), t,
+                       [](const KeptState& state, double time) { return state.time < time; });
+  return (not_before == states_.begin() ? not_before : std::prev(not_before))->flight;
+}
+
 std::vector<double> TaughtLogicalProcess::times() const {
   std::vector<double> times;
   for (const KeptState& state : states_) times.push_back(state.time);

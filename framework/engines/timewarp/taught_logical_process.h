@@ -69,6 +69,8 @@ class TaughtLogicalProcess {
   Box swept() const { return swept_.box(); }
   /// The state at t: the last one that is not later. nullptr: it has been discarded
   const KeptState* at(double t) const;
+  /// The flight before t: of the last state that is earlier, or of the first that is kept.
+  const Flight& before(double t) const;
   /// The times of the states, ascending.
   std::vector<double> times() const;
 

@@ -167,6 +167,9 @@ void TaughtTimewarp::commit_event() {
                     "them wrongly, or it came too late because global virtual time or may_commit "
                     "accepted what was not certain",
                     name(key), committed_.time));
+  run_.watch_order(key, [&](int body) -> const Flight& {
+    return world().can_move(body) ? process(body).before(key.time) : world().first_flight(body);
+  });
   run_.count(executed.noted.get());
   if (executed.is_silent)
     run_.pass(key);

@@ -58,6 +58,15 @@ void Coordinator::commit_before(const EventStamp& key) {
                                          : all_.immovable(body);
     };
   };
+  const auto flights_before = [&](double time) {
+    return [this, time](int body) -> const Flight& {
+      if (!all_.world().can_move(body)) return all_.immovable(body);
+      const FlightHistory& flights = all_.histories[body];
+      std::size_t k = flights.at(time);
+      while (k > 0 && !(flights[k].begin < time)) --k;
+      return flights[k];
+    };
+  };
   const auto draw_before = [&](double until) {
     while (all_.run.next_frame() < until) all_.run.commit_frame(flights_at(all_.run.next_frame()));
   };
@@ -70,6 +79,7 @@ void Coordinator::commit_before(const EventStamp& key) {
       continue;
     }
     draw_before(event.key.time);
+    all_.run.watch_order(event.key, flights_before(event.key.time));
     all_.run.count(event.noted.get());
     if (event.is_silent)
       all_.run.pass(event.key);
