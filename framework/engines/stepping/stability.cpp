@@ -20,6 +20,10 @@ namespace {
 
 // factor over a run by which a method may lengthen a swing: more is refused
 constexpr double kRuin = 1e3;
+// rad of its motion that a driven body may go in a step. What it carries asks where it is a few
+// times a step: at one radian a pendulum on a shaken base is off by 2 %, at a quarter turn a shaken
+// floor may seem to stand still in every step.
+constexpr double kFollowed = 1.0;
 // of the longest step at which a swing does not grow: links that come taut set it going, and it has
 // to be followed, not only outlived
 constexpr double kJerk = 0.1;
@@ -269,10 +273,39 @@ void refuse_or_tell(const StepLimit& limit, const Laws& laws, const StepsOfARun&
   if (over_the_run > std::log(kSeen)) notices.push_back(what + smaller_steps(limit));
 }
 
+// Whether contacts, springs, rods or joints may lead from a body to others; impacts find it at any
+// instant.
+bool carries(const World& world, int body) {
+  if (world.contact && world.bodies[static_cast<std::size_t>(body)].collides) return true;
+  for (const effects::Effect* effect : effects::all())
+    for (int entry = 0; entry < effect->count_in(world); ++entry) {
+      const std::vector<int> bodies = effect->bodies_of(world, entry);
+      if (std::find(bodies.begin(), bodies.end(), body) != bodies.end()) return true;
+    }
+  return false;
+}
+
+// Reports what is driven to and fro faster than the steps follow.
+void report_fast_driven(const World& world, double step, std::vector<std::string>& notices) {
+  for (std::size_t k = 0; k < world.bodies.size(); ++k) {
+    const scene::PrescribedMotion& motion = world.bodies[k].motion;
+    const double rate = motion.amplitude_m.isZero(0.0) ? 0.0 : motion.angular_frequency_rad_s;
+    if (!world.bodies[k].immovable() || rate * step <= kFollowed * (1 + kNegligible) ||
+        !carries(world, static_cast<int>(k)))
+      continue;
+    notices.push_back(fmt::format(
+        "a step of {:.3g} s is {:.3g} rad of the motion of '{}': contacts, springs, rods and "
+        "joints feel that motion at a few instants of each step, and may miss it; steps of at most "
+        "{:.2g} s (\"step_s\") follow it",
+        step, rate * step, world.bodies[k].name, kFollowed / rate));
+  }
+}
+
 }  // namespace
 
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps,
                            const std::string& where, std::vector<std::string>& notices) try {
+  report_fast_driven(world, steps.step, notices);
   if (const auto dampers = judge_dampers(world, laws, steps.step))
     refuse_or_tell(*dampers, laws, steps, where, notices);
   const auto springs = judge_springs(world, laws, steps.step);

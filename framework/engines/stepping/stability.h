@@ -114,7 +114,8 @@ struct StepsOfARun {
 };
 
 /// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's
-/// term take part in; reports one where it can be seen.
+/// term take part in; reports one where it can be seen. Reports what is driven to and fro by more
+/// than a radian a step, where others feel it by more than impacts.
 /// @throws UserError naming the effect, the body or the term, what happens to it and the largest
 /// step that does not do it
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps,
