@@ -241,24 +241,29 @@ TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
   EXPECT_EQ(told_of_ball(1e-3, 1e-3, 1e9, 1e-3, 1e-3, std::nextafter(1e9, 2e9) - 1e9).size(), 0u);
 }
 
-// A law of its own that moves nothing drives nothing: an amplitude without a frequency.
-TEST(EnergyRises, IsToldBesideABodyThatOnlyMightHaveMoved) {
+ContactPoint contact_of(int a, int b) {
+  return {a, b, Vector3d::Zero(), Vector3d::UnitZ(), Vector3d(0, 0, 9.81)};
+}
+
+// What is driven gives energy to what it touches, and to nothing else; a law of its own that moves
+// nothing drives nothing: an amplitude without a frequency.
+TEST(EnergyRises, IsToldBesideADrivenBodyThatTouchesNothing) {
   scene::BodySpec floor = ball("floor", 1.0, 1.0, {0, 0, -9}, Vector3d::Zero());
   floor.mass_kg.reset();
   floor.immovable = true;
   floor.motion.emplace();
   floor.motion->amplitude_m = {0, 0, 0.1};
-  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0, {floor}).size(), 1u);
-  floor.motion->angular_frequency_rad_s = 5.0;
-  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0, {floor}).size(), 0u);
+  for (const double frequency : {0.0, 5.0}) {
+    floor.motion->angular_frequency_rad_s = frequency;
+    EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0, {floor}).size(), 1u) << frequency;
+  }
+  const scene::Scene scene =
+      scene_of({ball("ball", 0.5, 1e4, Vector3d::Zero(), Vector3d::Zero()), floor}, 1.0, kGravity);
+  EXPECT_EQ(told_of(scene, 0.1, 0.11, 0.0, {contact_of(0, 1)}).size(), 0u);
 }
 
 bool speaks_of_contacts(const std::vector<RunFault>& faults) {
   return faults.at(0).remedy.find("contacts") != std::string::npos;
-}
-
-ContactPoint contact_of(int a, int b) {
-  return {a, b, Vector3d::Zero(), Vector3d::UnitZ(), Vector3d(0, 0, 9.81)};
 }
 
 // A rise goes with the step itself where contacts act on the body that has it: contacts of others

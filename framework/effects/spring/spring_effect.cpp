@@ -139,7 +139,9 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
     const SpringLink& link = held(world)[static_cast<std::size_t>(entry)];
     const AnchorState a = anchor_state(link.a, world, states, 0.0),
                       b = anchor_state(link.b, world, states, 0.0);
-    const Vector3d way = b.point_world - a.point_world, rate = b.velocity_world - a.velocity_world;
+    // a driven end is where its state says; at which speed is right at any time if it moves evenly
+    const Vector3d way = anchor_point(link.b, states) - anchor_point(link.a, states),
+                   rate = b.velocity_world - a.velocity_world;
     const double along = way.isZero(0.0) ? rate.norm() : rate.dot(way.normalized());
     return link.spring.damping * along * along;
   }

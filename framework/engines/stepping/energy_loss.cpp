@@ -19,6 +19,20 @@ double taken_at_most(double passed, double power_before, double power) {
   return passed * (kMean * std::max(power_before, power) + std::abs(power - power_before));
 }
 
+// What a body's energy is more by, seen from a frame that moves evenly. [J]
+struct Seen {
+  double at_work = 0.0, height = 0.0;
+};
+Seen seen_from(const Vector3d& frame_world, double time, const World& world,
+               const RigidBodyState& state, int body) {
+  if (frame_world.isZero(0.0)) return {};
+  const double mass = world.bodies[static_cast<std::size_t>(body)].inertia.mass;
+  Seen seen;
+  seen.at_work = 0.5 * mass * frame_world.squaredNorm() - frame_world.dot(state.momentum_world);
+  if (world.gravity_world) seen.height = mass * time * world.gravity_world->dot(frame_world);
+  return seen;
+}
+
 }  // namespace
 
 void EnergyLoss::note(const Event& event) {
@@ -39,9 +53,11 @@ void EnergyLoss::begin(const World& world) {
   const auto moves = [&](int body) {
     return body >= 0 && !world.bodies[static_cast<std::size_t>(body)].immovable();
   };
-  const auto drives = [&](int body) {
-    return body >= 0 && !moves(body) &&
-           is_driven(world.bodies[static_cast<std::size_t>(body)].motion);
+  const auto motion_of = [&](int body) -> const scene::PrescribedMotion& {
+    return world.bodies[static_cast<std::size_t>(body)].motion;
+  };
+  const auto swings = [&](int body) {
+    return is_driven(motion_of(body)) && !motion_of(body).amplitude_m.isZero(0.0);
   };
   for (Part& part : parts_)
     if (!part.losses.empty()) former_.push_back(std::move(part));
@@ -53,6 +69,7 @@ void EnergyLoss::begin(const World& world) {
     const effects::Effect* effect;
     int entry, body;
     bool is_unknown;
+    std::optional<Vector3d> frame_world;  // of what does not move among its bodies
   };
   std::vector<Entry> entries;
   for (const effects::Effect* effect : effects::all()) {
@@ -63,13 +80,20 @@ void EnergyLoss::begin(const World& world) {
       int first = -1;
       bool is_unknown = needs_steps || effect->takes(world, k) == effects::Takes::kUnknown ||
                         (!sees_switches_ && effect->takes(world, k) == effects::Takes::kPower);
-      for (const int body : effect->bodies_of(world, k)) {
-        is_unknown = is_unknown || drives(body);
-        if (!moves(body)) continue;
+      const std::vector<int> bodies = effect->bodies_of(world, k);
+      // what names one body holds it by the world, or slows it down by what rests in it
+      std::optional<Vector3d> frame_world;
+      if (bodies.size() == 1) frame_world = Vector3d::Zero();
+      for (const int body : bodies) {
+        if (!moves(body)) {
+          is_unknown = is_unknown || (body >= 0 && swings(body));
+          frame_world = body < 0 ? Vector3d(Vector3d::Zero()) : motion_of(body).velocity_m_s;
+          continue;
+        }
         if (first >= 0) linked.unite(first, body);
         first = first < 0 ? body : first;
       }
-      if (first >= 0) entries.push_back({effect, k, first, is_unknown});
+      if (first >= 0) entries.push_back({effect, k, first, is_unknown, frame_world});
     }
   }
   part_of_.assign(world.bodies.size(), -1);
@@ -85,8 +109,12 @@ void EnergyLoss::begin(const World& world) {
   }
   for (const Entry& entry : entries) {
     const int part = part_of_[static_cast<std::size_t>(entry.body)];
-    if (entry.is_unknown)
-      parts_[static_cast<std::size_t>(part)].is_watched = false;
+    Part& its = parts_[static_cast<std::size_t>(part)];
+    const bool is_torn =
+        entry.frame_world && its.frame_world && *entry.frame_world != *its.frame_world;
+    if (entry.frame_world) its.frame_world = entry.frame_world;
+    if (entry.is_unknown || is_torn)
+      its.is_watched = false;
     else if (entry.effect->takes(world, entry.entry) == effects::Takes::kPower)
       takers_.push_back({entry.effect, entry.entry, part});
   }
@@ -117,6 +145,11 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
       const auto i = static_cast<std::size_t>(body);
       at_work += energy.at_work[i];
       height += energy.height[i];
+      if (part.frame_world) {
+        const Seen seen = seen_from(*part.frame_world, time, world, states[i], body);
+        at_work += seen.at_work;
+        height += seen.height;
+      }
       if (brought.empty()) continue;
       work.done += brought[i].done;
       work.most += brought[i].most;
@@ -143,7 +176,14 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     if (power_before > 0.0 || power > 0.0)
       part.offset += taken_at_most(passed, power_before, power);
     part.least = std::min(part.least, all + part.offset_of_rises);
-    part.rise = std::max(part.rise, all + part.offset_of_rises - part.least);
+    if (const double rise = all + part.offset_of_rises - part.least; rise > part.rise) {
+      if (rise > kEnergyRises * part.whole) {
+        // the first that counts is told
+        if (!(part.rise > kEnergyRises * part.whole)) part.risen_at = time;
+        is_more = true;
+      }
+      part.rise = rise;
+    }
     part.highest = std::max(part.highest, all + part.offset);
     part.largest_fall = std::max(part.largest_fall, ledger_before - (all + part.offset));
     const double lost = part.highest - (all + part.offset);
@@ -168,6 +208,14 @@ std::vector<LostEnergy> EnergyLoss::losses(double rounding) const {
               {part.bodies, loss.size, part.whole, loss.time, last_look_, loss.is_sudden});
       }
     }
+  return found;
+}
+
+std::vector<RisenEnergy> EnergyLoss::rises(double rounding) const {
+  std::vector<RisenEnergy> found;
+  for (const Part& part : parts_)
+    if (part.is_watched && part.rise > kEnergyRises * part.whole + rounding)
+      found.push_back({part.bodies, part.rise, part.whole, part.risen_at});
   return found;
 }
 

@@ -11,12 +11,16 @@
 /// What a part is given or loses where it is hit, or in persistent contact, is counted neither way:
 /// A stands still from the look before to the one after. Impacts are judged by themselves
 /// (`impact_energy`, judging/judge.h).
-/// Not watched: what is linked with driven bodies, what an effect acts on that says of no entry
+/// What hangs on bodies that move evenly, all alike, is seen from a frame that moves along: there
+/// they stand still. Where bodies are driven, and the energy of the world says nothing, a part's own
+/// energy must not rise either.
+/// Not watched: what is linked with bodies that are driven otherwise, what an effect acts on that says of no entry
 /// what it takes (effects::Takes::kUnknown), balls at rest without contacts; and where looks are
 /// taken at frames (event engines), what is dragged, damped or driven, and islands of scenes with
 /// persistent contacts.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +38,13 @@ struct LostEnergy {
   double lost, whole;       // how much, of what moved, was stored or came down there at most [J]
   double time, watched;     // when, and until when it was looked at [s]
   bool is_sudden;           // half of it or more between two looks
+};
+
+/// What one part of a world has won that nothing brings in.
+struct RisenEnergy {
+  std::vector<int> bodies;  // of the part
+  double risen, whole;      // as of LostEnergy [J]
+  double time;              // when [s]
 };
 
 class EnergyLoss {
@@ -58,6 +69,8 @@ class EnergyLoss {
   /// and of time.
   /// @param rounding  of the world's energy [J]
   std::vector<LostEnergy> losses(double rounding) const;
+  /// The same of energy that has risen.
+  std::vector<RisenEnergy> rises(double rounding) const;
 
  private:
   struct Loss {
@@ -67,10 +80,13 @@ class EnergyLoss {
   struct Part {
     std::vector<int> bodies;
     bool is_watched = true, is_touched = false;
+    // of the frame that it is seen from: that of the immovable bodies that it is linked with [m/s]
+    std::optional<Vector3d> frame_world;
     // [J]: E = T + V now; of A and of A with W at most and without D, what they are above E, and
     // how far they have been
     double energy = kUnset, offset = 0.0, highest = 0.0, offset_of_rises = 0.0, least = 0.0;
     double highest_place = -kInfinity, whole = 0.0, rise = 0.0, largest_fall = 0.0;
+    double risen_at = kUnset;  // [s]
     double power = kUnset;     // that is taken, at the last look [W]
     std::vector<Loss> losses;  // each larger than the one before
   };

@@ -35,6 +35,13 @@ double energy_at_work(const EnergyByBody& energy) {
   return std::accumulate(energy.at_work.begin(), energy.at_work.end(), 0.0);
 }
 
+// What it brings in is not measured.
+bool has_driven(const World& world) {
+  return std::any_of(world.bodies.begin(), world.bodies.end(), [](const WorldBody& body) {
+    return body.immovable() && is_driven(body.motion);
+  });
+}
+
 // The terms that the energy is a sum of: what its rounding goes by. [J]
 double terms_of_energy(const World& world, const std::vector<RigidBodyState>& states,
                        double kinetic) {
@@ -118,6 +125,10 @@ void EnergyWatch::tell_of_losses(const World& world, const Laws& laws,
 }
 
 void EnergyWatch::tell_of_rises(const World& world, RunCounters& counters) const {
+  if (has_driven(world))
+    for (const RisenEnergy& one : loss_.rises(rounding_))
+      counters.watch.note(RunWatch::Kind::kEnergyRises, names_of(world, one.bodies),
+                          {one.risen / one.whole, kEnergyRises, one.time, step_, kOrderOfMethods});
   const double whole =
       available() +
       (unseen(counters.watch.has_large_islands() ? kLiftedInLargeIslands : kLifted) + rounding_) /
@@ -151,7 +162,6 @@ void EnergyWatch::take_in(const World& world) {
 std::optional<Runaway> EnergyWatch::look(double time, const World& world,
                                          const std::vector<RigidBodyState>& states,
                                          const std::vector<ContactPoint>& contacts) {
-  const auto driven = [](const WorldBody& b) { return b.immovable() && is_driven(b.motion); };
   if (!has_meters_) take_in(world);
   sum_energy(world, states, energy_);
   const EnergyByBody& now = energy_;
@@ -162,9 +172,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
   for (const ContactPoint& contact : contacts) loss_.note_touch(contact.body_a, contact.body_b);
   if (loss_.look(time, world, states, now, brought_))
     note_rounding(time, now.kinetic, world, states);
-  if ((!sees_switches_ && !meters_.empty()) ||
-      std::any_of(world.bodies.begin(), world.bodies.end(), driven))
-    return std::nullopt;
+  if ((!sees_switches_ && !meters_.empty()) || has_driven(world)) return std::nullopt;
   work_ += work_of_effects();
   for (const effects::Work& one : brought_) given_ += std::abs(one.done) + one.most;
   const double energy = now.kinetic + now.potential - work_;
