@@ -63,16 +63,25 @@ Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& 
   return response;
 }
 
+/// dp = f - D (dv + c dp_n n)  as  dp = f' - D' dv  (Sherman, Morrison).
+void yield(double compliance, Response& response) {
+  const Vector3d by_normal = response.d.col(0);
+  const double share = compliance / (1 + compliance * by_normal[0]);
+  response.d -= share * by_normal * response.d.row(0).eval();
+  response.f -= share * response.f[0] * by_normal;
+}
+
 /// The answers of all contacts by Coulomb's law.
 std::vector<Response> law_responses(const System& system, const Impulses& now, double fade) {
   std::vector<Response> responses(system.contacts.size(),
                                   Response{Vector3d::Zero(), Matrix3d::Zero()});
   for (std::size_t i = 0; i < responses.size(); ++i) {
     const ContactBlock& c = system.contacts[i];
-    if (c.inverse_effective_mass > 0)
-      responses[i] =
-          law_response(c, now.contacts[i], contact_velocity(c, now.y), c.inverse_effective_mass,
-                       fade, kTie * system.speed / c.inverse_effective_mass);
+    if (!(c.inverse_effective_mass > 0)) continue;
+    responses[i] = law_response(
+        c, now.contacts[i], yielding_velocity(c, now.contacts[i], now.y), c.inverse_effective_mass,
+        fade, c.compliance > 0 ? 0.0 : kTie * system.speed / c.inverse_effective_mass);
+    if (c.compliance > 0) yield(c.compliance, responses[i]);
   }
   return responses;
 }
@@ -241,6 +250,22 @@ void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& prog
     // One step past the goal: the velocities of a high stack are sums of many contacts' violations.
     if (was_accepted || after.largest <= rounding_floor(goal.system, progress.impulses)) return;
   }
+}
+
+bool finish_yielding(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress) {
+  constexpr double kFade = 1e-7;
+  StepEquations equations;
+  Impulses change;
+  for (int i = 0; i < most_steps && !progress.accepted; ++i) {
+    if (!equations.prepare(goal.system, kFade, matrix, progress.impulses,
+                           law_responses(goal.system, progress.impulses, kFade)))
+      return false;
+    ++progress.factorisations;
+    equations.solve(matrix, progress.violation.largest, change);
+    progress.impulses = moved(goal.system, progress.impulses, change, 1.0);
+    goal.measure(progress);
+  }
+  return progress.accepted;
 }
 
 }  // namespace tumble::contacts

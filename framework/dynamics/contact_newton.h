@@ -59,6 +59,11 @@ struct Goal {
 /// Steps of semismooth Newton while they help; the sum of squared violations never grows.
 void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress);
 
+/// Full steps of semismooth Newton, whatever they leave, until one is accepted: for contacts whose
+/// surfaces yield (ContactBlock::compliance), where a contact that opens leaves for a step what is
+/// larger by far than what the surfaces tell apart. False: none was.
+bool finish_yielding(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress);
+
 /// Impulses of rows that go with those of contacts, from a warm start that knows none of rows:
 /// without them modes would be told from velocities that no row has.
 /// @return false, and nothing is changed: that lessens no violation

@@ -11,8 +11,8 @@
 ///       (Coulomb, a cone, no pyramid)                                                        (C.2)
 /// Equality rows (rods, joints inside the group) hold J u = target with an impulse of any sign.
 /// (C.3) Such an impulse always exists for target <= 0 and no equality rows; it need not be unique
-/// (a table on four legs), nor are the velocities always unique where friction is large. The same
-/// problem gives the same bits.
+/// (a table on four legs: contact_spread.h says which is taken among links), nor are the velocities
+/// always unique where friction is large. The same problem gives the same bits.
 /// Sources: D. Stewart, J. Trinkle, Int. J. Numer. Meth. Eng. 39, 1996; V. Acary, B. Brogliato,
 /// "Numerical methods for nonsmooth dynamical systems", 2008, ch. 13; G. De Saxce, Z.-Q. Feng,
 /// Math. Comput. Modelling 28, 1998.
@@ -66,6 +66,7 @@ struct ContactSolution {
   double residual = 0.0;
   bool converged = false;              // residual <= tolerance
   int sweeps = 0, factorisations = 0;  // what it cost
+  bool is_spread = false;              // statics does not tell its load (contact_spread.h)
   bool by_contact_forces = false;      // found by the laws' contact_forces, not by such a solver
 };
 
@@ -80,6 +81,10 @@ struct ContactOptions {
   double enough = 0.0;
   // where the direct method is not called
   int most_sweeps_alone = 2000;
+  // where there are rows: contacts that open or approach with less than this do so by errors, which
+  // do not tell which of them carries a load. Above 0: where statics does not, either, the load is
+  // spread most evenly over them (contact_spread.h) [m/s]
+  double indistinct = 0.0;
   // bodies that hang on rows and touch nothing are left out, as far as this can be done
   bool eliminates_links = true;
 };

@@ -47,12 +47,13 @@ LocalContact& Sweeper::local_of(std::size_t i) {
   LocalContact& local = locals_[i];
   if (std::exchange(gates_[i].is_prepared, true)) return local;
   if (!block.is_frictional()) {
-    local.w_nn = block.inverse_effective_mass;
+    local.w_nn = block.inverse_effective_mass + block.compliance;
     return local;
   }
   Matrix3d w = Matrix3d::Zero();
   if (block.body_a != kFixed) w.noalias() += block.g_a * block.g_a.transpose();
   if (block.body_b != kFixed) w.noalias() += block.g_b * block.g_b.transpose();
+  w(0, 0) += block.compliance;
   return local = prepare_local(w);
 }
 
@@ -81,12 +82,13 @@ void Sweeper::relax_contact(std::size_t i, Impulses& impulses, Swept& swept) {
   double change = 0;
   if (!block.is_frictional()) {
     const double before = impulse[0];
-    impulse[0] = std::max(0.0, before - normal_velocity(block, y) / local.w_nn);
+    const double v = normal_velocity(block, y) + block.compliance * before;
+    impulse[0] = std::max(0.0, before - v / local.w_nn);
     change = impulse[0] - before;
     if (change != 0) push(block, Vector3d(change, 0, 0), y);
     change = std::abs(change);
   } else {
-    const Vector3d velocity = contact_velocity(block, y), before = impulse;
+    const Vector3d velocity = yielding_velocity(block, impulse, y), before = impulse;
     impulse = solve_local(local, velocity - local.w * before, block.friction);
     const Vector3d by = impulse - before;
     push(block, by, y);

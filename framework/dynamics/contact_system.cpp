@@ -173,7 +173,7 @@ Violation measure_violation(const System& system, const Impulses& impulses) {
     // between two bodies that nothing pushes there is no impulse to find
     if (!(block.inverse_effective_mass > 0)) continue;
     const Vector3d& p = impulses.contacts[i];
-    const Vector3d v = contact_velocity(block, impulses.y);
+    const Vector3d v = yielding_velocity(block, p, impulses.y);
     take(block.inverse_effective_mass * block.inverse_effective_mass *
          (p - coulomb_projection(p - v / block.inverse_effective_mass, block.friction))
              .squaredNorm());

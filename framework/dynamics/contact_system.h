@@ -29,7 +29,10 @@ struct ContactBlock {
   // G_i; rows n, t1, t2; without friction only the first is set
   Jacobian g_a, g_b;
   Vector3d base = Vector3d::Zero();  // v_i without impulses [m/s]
-  Matrix3d contact_from_world;       // rows n, t1, t2
+  // of the surface along the normal: v_n grows by this times p_n [1/kg]; only while a load is
+  // spread (contact_spread.h)
+  double compliance = 0;
+  Matrix3d contact_from_world;  // rows n, t1, t2
   bool is_frictional() const { return friction > 0; }
 };
 
@@ -81,6 +84,14 @@ inline void add_velocity(const ContactBlock& c, const std::vector<Vector6d>& y, 
 inline Vector3d contact_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
   Vector3d v = c.base;
   add_velocity(c, y, v);
+  return v;
+}
+
+/// With what the surface yields.
+inline Vector3d yielding_velocity(const ContactBlock& c, const Vector3d& impulse,
+                                  const std::vector<Vector6d>& y) {
+  Vector3d v = contact_velocity(c, y);
+  if (c.compliance > 0) v[0] += c.compliance * impulse[0];
   return v;
 }
 

@@ -13,7 +13,8 @@
 //      (contact_newton.h). Of what is nearly solved, only as long as it gets better: loads that
 //      many contacts share in ways that do not fit by a hundred-millionth of a speed move on
 //      through all of them without end.
-// Problems too large for 2, 3, 5 and 6 are left to the sweeps.
+// Problems too large for 2, 3, 5 and 6 are left to the sweeps. Of contacts between linked bodies,
+// what statics does not tell is made even at last (contact_spread.h).
 #include "framework/dynamics/solve_contacts.h"
 
 #include <algorithm>
@@ -24,6 +25,7 @@
 #include "framework/dynamics/contact_cone.h"
 #include "framework/dynamics/contact_links.h"
 #include "framework/dynamics/contact_newton.h"
+#include "framework/dynamics/contact_spread.h"
 #include "framework/dynamics/contact_sweeps.h"
 #include "framework/dynamics/contact_system.h"
 
@@ -263,6 +265,23 @@ bool solve_without_links(const contacts::LinkElimination& links, const Goal& goa
   return true;
 }
 
+/// What the answer leaves to errors becomes even; how well it solves the problem stays as measured.
+bool spread_load(const std::optional<contacts::LinkElimination>& links, const Goal& goal,
+                 double indistinct, Progress& progress) {
+  if (!links || !links->is_of_use()) return contacts::spread(goal, indistinct, progress);
+  const Goal of_rest{links->rest(), goal.violation};
+  Progress rest;
+  rest.impulses = links->of_rest(progress.impulses);
+  const bool is_spread = contacts::spread(of_rest, indistinct, rest);
+  if (is_spread) {
+    progress.impulses = links->of_whole(rest.impulses);
+    links->refine(progress.impulses);
+  }
+  progress.sweeps += rest.sweeps;
+  progress.factorisations += rest.factorisations;
+  return is_spread;
+}
+
 ContactSolution describe(const ContactProblem& problem, const System& system,
                          const Impulses& impulses) {
   ContactSolution solution;
@@ -308,9 +327,12 @@ ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptio
     goal.measure(progress);
     if (!progress.accepted) iterate(goal, options, enough, progress);
   }
+  const bool is_spread = options.indistinct > 0 && !system.rows.empty() &&
+                         spread_load(links, goal, options.indistinct, progress);
   ContactSolution solution = describe(problem, system, progress.impulses);
   solution.residual = progress.violation.largest / speed;
   solution.converged = progress.accepted;
+  solution.is_spread = is_spread;
   solution.sweeps = progress.sweeps;
   solution.factorisations = progress.factorisations;
   return solution;

@@ -22,6 +22,10 @@ struct ContactConstants {
   /// margins: nearer than this two touch at the start of a step; farther, a point becomes active
   /// in it. Larger: gaps close late. Smaller: contacts at rest are activated again and again.
   double touching_band = 8.0;
+  /// of the smaller body: points of linked bodies with friction that are nearer than this share a
+  /// load with those that touch, and no impact closes their gaps. Larger: bodies land late.
+  /// Smaller: errors of long steps decide what carries.
+  double sharing_band = 1e-4;
   /// margins: farther than this, and than the restitution threshold goes in a step, a contact has
   /// ended. Larger: contacts outlast their end. Smaller: contacts flicker.
   double open_band = 32.0;
@@ -61,6 +65,11 @@ struct ContactConstants {
   /// solves for where curved surfaces touch at the step's end: the second one leaves a thirtieth
   /// of the error. Larger: slower. Smaller: energy errors of what rolls.
   int curved_rounds = 2;
+  /// solves where statics does not tell which contact carries a load, at most, until targets
+  /// change by less than this part of what is indistinct. More, or smaller: slower. Fewer, or
+  /// larger: errors of the step tell what carries.
+  int most_sharing_rounds = 5;
+  double same_targets = 1e-2;
   /// of a force: as near what presses a body and what springs, drag and water felt of it are to be
   /// where a contact begins, and how often that is looked for. A round leaves a tenth of the error
   /// or so; after as many that are not enough, as many more look where the rounds lead to. Larger,

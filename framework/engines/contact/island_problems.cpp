@@ -1,6 +1,7 @@
 #include "framework/engines/contact/island_problems.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -91,6 +92,13 @@ double IslandProblems::speed_of_rounding(const ContactIsland& island) const {
   return kCoordinateRounding * farthest / memory_.longest_step;
 }
 
+double IslandProblems::indistinct_speed(const ContactIsland& island) const {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& pair : island.pairs) smallest = std::min(smallest, geometry_.size_of(pair));
+  const double h = moving_.target() - moving_.time();
+  return kSixDigits * (smallest / h + fastest_speed(moving_, island));
+}
+
 ContactSolution IslandProblems::solve(const ContactIsland& island, const ContactProblem& problem,
                                       double h) {
   if (problem.contacts.empty() && problem.rows.empty()) return unpushed(problem);
@@ -105,7 +113,10 @@ ContactSolution IslandProblems::solve(const ContactIsland& island, const Contact
   if (!frictionless || !problem.rows.empty() || problem.contacts.size() > kContact.many_contacts) {
     ContactOptions options;
     if (problem.contacts.size() > kContact.few_contacts) options.tolerance = kContact.solved;
-    if (!problem.rows.empty()) options.least_speed = speed_of_rounding(island);
+    if (!problem.rows.empty()) {
+      options.least_speed = speed_of_rounding(island);
+      options.indistinct = indistinct_speed(island);
+    }
     // what stands has to be found to the last digit
     if (fastest_speed(moving_, island) > kContact.moving * restitution_threshold_)
       options.enough = kContact.solved;

@@ -39,6 +39,9 @@ class IslandProblems {
   ContactSolution solve(const ContactIsland& island, const ContactProblem& problem, double h);
   /// As well as the step of a large island needs it.
   ContactSolution solve_large(const ContactProblem& problem);
+  /// What errors of places, and of the step, leave of velocities of points that rest on each other
+  /// together. [m/s]
+  double indistinct_speed(const ContactIsland& island) const;
   /// @throws StoppedRun where a solution is none
   void require_numbers(const ContactIsland& island, const ContactSolution& solution) const;
 

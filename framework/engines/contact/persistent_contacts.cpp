@@ -93,16 +93,26 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
   return result;
 }
 
+// Whether links may leave it open which of the pair's points carries a load, and friction depends
+// on it.
+bool PersistentContacts::may_share_load(const ContactIsland& island, Pair pair) const {
+  return !island.linked.empty() && geometry_.friction(pair) > 0.0;
+}
+
 StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
   StepContacts contacts;
   for (const Pair& pair : island.pairs)
     for (const collision::ManifoldPoint& point : points_.at(pair)) {
       if (!locates() && !reach_.may_close(pair, point, moving_.target() - moving_.time())) continue;
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
-      const bool activates =
+      const bool is_apart =
           distance > kContact.touching_band * margin + kNegligible * reach_.of(pair);
+      // what may share a load with others closes its gap on the way, and is no impact
+      const bool activates =
+          is_apart && !(may_share_load(island, pair) &&
+                        distance <= kContact.sharing_band * geometry_.size_of(pair));
       contacts.push_back({pair, point,
-                          activates ? -distance / (moving_.target() - moving_.time()) : 0.0,
+                          is_apart ? -distance / (moving_.target() - moving_.time()) : 0.0,
                           activates, Vector3d::Zero(), point.gap});
     }
   return contacts;
@@ -266,13 +276,16 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   const bool stays_curved = moves && !island.linked.empty();
   bool is_midway = false;
   StepContacts used = contacts;
-  const int rounds = turn <= kContact.even_turn ? 0
-                     : is_curved(island)        ? kContact.curved_rounds
-                                                : 1;
+  int rounds = turn <= kContact.even_turn ? 0 : is_curved(island) ? kContact.curved_rounds : 1;
   for (int round = 0; round < rounds && !activation; ++round) {
     if (round > 0) find_ends(island, problem, solution, h, activation, true);
     is_midway = true;
-    used = contacts_midway(island, contacts);
+    const StepContacts before = std::exchange(used, contacts_midway(island, contacts));
+    // a load that statics does not tell: until targets fit each other
+    if (solution.is_spread && round + 1 == rounds && rounds < kContact.most_sharing_rounds &&
+        largest_change_of_targets(before, used) >
+            kContact.same_targets * problems_.indistinct_speed(island))
+      ++rounds;
     problem = problems_.of(island, used, midway_, h, &ends_);
     // the same points, a little farther on
     for (std::size_t i = 0; i < used.size(); ++i)

@@ -20,6 +20,8 @@
 ///    the scene says "located": v' acts from the middle of the step on, x' = x + h v'
 ///    (large_islands.cpp). A pair that stops sliding, or slides back, ends the step there.
 /// 4. Position correction removes the overlaps that rotation leaves.
+/// Where links leave it open which of several contacts carries a load, it is spread over them most
+/// evenly, and friction goes with it (dynamics/contact_spread.h).
 ///
 /// Parts: contact_memory.h (what is kept from step to step), contact_geometry.h (where bodies
 /// touch), contact_reach.h (what can meet in a step), contact_island.h (which bodies are solved
@@ -149,6 +151,7 @@ class PersistentContacts {
   bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
+  bool may_share_load(const ContactIsland& island, Pair pair) const;
   StepContacts contacts_of(const ContactIsland& island);
   bool is_curved(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;

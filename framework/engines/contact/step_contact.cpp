@@ -1,5 +1,8 @@
 #include "framework/engines/contact/step_contact.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tumble::engines {
 
 Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact,
@@ -34,6 +37,13 @@ bool activates(const StepContacts& contacts, const ContactSolution& solution) {
 void keep_together(StepContacts& contacts, ContactProblem& problem) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (!contacts[i].activates) contacts[i].target = problem.contacts[i].target = 0.0;
+}
+
+double largest_change_of_targets(const StepContacts& before, const StepContacts& after) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < after.size(); ++i)
+    largest = std::max(largest, std::abs(after[i].target - before[i].target));
+  return largest;
 }
 
 std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& contacts) {

@@ -36,6 +36,8 @@ double slip_speed(const ContactProblem& problem, std::size_t contact,
 bool activates(const StepContacts& contacts, const ContactSolution& solution);
 /// What touches at the start of the step neither parts nor comes nearer by its end.
 void keep_together(StepContacts& contacts, ContactProblem& problem);
+/// By how much the targets of the same points differ. [m/s]
+double largest_change_of_targets(const StepContacts& before, const StepContacts& after);
 /// Bodies of the island and all that its contacts touch; some more than once.
 std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& contacts);
 
