@@ -20,10 +20,10 @@ constexpr double kDependent = 1e-9;
 // the last digits.
 constexpr double kCompliance = 1e-5;
 // times the compliance: where the way to it begins, and a step of it
-constexpr double kSoftest = 1e4, kHarder = 0.1;
+constexpr double kSoftest = 1e4, kHarder = 0.01;
 // from zero, and then twice about its answer: each takes a part of some kCompliance of what is left
 constexpr int kRounds = 3;
-constexpr int kSteps = 20, kSweeps = 50;
+constexpr int kSteps = 6, kSweeps = 30;
 // of what surfaces yield under the largest impulse: how evenly the load is asked to be spread; and
 // of the problem's speed: what will do where rounding leaves no better
 constexpr double kSolved = 1e-5, kSolvedEnough = 1e-10;
@@ -111,9 +111,17 @@ class YieldingContacts {
   YieldingContacts(const YieldingContacts&) = delete;
   YieldingContacts& operator=(const YieldingContacts&) = delete;
 
-  Progress solve() {
+  /// From the answer itself, which is even already where the last step's was; else from zero, and
+  /// else from what yields more.
+  Progress solve(const Impulses& impulses) {
     set_compliance(compliance_);
-    Progress answer = settled(nothing(system_));
+    Progress answer;
+    answer.impulses = impulses;
+    answer = settled(std::move(answer));
+    if (answer.accepted) return answer;
+    Progress afresh = nothing(system_);
+    afresh.factorisations = answer.factorisations;
+    answer = settled(std::move(afresh));
     if (answer.accepted) return answer;
     Progress softer = nothing(system_);
     softer.factorisations = answer.factorisations;
@@ -183,7 +191,7 @@ bool spread(const Goal& goal, double indistinct, Progress& progress) {
   });
   if (closed.size() < 2 || largest == 0 || !has_friction || !is_redundant(system, closed))
     return false;
-  Progress even = YieldingContacts(system, closed, progress.impulses).solve();
+  Progress even = YieldingContacts(system, closed, progress.impulses).solve(progress.impulses);
   progress.sweeps += even.sweeps;
   progress.factorisations += even.factorisations;
   if (!even.accepted) return false;
