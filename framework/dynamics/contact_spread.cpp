@@ -61,14 +61,22 @@ class Span {
   std::vector<VectorXd> basis_;
 };
 
-/// Whether normals of these contacts move the bodies as others and rows do.
-bool is_redundant(const System& system, const std::vector<std::size_t>& closed) {
+/// Whether rods and joints let normals of these contacts move the bodies as others do, beyond the
+/// points of two surfaces: four corners of a free box share its weight, too, but no lever of a link
+/// makes the shares of some of them large.
+bool is_left_open_by_links(const System& system, const std::vector<std::size_t>& closed) {
+  constexpr int kOfPlane = 3;  // points of a plane that say something of their own
   Span span(system.root_inverse_mass.size());
   for (const RowBlock& row : system.rows) span.add(row.body_a, row.g_a, row.body_b, row.g_b);
-  return std::any_of(closed.begin(), closed.end(), [&](std::size_t i) {
+  std::map<std::pair<int, int>, int> points;  // by bodies
+  int repeated = 0;
+  for (const std::size_t i : closed) {
     const ContactBlock& c = system.contacts[i];
-    return !span.add(c.body_a, c.g_a.row(0).transpose(), c.body_b, c.g_b.row(0).transpose());
-  });
+    if (!span.add(c.body_a, c.g_a.row(0).transpose(), c.body_b, c.g_b.row(0).transpose()))
+      ++repeated;
+    if (++points[{c.body_a, c.body_b}] > kOfPlane) --repeated;
+  }
+  return repeated > 0;
 }
 
 std::vector<std::size_t> closed_contacts(const System& system, const Impulses& impulses,
@@ -189,7 +197,7 @@ bool spread(const Goal& goal, double indistinct, Progress& progress) {
   const bool has_friction = std::any_of(closed.begin(), closed.end(), [&](std::size_t i) {
     return system.contacts[i].is_frictional();
   });
-  if (closed.size() < 2 || largest == 0 || !has_friction || !is_redundant(system, closed))
+  if (closed.size() < 2 || largest == 0 || !has_friction || !is_left_open_by_links(system, closed))
     return false;
   Progress even = YieldingContacts(system, closed, progress.impulses).solve(progress.impulses);
   progress.sweeps += even.sweeps;
