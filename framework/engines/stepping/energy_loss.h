@@ -12,12 +12,12 @@
 /// A stands still from the look before to the one after. Impacts are judged by themselves
 /// (`impact_energy`, judging/judge.h).
 /// What hangs on bodies that move evenly, all alike, is seen from a frame that moves along: there
-/// they stand still. Where bodies are driven, and the energy of the world says nothing, a part's own
-/// energy must not rise either.
-/// Not watched: what is linked with bodies that are driven otherwise, what an effect acts on that says of no entry
-/// what it takes (effects::Takes::kUnknown), balls at rest without contacts; and where looks are
-/// taken at frames (event engines), what is dragged, damped or driven, and islands of scenes with
-/// persistent contacts.
+/// they stand still. Where bodies are driven, and the energy of the world says nothing, a part's
+/// own energy must not rise either.
+/// Not watched: what is linked with bodies that are driven otherwise, what an effect acts on that
+/// says of no entry what it takes (effects::Takes::kUnknown), balls at rest without contacts; and
+/// where looks are taken at frames (event engines), what is dragged, damped or driven, and islands
+/// of scenes with persistent contacts.
 #pragma once
 
 #include <optional>
