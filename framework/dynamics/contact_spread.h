@@ -13,8 +13,9 @@
 /// and it is what Newton's method finds from zero where bodies are free (solve_contacts.cpp).
 ///
 /// Contacts that an answer leaves nearly closed are taken as closed, with the velocities that it
-/// gives them, which fit each other; the problem with compliance is solved from zero, and then
-/// about its own answer, which takes out what the surfaces have yielded. What sticks shares its
+/// gives them, which fit each other; the problem with compliance is solved from that answer, which
+/// often is even already, or from zero, and then about its own answer, which takes out what the
+/// surfaces have yielded. What sticks shares its
 /// friction in many ways still: that moves nothing.
 /// Source: the least norm as limit of compliances: A. Tikhonov, Soviet Math. Dokl. 4, 1963 (of
 /// regularised problems), here with the law (C.1), (C.2) in place of a linear one.
@@ -24,8 +25,8 @@
 
 namespace tumble::contacts {
 
-/// Spreads the load of contacts that may carry it in more than one way. Where there is only one, or
-/// no friction, or the spread one is not found, nothing changes but counts.
+/// Spreads the load of contacts that may carry it in more than one way. Where links leave
+/// none open, or there is no friction, or the spread one is not found, nothing changes but counts.
 /// @param indistinct  what opens or approaches with less is closed; so is what does with less than
 ///   a tenth of the speed with which its bodies would come together [m/s]
 /// @return whether statics does not tell the load, and `progress` is the most even one
