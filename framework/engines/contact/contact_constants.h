@@ -22,9 +22,9 @@ struct ContactConstants {
   /// margins: nearer than this two touch at the start of a step; farther, a point becomes active
   /// in it. Larger: gaps close late. Smaller: contacts at rest are activated again and again.
   double touching_band = 8.0;
-  /// of the smaller body: points of linked bodies with friction that are nearer than this share a
-  /// load with those that touch, and no impact closes their gaps. Larger: bodies land late.
-  /// Smaller: errors of long steps decide what carries.
+  /// of the smaller body: where links left open what carries in the step before, points nearer than
+  /// this share a load with those that touch, and no impact closes their gaps. Larger: bodies land
+  /// late. Smaller: errors of long steps decide what carries.
   double sharing_band = 1e-4;
   /// margins: farther than this, and than the restitution threshold goes in a step, a contact has
   /// ended. Larger: contacts outlast their end. Smaller: contacts flicker.

@@ -38,6 +38,8 @@ struct ContactMemory {
   // on which forces act that follow their motion (MovingWorld::lead_pressed).
   std::map<int, Wrench> pressing;
   std::set<Pair> stuck;  // pairs with friction that did not slide in the last step
+  // pairs of islands whose links left open which contact carries a load, in the last step
+  std::set<Pair> sharing;
   // Pairs that rods, joints or walls leave no room for a margin between them, and until when [s].
   std::map<Pair, double> without_margin;
   // Large islands: bodies whose island has, or has had since it last came to rest, too many impacts

@@ -15,6 +15,7 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island, const Step
                                          const ContactSolution& solution, double h) {
   problems_.note_unsolved(island, solution, h);
   warm_start_.remember(contacts, problem, solution, h);
+  if (solution.is_spread) next_sharing_.insert(island.pairs.begin(), island.pairs.end());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
     const bool slides =

@@ -93,12 +93,6 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
   return result;
 }
 
-// Whether links may leave it open which of the pair's points carries a load, and friction depends
-// on it.
-bool PersistentContacts::may_share_load(const ContactIsland& island, Pair pair) const {
-  return !island.linked.empty() && geometry_.friction(pair) > 0.0;
-}
-
 StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
   StepContacts contacts;
   for (const Pair& pair : island.pairs)
@@ -107,9 +101,9 @@ StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
       const bool is_apart =
           distance > kContact.touching_band * margin + kNegligible * reach_.of(pair);
-      // what may share a load with others closes its gap on the way, and is no impact
+      // what shares a load with others closes its gap on the way, and is no impact
       const bool activates =
-          is_apart && !(may_share_load(island, pair) &&
+          is_apart && !(memory_.sharing.contains(pair) &&
                         distance <= kContact.sharing_band * geometry_.size_of(pair));
       contacts.push_back({pair, point,
                           is_apart ? -distance / (moving_.target() - moving_.time()) : 0.0,
@@ -166,6 +160,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   // Every island gets its paths; where one asks for a shorter step, the step begins again for all.
   warm_start_.begin_step();
   next_stuck_.clear();
+  next_sharing_.clear();
   if (const auto earlier = take_steps(h)) {
     progress_.require(islands_);
     return earlier;
@@ -174,6 +169,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   warm_start_.end_step();
   memory_.pressing = pressed_.take_next();
   memory_.stuck = std::move(next_stuck_);
+  memory_.sharing = std::move(next_sharing_);
   return std::nullopt;
 }
 

@@ -151,7 +151,6 @@ class PersistentContacts {
   bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
-  bool may_share_load(const ContactIsland& island, Pair pair) const;
   StepContacts contacts_of(const ContactIsland& island);
   bool is_curved(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
@@ -200,7 +199,7 @@ class PersistentContacts {
   // Of the step that has begun:
   std::vector<ContactIsland> islands_;
   std::map<Pair, ContactManifold> points_;
-  std::set<Pair> next_stuck_;
+  std::set<Pair> next_stuck_, next_sharing_;
   std::vector<ContactPoint> forces_;
   // By body, of the island whose step is taken: where it comes out, and the middle of the way
   // there. Others stand where the step began; those of islands whose steps have been taken are
