@@ -56,7 +56,7 @@ TEST(LogicalProcesses, LinkedInTheCoursesScenesCommitTheReferencesTrace) {
 
 TEST(LogicalProcesses, InPersistentContactInTheCoursesScenesCommitTheReferencesTrace) {
   expect_one_trace(course_scene("drop_a_box", 1.5), 4);
-  expect_one_trace(course_scene("dropped_on_a_hung_block", 0.6), 25);
+  expect_one_trace(course_scene("dropped_on_a_hung_block", 0.6), 30);
   expect_one_trace(course_scene("card_tent", 0.8), 4);
   expect_one_trace(course_scene("bounce_to_rolling", 1.0), 4);
   const scene::Scene dominoes = course_scene("dominoes", 0.4);
