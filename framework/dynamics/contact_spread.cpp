@@ -21,7 +21,7 @@ constexpr double kDependent = 1e-9;
 constexpr double kCompliance = 1e-5;
 // times the compliance: where the way to it begins, and a step of it
 constexpr double kSoftest = 1e4, kHarder = 0.01;
-// from zero, and then twice about its answer: each takes a part of some kCompliance of what is left
+// once, and then twice about its own answer: each leaves some kCompliance of what was left before
 constexpr int kRounds = 3;
 constexpr int kSteps = 6, kSweeps = 30;
 // of what surfaces yield under the largest impulse: how evenly the load is asked to be spread; and
