@@ -65,16 +65,21 @@ class Span {
 /// points of two surfaces: four corners of a free box share its weight, too, but no lever of a link
 /// makes the shares of some of them large.
 bool is_left_open_by_links(const System& system, const std::vector<std::size_t>& closed) {
-  constexpr int kOfPlane = 3;  // points of a plane that say something of their own
+  constexpr std::size_t kOfPlane = 3;  // points of a plane that say something of their own
   Span span(system.root_inverse_mass.size());
   for (const RowBlock& row : system.rows) span.add(row.body_a, row.g_a, row.body_b, row.g_b);
-  std::map<std::pair<int, int>, int> points;  // by bodies
+  constexpr double kParallel = 1 - 1e-6;  // cosine: surfaces are flat to a part of their size
+  std::map<std::pair<int, int>, std::vector<Vector3d>> normals;  // of a plane, by bodies
   int repeated = 0;
   for (const std::size_t i : closed) {
     const ContactBlock& c = system.contacts[i];
     if (!span.add(c.body_a, c.g_a.row(0).transpose(), c.body_b, c.g_b.row(0).transpose()))
       ++repeated;
-    if (++points[{c.body_a, c.body_b}] > kOfPlane) --repeated;
+    const Vector3d normal = c.contact_from_world.row(0).transpose();
+    std::vector<Vector3d>& plane = normals[{c.body_a, c.body_b}];
+    if (!plane.empty() && plane.front().dot(normal) < kParallel) continue;  // of another surface
+    plane.push_back(normal);
+    if (plane.size() > kOfPlane) --repeated;
   }
   return repeated > 0;
 }

@@ -28,9 +28,10 @@ class IslandProblems {
         memory_(memory) {}
 
   /// The problem of a step of length h, which changes the velocities that the bodies would end
-  /// with; with h = 0 those that they have now. With `ends`, the places that contact will leave them in: there
-  /// a free body's momenta would be other velocities, and impulses change momenta. Without that, a
-  /// body that spins about its slender axis gains or loses energy in proportion to the step.
+  /// with; with h = 0 those that they have now. With `ends`, the places that contact will leave
+  /// them in: there a free body's momenta would be other velocities, and impulses change momenta.
+  /// Without that, a body that spins about its slender axis gains or loses energy in proportion to
+  /// the step.
   ContactProblem of(const ContactIsland& island, const StepContacts& contacts,
                     const std::vector<RigidBodyState>& states, double h,
                     const std::vector<RigidBodyState>* ends = nullptr);
