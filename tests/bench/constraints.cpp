@@ -18,8 +18,8 @@
 namespace tumble::testing {
 namespace {
 
-constexpr int kRuns = 3;        // the fastest counts
-constexpr double kShort = 2.0;  // s: longer runs are not repeated
+constexpr int kRuns = 3;           // the fastest counts
+constexpr double kShortRun = 2.0;  // s: longer runs are not repeated
 
 scene::Scene scene_of_a3(const std::string& name) {
   return scene::load_scene(std::filesystem::path(test::source_dir()) /
@@ -44,7 +44,7 @@ double cpu_of(const scene::Scene& scene, double duration, Tally& tally) {
 /// subtracted.
 Price price_of(const scene::Scene& scene) {
   Price price{1e300, scene.duration_s, 0.0};
-  for (int k = 0; k < kRuns && (k == 0 || price.cpu_s < kShort); ++k) {
+  for (int k = 0; k < kRuns && (k == 0 || price.cpu_s < kShortRun); ++k) {
     Tally whole, one_step;
     const double building = cpu_of(scene, scene.step_s, one_step);
     price.cpu_s = std::min(price.cpu_s, cpu_of(scene, scene.duration_s, whole) - building);

@@ -10,11 +10,13 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/cpu_time.h"
 #include "framework/report/engines_model.h"
 #include "framework/report/html.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/bench/engine_measures.h"
 #include "tests/bench/engine_profiles.h"
+#include "tests/engines/late_row.h"
 
 namespace tumble::testing {
 namespace {
@@ -260,6 +262,38 @@ Chapter few_bodies() {
   return chapter;
 }
 
+// ---- A late event ------------------------------------------------------------------------------
+
+/// CPU time of a row minus that of its set-up, the least of several runs. [s]
+double seconds_of_row(int n) {
+  double run = 1e9, building = 1e9, all = 0.0;
+  for (int k = 0; k < 200 && (k < 5 || all < 0.5); ++k) {
+    double began = cpu_seconds();
+    taken_back_row(n, 1e-9);
+    building = std::min(building, cpu_seconds() - began);
+    began = cpu_seconds();
+    taken_back_row(n);
+    run = std::min(run, cpu_seconds() - began);
+    all += run;
+  }
+  return run - building;
+}
+
+Chapter late_event() {
+  Chapter chapter{"A late event at the first of a row",
+                  {},
+                  plot_of("A row of balls that is taken back: CPU time", "balls", "time", "s")};
+  chapter.plot.curves = {{"TW", {}, {}, true}};
+  for (const int n : {10, 32, 100, 316, 1000})
+    add_point(chapter.plot.curves[0], n, seconds_of_row(n));
+  const double power = slope_of(chapter.plot.curves[0]);
+  const double nan = std::nan("");
+  chapter.figures = {
+      {"row of 10 to 1,000: CPU time grows as n to the power", power, false, 1.1, nan, 0},
+      {"row of 10 to 1,000: the same, from below", power, true, 0.9, nan, 0}};
+  return chapter;
+}
+
 // ---- Threads -----------------------------------------------------------------------------------
 
 Chapter threads() {
@@ -348,6 +382,7 @@ bool measure_figures(const std::filesystem::path& file, const std::string& only)
       {"one body and two", few_bodies},
       {"collisions", collisions},
       {"growth", growth},
+      {"late event", late_event},
       {"threads", threads},
       {"the paper's scenes", paper_scenes},
       {"the heap", heaped}};

@@ -76,7 +76,7 @@ constexpr const char* kUsage =
     "bench_engines                       all figures that timewarp is judged by: a table here, a "
     "page in out/bench/engines.html; some four minutes\n"
     "bench_engines --only \"threads\"      one chapter: one body and two, collisions, growth, "
-    "threads, the paper's scenes, the heap\n"
+    "late event, threads, the paper's scenes, the heap\n"
     "bench_engines --scene NAME [--n N,N,...] [--engines rd,rd_auto,ca,tw,tw2] [--duration-s T]\n"
     "                                    a row for each size and engine; tw2: on two threads, then "
     "by the clock\n"

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "framework/engines/events/trace.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"

@@ -499,21 +499,22 @@ TEST(SizedScenes, BeginApartWhereTheyAreLarge) {
 }
 
 // Four times the vehicles and pendula cost four times as much. A search of each world through all
-// links, or all other worlds, would cost sixteen times; twice the linear ratio allows for caches
-// and other programs on the machine.
+// links, or all other worlds, would cost sixteen times; twice the linear ratio allows for caches.
+// Other programs disturb single runs, so a ratio that is too large is measured again.
 TEST(SettingUp, TakesTimeInProportionToTheNumberOfProcesses) {
   const Laws laws = reference_laws();
-  const auto seconds_of = [&](int n) {
-    const scene::Scene scene = sized("cars", n, 1e-4);
-    double best = 1e300;
-    for (int k = 0; k < 2; ++k) {
-      const double begin = cpu_seconds();
-      run_by("tw", scene, {}, 60.0, laws);
-      best = std::min(best, cpu_seconds() - begin);
-    }
-    return best;
+  const scene::Scene few = sized("cars", 2000, 1e-4), many = sized("cars", 8000, 1e-4);
+  const auto seconds_of = [&](const scene::Scene& scene) {
+    const double begin = cpu_seconds();
+    run_by("tw", scene, {}, 60.0, laws);
+    return cpu_seconds() - begin;
   };
-  EXPECT_LT(seconds_of(8000), 8.0 * seconds_of(2000));
+  double of_few = 1e300, of_many = 1e300;
+  for (int k = 0; k < 2 || (k < 8 && of_many >= 8.0 * of_few); ++k) {
+    of_few = std::min(of_few, seconds_of(few));
+    of_many = std::min(of_many, seconds_of(many));
+  }
+  EXPECT_LT(of_many, 8.0 * of_few);
 }
 
 }  // namespace

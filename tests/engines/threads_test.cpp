@@ -12,10 +12,10 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "tests/engines/event_scenes.h"
+#include "tests/engines/late_row.h"
 
 namespace tumble::testing {
 namespace {
@@ -378,26 +378,8 @@ TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
 
 // ---- A late event at the first of a row --------------------------------------------------------
 
-// A ball hits the next one, that one the next, and so on; when the last has been hit, a callback
-// turns the first back before it began. All of it is rolled back.
-Trajectory taken_back_row(int n, double duration = kUnset) {
-  std::vector<scene::BodySpec> bodies;
-  for (int i = 0; i < n; ++i)
-    bodies.push_back(
-        ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
-  bodies[0].velocity_m_s.x() = 1.0;
-  engines::RunOptions options;
-  options.engine = "tw";
-  options.faults.late_callbacks = true;
-  options.frame_rate_hz = 1e-6;
-  options.callbacks = {
-      {0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
-  if (std::isnan(duration)) duration = 0.05 * n + 0.1;
-  if (duration < options.callbacks.front().time) options.callbacks.clear();
-  return run_as_told(std::move(options), scene_of(std::move(bodies), duration), test_laws());
-}
-
-TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
+// Work is counted; its CPU time is measured by bench_engines --only "late event".
+TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInWorkLinearInTheirNumber) {
   std::map<int, double> work;
   for (const int n : {10, 100, 1000, 100'000}) {
     const Trajectory run = taken_back_row(n);
@@ -411,36 +393,6 @@ TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
   }
   EXPECT_NEAR(std::log10(work[1000] / work[100]), 1.0, 0.1);
   EXPECT_NEAR(0.5 * std::log10(work[100'000] / work[1000]), 1.0, 0.1);
-}
-
-/// CPU time of a row minus that of its set-up, the least of several runs. [s]
-double seconds_of_row(int n) {
-  double run = 1e9, building = 1e9, all = 0.0;
-  for (int k = 0; k < 40 && (k < 5 || all < 0.5); ++k) {
-    double began = cpu_seconds();
-    taken_back_row(n, 1e-9);
-    building = std::min(building, cpu_seconds() - began);
-    began = cpu_seconds();
-    taken_back_row(n);
-    run = std::min(run, cpu_seconds() - began);
-    all += run;
-  }
-  return run - building;
-}
-
-// Least squares in the logarithms: a deviation of 10 % in the slope is a factor of 1.6 over two
-// decades, more than other programs on the machine cause.
-TEST(LateEvent, AtTheFirstOfARowTakesCpuTimeLinearInTheirNumber) {
-  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-  const std::vector<int> sizes{10, 32, 100, 316, 1000};
-  for (const int n : sizes) {
-    const double at = std::log10(n), seconds = seconds_of_row(n), log_s = std::log10(seconds);
-    ASSERT_GT(seconds, 0.0) << n;
-    RecordProperty("microseconds_of_" + std::to_string(n), std::to_string(1e6 * seconds));
-    x += at, y += log_s, xx += at * at, xy += at * log_s;
-  }
-  const double count = static_cast<double>(sizes.size());
-  EXPECT_NEAR((count * xy - x * y) / (count * xx - x * x), 1.0, 0.1);
 }
 
 // ---- Energy ------------------------------------------------------------------------------------
