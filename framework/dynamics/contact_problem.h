@@ -57,6 +57,13 @@ struct ContactProblem {
 
 enum class ContactMode : std::uint8_t { kOpen, kStick, kSlide };
 
+/// What tells which of several contacts carries a load (contact_spread.h).
+enum class LoadSharing {
+  kStatics,    // or it is not asked: ContactOptions::indistinct
+  kMostEven,   // statics does not: it is spread most evenly
+  kUndecided,  // statics does not, and no even load was found: where the answer came from does
+};
+
 struct ContactSolution {
   std::vector<Vector3d> impulses_world;  // by contact, on A [N s]
   std::vector<ContactMode> modes;        // by contact
@@ -66,8 +73,8 @@ struct ContactSolution {
   double residual = 0.0;
   bool converged = false;              // residual <= tolerance
   int sweeps = 0, factorisations = 0;  // what it cost
-  bool is_spread = false;              // statics does not tell its load (contact_spread.h)
-  bool by_contact_forces = false;      // found by the laws' contact_forces, not by such a solver
+  LoadSharing sharing = LoadSharing::kStatics;
+  bool by_contact_forces = false;  // found by the laws' contact_forces, not by such a solver
 };
 
 struct ContactOptions {

@@ -19,11 +19,14 @@ constexpr double kDependent = 1e-9;
 // of the mean inverse effective mass. Larger: more is left to take out. Smaller: the modes hang on
 // the last digits.
 constexpr double kCompliance = 1e-5;
-// times the compliance: where the way to it begins, and a step of it
-constexpr double kSoftest = 1e4, kHarder = 0.01;
+// times the compliance: the problems that lead to it, and how soft one may be for what its surfaces
+// have yielded to be taken out again
+constexpr double kSofter[] = {1e4, 1e3, 100, 10, 1};
+constexpr double kHardEnough = 100;
 // once, and then twice about its own answer: each leaves some kCompliance of what was left before
 constexpr int kRounds = 3;
-constexpr int kSteps = 6, kSweeps = 30;
+// the softest problem is begun from nothing, each other one from the answer of a softer one
+constexpr int kSteps = 6, kFirstSweeps = 300, kSweeps = 30;
 // of what surfaces yield under the largest impulse: how evenly the load is asked to be spread; and
 // of the problem's speed: what will do where rounding leaves no better
 constexpr double kSolved = 1e-5, kSolvedEnough = 1e-10;
@@ -125,7 +128,7 @@ class YieldingContacts {
   YieldingContacts& operator=(const YieldingContacts&) = delete;
 
   /// From the answer itself, which is even already where the last step's was; else from zero, and
-  /// else from what yields more.
+  /// else from what yields more, as far as that leads.
   Progress solve(const Impulses& impulses) {
     set_compliance(compliance_);
     Progress answer;
@@ -138,25 +141,41 @@ class YieldingContacts {
     if (answer.accepted) return answer;
     Progress softer = nothing(system_);
     softer.factorisations = answer.factorisations;
-    for (double times = kSoftest; times >= 1; times *= kHarder) {
-      set_compliance(times * compliance_);
-      harden(softer);
-    }
-    set_compliance(compliance_);
-    return settled(std::move(softer));
+    return from_softer(std::move(softer));
   }
 
  private:
   void set_compliance(double compliance) {
+    now_ = compliance;
     for (const std::size_t i : closed_) system_.contacts[i].compliance = compliance;
   }
 
+  /// From nothing by problems that are harder each time, as far as that leads: the hardest of them
+  /// whose answer settles.
+  Progress from_softer(Progress progress) {
+    std::vector<std::pair<double, Progress>> solved;  // with the compliance, softest first
+    for (const double times : kSofter) {
+      set_compliance(times * compliance_);
+      harden(solved.empty() ? kFirstSweeps : kSweeps, progress);
+      if (!progress.accepted) break;
+      solved.emplace_back(times, progress);
+    }
+    progress.accepted = false;
+    for (; !solved.empty() && solved.back().first <= kHardEnough; solved.pop_back()) {
+      set_compliance(solved.back().first * compliance_);
+      progress.impulses = std::move(solved.back().second.impulses);
+      progress = settled(std::move(progress), true);
+      if (progress.accepted) break;
+    }
+    return progress;
+  }
+
   /// One problem of the way: sweeps find most modes, Newton's method the rest.
-  void harden(Progress& progress) {
+  void harden(int sweeps, Progress& progress) {
     Sweeper sweeper(system_);
     sweeper.begin();
-    for (int k = 0; k < kSweeps; ++k) sweeper.sweep(k % 2 == 0, progress.impulses);
-    progress.sweeps += kSweeps;
+    for (int k = 0; k < sweeps; ++k) sweeper.sweep(k % 2 == 0, progress.impulses);
+    progress.sweeps += sweeps;
     sum_impulses(system_, progress.impulses);
     goal_.measure(progress);
     if (progress.accepted) return;
@@ -168,16 +187,21 @@ class YieldingContacts {
   }
 
   /// From these impulses, and then about what is found, v_n = -c (p_n - p_n before).
-  Progress settled(Progress progress) {
+  /// @param thoroughly  with sweeps where Newton's method alone fails
+  Progress settled(Progress progress, bool thoroughly = false) {
     for (int round = 0; round < kRounds; ++round) {
       goal_.measure(progress);
-      finish_yielding(goal_, kSteps, matrix_, progress);
+      Impulses begin = thoroughly ? progress.impulses : Impulses{};
+      if (!finish_yielding(goal_, kSteps, matrix_, progress) && thoroughly) {
+        progress.impulses = std::move(begin);
+        harden(kSweeps, progress);
+      }
       progress.accepted =
           progress.accepted || progress.violation.largest <= kSolvedEnough * system_.speed;
       if (!progress.accepted) break;
       for (std::size_t k = 0; k < closed_.size(); ++k)
         system_.contacts[closed_[k]].base[0] =
-            bases_[k] - compliance_ * progress.impulses.contacts[closed_[k]][0];
+            bases_[k] - now_ * progress.impulses.contacts[closed_[k]][0];
     }
     for (std::size_t k = 0; k < closed_.size(); ++k)
       system_.contacts[closed_[k]].base[0] = bases_[k];
@@ -188,13 +212,13 @@ class YieldingContacts {
   Goal goal_{system_};
   BodyMatrix matrix_;
   const std::vector<std::size_t>& closed_;
-  std::vector<double> bases_;  // by closed contact: of its normal velocity
-  double compliance_ = 0;
+  std::vector<double> bases_;        // by closed contact: of its normal velocity
+  double compliance_ = 0, now_ = 0;  // the hardest; that of the problem at hand
 };
 
 }  // namespace
 
-bool spread(const Goal& goal, double indistinct, Progress& progress) {
+LoadSharing spread(const Goal& goal, double indistinct, Progress& progress) {
   const System& system = goal.system;
   const std::vector<std::size_t> closed = closed_contacts(system, progress.impulses, indistinct);
   double largest = 0;
@@ -203,17 +227,17 @@ bool spread(const Goal& goal, double indistinct, Progress& progress) {
     return system.contacts[i].is_frictional();
   });
   if (closed.size() < 2 || largest == 0 || !has_friction || !is_left_open_by_links(system, closed))
-    return false;
+    return LoadSharing::kStatics;
   Progress even = YieldingContacts(system, closed, progress.impulses).solve(progress.impulses);
   progress.sweeps += even.sweeps;
   progress.factorisations += even.factorisations;
-  if (!even.accepted) return false;
+  if (!even.accepted) return LoadSharing::kUndecided;
   double change = 0;
   for (const std::size_t i : closed)
     change =
         std::max(change, std::abs(even.impulses.contacts[i][0] - progress.impulses.contacts[i][0]));
   if (change > kEven * largest) progress.impulses = std::move(even.impulses);
-  return true;
+  return LoadSharing::kMostEven;
 }
 
 }  // namespace tumble::contacts

@@ -13,10 +13,10 @@
 /// and it is what Newton's method finds from zero where bodies are free (solve_contacts.cpp).
 ///
 /// Contacts that an answer leaves nearly closed are taken as closed, with the velocities that it
-/// gives them, which fit each other; the problem with compliance is solved from that answer, which
-/// often is even already, or from zero, and then about its own answer, which takes out what the
-/// surfaces have yielded. What sticks shares its
-/// friction in many ways still: that moves nothing.
+/// gives them, which fit each other. The problem with compliance is solved from that answer, which
+/// often is even already, else from zero, else through softer ones; and then about its own answer,
+/// which takes out what the surfaces have yielded. What sticks shares its friction in many ways
+/// still: that moves nothing.
 /// Source: the least norm as limit of compliances: A. Tikhonov, Soviet Math. Dokl. 4, 1963 (of
 /// regularised problems), here with the law (C.1), (C.2) in place of a linear one.
 #pragma once
@@ -29,7 +29,7 @@ namespace tumble::contacts {
 /// none open, or there is no friction, or the spread one is not found, nothing changes but counts.
 /// @param indistinct  what opens or approaches with less is closed; so is what does with less than
 ///   a tenth of the speed with which its bodies would come together [m/s]
-/// @return whether statics does not tell the load, and `progress` is the most even one
-bool spread(const Goal& goal, double indistinct, Progress& progress);
+/// @return what tells the load of `progress`
+LoadSharing spread(const Goal& goal, double indistinct, Progress& progress);
 
 }  // namespace tumble::contacts

@@ -266,20 +266,20 @@ bool solve_without_links(const contacts::LinkElimination& links, const Goal& goa
 }
 
 /// What the answer leaves to errors becomes even; how well it solves the problem stays as measured.
-bool spread_load(const std::optional<contacts::LinkElimination>& links, const Goal& goal,
-                 double indistinct, Progress& progress) {
+LoadSharing spread_load(const std::optional<contacts::LinkElimination>& links, const Goal& goal,
+                        double indistinct, Progress& progress) {
   if (!links || !links->is_of_use()) return contacts::spread(goal, indistinct, progress);
   const Goal of_rest{links->rest(), goal.violation};
   Progress rest;
   rest.impulses = links->of_rest(progress.impulses);
-  const bool is_spread = contacts::spread(of_rest, indistinct, rest);
-  if (is_spread) {
+  const LoadSharing sharing = contacts::spread(of_rest, indistinct, rest);
+  if (sharing == LoadSharing::kMostEven) {
     progress.impulses = links->of_whole(rest.impulses);
     links->refine(progress.impulses);
   }
   progress.sweeps += rest.sweeps;
   progress.factorisations += rest.factorisations;
-  return is_spread;
+  return sharing;
 }
 
 ContactSolution describe(const ContactProblem& problem, const System& system,
@@ -327,12 +327,13 @@ ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptio
     goal.measure(progress);
     if (!progress.accepted) iterate(goal, options, enough, progress);
   }
-  const bool is_spread = options.indistinct > 0 && !system.rows.empty() &&
-                         spread_load(links, goal, options.indistinct, progress);
+  LoadSharing sharing = LoadSharing::kStatics;
+  if (options.indistinct > 0 && !system.rows.empty())
+    sharing = spread_load(links, goal, options.indistinct, progress);
   ContactSolution solution = describe(problem, system, progress.impulses);
   solution.residual = progress.violation.largest / speed;
   solution.converged = progress.accepted;
-  solution.is_spread = is_spread;
+  solution.sharing = sharing;
   solution.sweeps = progress.sweeps;
   solution.factorisations = progress.factorisations;
   return solution;

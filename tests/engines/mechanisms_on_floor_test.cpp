@@ -1,8 +1,11 @@
 // Plane mechanisms that lie on a floor without friction: they move as they do without floor and
 // gravity. Drawn by lot: chains and rings of bars, thrown as one body that turns, with hinges,
 // welds and balls, a motor, a spring, drag.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -192,18 +195,20 @@ TEST(MechanismsOnAFloor, WhatHingesHoldPressesNoFloor) {
   }
 }
 
-/// Bars of a kilogram in a row along x, with friction, that turn together; hinges link them and hold
-/// the first, but the last hangs on a ball.
-scene::Scene arm_with_friction(std::size_t bars, double omega, double friction, Random& random) {
+/// Bars of a kilogram in a row, along x or at a heading [rad], with friction, that turn together; hinges link them and hold
+/// the first, but one, else the last, hangs on a ball.
+scene::Scene arm_with_friction(std::size_t bars, double omega, double friction, Random& random,
+                               std::optional<std::size_t> on_ball = {}, double heading = 0.0) {
+  const auto kind_of = [&](std::size_t bar) {
+    return bar == on_ball.value_or(bars - 1) ? JointKind::kBall : JointKind::kHinge;
+  };
   std::vector<Vector3d> corners;
   for (std::size_t k = 0; k <= bars; ++k)
     corners.emplace_back(0.4 * static_cast<double>(k), 0, kHalfHigh);
   scene::Scene scene = bars_between(corners, false, 0.0, omega, random);
-  for (std::size_t k = 1; k < bars; ++k)
-    join(scene, k + 1 == bars ? JointKind::kBall : JointKind::kHinge, k - 1, k, corners[k]);
+  for (std::size_t k = 1; k < bars; ++k) join(scene, kind_of(k), k - 1, k, corners[k]);
   scene.effects.of<effects::JointSpec>().push_back(
-      {"pivot", bars == 1 ? JointKind::kBall : JointKind::kHinge, "bar 0", "", corners[0],
-       Vector3d::UnitZ()});
+      {"pivot", kind_of(0), "bar 0", "", corners[0], Vector3d::UnitZ()});
   for (scene::BodySpec& bar : scene.bodies) {
     bar.mass_kg = 1.0;
     bar.friction = friction;
@@ -266,20 +271,34 @@ TEST(MechanismsOnAFloor, ABarOnABallJointSlidesOnAllItsCorners) {
     }
 }
 
-// By lot: what links leave open must not hang on the step, nor on errors of 1e-9 m. Corners near the
-// ball, on a lever of 0.02 m, would slow the arm twenty times as fast.
+bool says_undecided(const Trajectory& run) {
+  return std::any_of(
+      run.counters.notices.begin(), run.counters.notices.end(),
+      [](const std::string& notice) { return notice.find("is not decided") != std::string::npos; });
+}
+
+// By lot, also narrow ones on rough floors, near tipping: what links leave open must not hang on the
+// step, nor on errors of 1e-9 m. Corners near the ball, on a lever of 0.02 m, would slow the arm
+// twenty times as fast.
 TEST(MechanismsOnAFloor, ArmsWithFrictionSlowAlikeInAllSteps) {
   // of the energy at the start: what events of a grid differ by, of first order in the step
-  constexpr double kAlike = 0.01;
+  constexpr double kAlike = 0.005;
   Random random(2);
-  for (int round = 0; round < 6; ++round) {
-    const std::size_t bars = 2 + random.below(2);
-    const double omega = random.between(1, 4), friction = random.between(0.1, 0.6);
-    scene::Scene scene = arm_with_friction(bars, omega, friction, random);
+  for (int round = 0; round < 12; ++round) {
+    const bool narrow = round >= 6;
+    const std::size_t bars = narrow ? 2 : 2 + random.below(2);
+    const double omega = narrow ? random.between(1, 2) : random.between(1, 4),
+                 friction = narrow ? random.between(0.7, 0.85) : random.between(0.1, 0.6);
+    scene::Scene scene =
+        arm_with_friction(bars, omega, friction, random, {}, narrow ? random.between(-3, 3) : 0.0);
     scene.duration_s = 0.2;
+    if (narrow)
+      for (std::size_t k = 0; k < bars; ++k)
+        std::get<scene::BoxSpec>(scene.bodies[k].shape).half_extents_m = {
+            0.16, random.between(0.042, 0.05), kHalfHigh};
     const char* engine = round % 3 == 2 ? "tw" : "rd";
     std::vector<double> left;
-    for (const double steps : {480.0, 240.0, 120.0}) {
+    for (const double steps : {480.0, 120.0, 60.0}) {
       SCOPED_TRACE(fmt::format("round {}, {}, {} steps a second", round, engine, steps));
       scene.step_s = 1 / steps;
       const Trajectory run = run_on(engine, scene);
@@ -287,8 +306,20 @@ TEST(MechanismsOnAFloor, ArmsWithFrictionSlowAlikeInAllSteps) {
       EXPECT_EQ(faults_of(run), "");
       left.push_back(run.frames.back().kinetic_energy / run.frames.front().kinetic_energy);
       EXPECT_NEAR(left.back(), left.front(), kAlike);
+      EXPECT_FALSE(says_undecided(run));
     }
   }
+}
+
+// A ball in front of three bars that turn fast: at long steps no even load is found among several,
+// and the motion parts from that of short ones, by 0.2 of the energy (seen).
+TEST(MechanismsOnAFloor, WhereNothingTellsWhatCarriesIsSaid) {
+  Random random(1);
+  scene::Scene scene = arm_with_friction(4, 6.0, 0.8, random, 0);
+  scene.duration_s = 0.3;
+  scene.step_s = 1.0 / 60;
+  for (const char* engine : {"rd", "tw"})
+    EXPECT_TRUE(says_undecided(run_on(engine, scene))) << engine;
 }
 
 }  // namespace mechanisms_on_floor_test

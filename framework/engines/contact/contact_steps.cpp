@@ -15,7 +15,9 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island, const Step
                                          const ContactSolution& solution, double h) {
   problems_.note_unsolved(island, solution, h);
   warm_start_.remember(contacts, problem, solution, h);
-  if (solution.is_spread) next_sharing_.insert(island.pairs.begin(), island.pairs.end());
+  if (solution.sharing == LoadSharing::kMostEven)
+    next_sharing_.insert(island.pairs.begin(), island.pairs.end());
+  bool any_slides = false;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
     const bool slides =
@@ -23,10 +25,12 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island, const Step
         slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
     if (i == 0 || contacts[i].pair != contacts[i - 1].pair) next_stuck_.insert(contacts[i].pair);
     if (slides) next_stuck_.erase(contacts[i].pair);
+    any_slides = any_slides || slides;
     if (!force.isZero(0.0))
       forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point,
                          contacts[i].point.normal_b_to_a_world, force, solution.by_contact_forces});
   }
+  if (any_slides) problems_.say_undecided(island, solution);
 }
 
 // Where the island's bodies come out with these impulses: ends_.

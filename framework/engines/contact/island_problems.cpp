@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -226,6 +229,18 @@ void IslandProblems::note_unsolved(const ContactIsland& island, const ContactSol
   if (solution.converged || solution.residual <= allowed) return;
   unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies),
                  {solution.residual, allowed, moving_.time(), h});
+}
+
+void IslandProblems::say_undecided(const ContactIsland& island, const ContactSolution& solution) {
+  if (solution.sharing != LoadSharing::kUndecided) return;
+  const std::string names = names_of(moving_.world(), island.bodies);
+  unsolved_.say(
+      "undecided loads", moving_.time(),
+      fmt::format("which contacts carry {} is not decided from {:.4g} s on: rods or joints leave "
+                  "several ways, and no most even one was found. Friction goes with the load, so "
+                  "their motion may hang on the step. Compare with half the step; springs in place "
+                  "of rods or joints, or fewer points that touch, decide it",
+                  names, moving_.time()));
 }
 
 void IslandProblems::require_numbers(const ContactIsland& island,

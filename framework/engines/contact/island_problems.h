@@ -48,6 +48,9 @@ class IslandProblems {
 
   /// What is unsolved is told once the step is committed.
   void note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h);
+  /// Friction goes with the load of each contact: where bodies slide, and nothing tells which of
+  /// them carries it, a reader is to know.
+  void say_undecided(const ContactIsland& island, const ContactSolution& solution);
   RunWatch take_unsolved() { return std::exchange(unsolved_, {}); }
 
  private:

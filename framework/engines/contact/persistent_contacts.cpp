@@ -278,7 +278,8 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     is_midway = true;
     const StepContacts before = std::exchange(used, contacts_midway(island, contacts));
     // a load that statics does not tell: until targets fit each other
-    if (solution.is_spread && round + 1 == rounds && rounds < kContact.most_sharing_rounds &&
+    if (solution.sharing == LoadSharing::kMostEven && round + 1 == rounds &&
+        rounds < kContact.most_sharing_rounds &&
         largest_change_of_targets(before, used) >
             kContact.same_targets * problems_.indistinct_speed(island))
       ++rounds;
