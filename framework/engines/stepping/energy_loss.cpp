@@ -19,18 +19,9 @@ double taken_at_most(double passed, double power_before, double power) {
   return passed * (kMean * std::max(power_before, power) + std::abs(power - power_before));
 }
 
-// What a body's energy is more by, seen from a frame that moves evenly. [J]
-struct Seen {
-  double at_work = 0.0, height = 0.0;
-};
-Seen seen_from(const Vector3d& frame_world, double time, const World& world,
-               const RigidBodyState& state, int body) {
-  if (frame_world.isZero(0.0)) return {};
-  const double mass = world.bodies[static_cast<std::size_t>(body)].inertia.mass;
-  Seen seen;
-  seen.at_work = 0.5 * mass * frame_world.squaredNorm() - frame_world.dot(state.momentum_world);
-  if (world.gravity_world) seen.height = mass * time * world.gravity_world->dot(frame_world);
-  return seen;
+bool moves_alike(const scene::PrescribedMotion& a, const scene::PrescribedMotion& b) {
+  return a.velocity_m_s == b.velocity_m_s && a.amplitude_m == b.amplitude_m &&
+         (a.amplitude_m.isZero(0.0) || a.angular_frequency_rad_s == b.angular_frequency_rad_s);
 }
 
 }  // namespace
@@ -40,6 +31,29 @@ void EnergyLoss::note(const Event& event) {
   note_touch(event.body_a, event.body_b);
   // it stays where its support goes
   if (event.kind == EventKind::kRest) resting_.insert(resting_.end(), {event.body_a, event.body_b});
+}
+
+EnergyLoss::Seen EnergyLoss::seen_from(const WorldBody& frame, double time) {
+  Seen seen;
+  if (!is_driven(frame.motion)) return seen;
+  seen.displacement = prescribed_position(frame, time) - frame.com_at_0_world;
+  seen.velocity = prescribed_velocity(frame, time);
+  const double w = frame.motion.angular_frequency_rad_s;
+  if (w != 0.0) seen.acceleration = -w * w * (seen.displacement - frame.motion.velocity_m_s * time);
+  return seen;
+}
+
+/// What inertial forces do between two looks: -m a dx of a part's centre of mass, exact where a
+/// stays; besides, at most what a differs by from the mean of both ends along the way.
+effects::Work EnergyLoss::inertial_work(const Seen& before, const Seen& after, double passed) {
+  constexpr double kMean = 1.25;  // of momenta between two looks: as in taken_at_most
+  effects::Work work;
+  work.done =
+      -0.5 *
+      (before.acceleration + after.acceleration).dot(after.first_moment - before.first_moment);
+  work.most = kMean * passed * std::max(before.momentum.norm(), after.momentum.norm()) *
+              (after.acceleration - before.acceleration).norm();
+  return work;
 }
 
 EnergyLoss::Part* EnergyLoss::part_with(int body) {
@@ -53,11 +67,13 @@ void EnergyLoss::begin(const World& world) {
   const auto moves = [&](int body) {
     return body >= 0 && !world.bodies[static_cast<std::size_t>(body)].immovable();
   };
-  const auto motion_of = [&](int body) -> const scene::PrescribedMotion& {
-    return world.bodies[static_cast<std::size_t>(body)].motion;
+  const auto motion_of = [&](int body) {
+    return body < 0 ? scene::PrescribedMotion{}
+                    : world.bodies[static_cast<std::size_t>(body)].motion;
   };
   const auto swings = [&](int body) {
-    return is_driven(motion_of(body)) && !motion_of(body).amplitude_m.isZero(0.0);
+    const scene::PrescribedMotion motion = motion_of(body);
+    return is_driven(motion) && !motion.amplitude_m.isZero(0.0);
   };
   for (Part& part : parts_)
     if (!part.losses.empty()) former_.push_back(std::move(part));
@@ -69,7 +85,7 @@ void EnergyLoss::begin(const World& world) {
     const effects::Effect* effect;
     int entry, body;
     bool is_unknown;
-    std::optional<Vector3d> frame_world;  // of what does not move among its bodies
+    std::optional<int> frame;  // what is immovable among its bodies
   };
   std::vector<Entry> entries;
   for (const effects::Effect* effect : effects::all()) {
@@ -82,18 +98,18 @@ void EnergyLoss::begin(const World& world) {
                         (!sees_switches_ && effect->takes(world, k) == effects::Takes::kPower);
       const std::vector<int> bodies = effect->bodies_of(world, k);
       // what names one body holds it by the world, or slows it down by what rests in it
-      std::optional<Vector3d> frame_world;
-      if (bodies.size() == 1) frame_world = Vector3d::Zero();
+      std::optional<int> frame;
+      if (bodies.size() == 1) frame = kWorld;
       for (const int body : bodies) {
         if (!moves(body)) {
-          is_unknown = is_unknown || (body >= 0 && swings(body));
-          frame_world = body < 0 ? Vector3d(Vector3d::Zero()) : motion_of(body).velocity_m_s;
+          is_unknown = is_unknown || (!sees_switches_ && swings(body));
+          frame = body;
           continue;
         }
         if (first >= 0) linked.unite(first, body);
         first = first < 0 ? body : first;
       }
-      if (first >= 0) entries.push_back({effect, k, first, is_unknown, frame_world});
+      if (first >= 0) entries.push_back({effect, k, first, is_unknown, frame});
     }
   }
   part_of_.assign(world.bodies.size(), -1);
@@ -111,8 +127,8 @@ void EnergyLoss::begin(const World& world) {
     const int part = part_of_[static_cast<std::size_t>(entry.body)];
     Part& its = parts_[static_cast<std::size_t>(part)];
     const bool is_torn =
-        entry.frame_world && its.frame_world && *entry.frame_world != *its.frame_world;
-    if (entry.frame_world) its.frame_world = entry.frame_world;
+        entry.frame && its.frame && !moves_alike(motion_of(*entry.frame), motion_of(*its.frame));
+    if (entry.frame) its.frame = entry.frame;
     if (entry.is_unknown || is_torn)
       its.is_watched = false;
     else if (entry.effect->takes(world, entry.entry) == effects::Takes::kPower)
@@ -141,15 +157,19 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     if (!part.is_watched) continue;
     double at_work = 0.0, height = 0.0;
     effects::Work work;
+    Seen seen;
+    if (part.frame.value_or(kWorld) >= 0)
+      seen = seen_from(world.bodies[static_cast<std::size_t>(*part.frame)], time);
     for (const int body : part.bodies) {
       const auto i = static_cast<std::size_t>(body);
       at_work += energy.at_work[i];
       height += energy.height[i];
-      if (part.frame_world) {
-        const Seen seen = seen_from(*part.frame_world, time, world, states[i], body);
-        at_work += seen.at_work;
-        height += seen.height;
-      }
+      const double mass = world.bodies[i].inertia.mass;
+      at_work +=
+          0.5 * mass * seen.velocity.squaredNorm() - seen.velocity.dot(states[i].momentum_world);
+      if (world.gravity_world) height += mass * world.gravity_world->dot(seen.displacement);
+      seen.first_moment += mass * (states[i].com_world - seen.displacement);
+      seen.momentum += states[i].momentum_world - mass * seen.velocity;
       if (brought.empty()) continue;
       work.done += brought[i].done;
       work.most += brought[i].most;
@@ -158,6 +178,7 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     const double power = powers.empty() ? 0.0 : powers[k];
     const double before = std::exchange(part.energy, all),
                  power_before = std::exchange(part.power, power);
+    const Seen seen_before = std::exchange(part.seen, seen);
     part.highest_place = std::max(part.highest_place, height);
     part.whole = std::max({part.whole, at_work, part.highest_place - height});
     const bool is_touched = std::exchange(part.is_touched, false);
@@ -171,6 +192,9 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
       continue;
     }
     const double ledger_before = before + part.offset;
+    const effects::Work inertial = inertial_work(seen_before, seen, passed);
+    work.done += inertial.done;
+    work.most += inertial.most;
     part.offset -= work.done - work.most;
     part.offset_of_rises -= work.done + work.most;
     if (power_before > 0.0 || power > 0.0)

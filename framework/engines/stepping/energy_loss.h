@@ -11,13 +11,14 @@
 /// What a part is given or loses where it is hit, or in persistent contact, is counted neither way:
 /// A stands still from the look before to the one after. Impacts are judged by themselves
 /// (`impact_energy`, judging/judge.h).
-/// What hangs on bodies that move evenly, all alike, is seen from a frame that moves along: there
-/// they stand still. Where bodies are driven, and the energy of the world says nothing, a part's
-/// own energy must not rise either.
-/// Not watched: what is linked with bodies that are driven otherwise, what an effect acts on that
+/// What hangs on driven bodies that all move alike is seen from a frame that moves along: there they
+/// stand still. Where the frame is shaken, inertial forces -m a(t) act in it, like gravity that
+/// changes, and what they do is part of W. Where bodies are driven, and the energy of the world says
+/// nothing, a part's own energy must not rise either.
+/// Not watched: what is linked with bodies that are driven differently, what an effect acts on that
 /// says of no entry what it takes (effects::Takes::kUnknown), balls at rest without contacts; and
-/// where looks are taken at frames (event engines), what is dragged, damped or driven, and islands
-/// of scenes with persistent contacts.
+/// where looks are taken at frames (event engines), what is dragged, damped, driven or hangs on
+/// what is shaken, and islands of scenes with persistent contacts.
 #pragma once
 
 #include <optional>
@@ -73,6 +74,15 @@ class EnergyLoss {
   std::vector<RisenEnergy> rises(double rounding) const;
 
  private:
+  static constexpr int kWorld = -1;
+  /// A part as a frame sees it that moves as a driven body does: what tells the work of inertial
+  /// forces between two looks. World axes.
+  struct Seen {
+    Vector3d displacement = Vector3d::Zero(), velocity = Vector3d::Zero(),
+             acceleration = Vector3d::Zero();  // of the frame [m], [m/s], [m/s^2]
+    Vector3d first_moment = Vector3d::Zero();  // sum of m x [kg m]
+    Vector3d momentum = Vector3d::Zero();      // [kg m/s]
+  };
   struct Loss {
     double time, size;  // [s], [J]
     bool is_sudden;
@@ -80,8 +90,9 @@ class EnergyLoss {
   struct Part {
     std::vector<int> bodies;
     bool is_watched = true, is_touched = false;
-    // of the frame that it is seen from: that of the immovable bodies that it is linked with [m/s]
-    std::optional<Vector3d> frame_world;
+    // the frame that it is seen from: an immovable body that it is linked with, or kWorld
+    std::optional<int> frame;
+    Seen seen;
     // [J]: E = T + V now; of A and of A with W at most and without D, what they are above E, and
     // how far they have been
     double energy = kUnset, offset = 0.0, highest = 0.0, offset_of_rises = 0.0, least = 0.0;
@@ -96,6 +107,8 @@ class EnergyLoss {
   };
   void begin(const World& world);
   Part* part_with(int body);  // nullptr: it does not move
+  static Seen seen_from(const WorldBody& frame, double time);
+  static effects::Work inertial_work(const Seen& before, const Seen& after, double passed);
 
   bool sees_switches_, is_begun_ = false;
   double last_look_ = kUnset;  // [s]
