@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,13 +22,28 @@ double speed_at(const Body& body, const Vector3d& point_world) {
 
 Approach fastest_approach(const Laws& laws, const TouchedRegion& region, const Body& a,
                           const Body& b, double threshold) {
-  Approach fastest{kInfinity, &region.points_world[0]};
-  for (const Vector3d& point : region.points_world) {
-    const double velocity =
-        laws.relative_normal_velocity({point, region.normal_b_to_a_world}, a, b);
-    if (velocity < fastest.velocity) fastest = {velocity, &point};
-    if (&point == &region.points_world[0] && velocity < -threshold) break;
+  const auto velocity_at = [&](const Vector3d& point) {
+    return laws.relative_normal_velocity({point, region.normal_b_to_a_world}, a, b);
+  };
+  const Vector3d& middle = region.points_world[0];
+  Approach fastest{velocity_at(middle), middle};
+  if (fastest.velocity < -threshold || region.points_world.size() == 1) return fastest;
+  std::vector<double> velocities{fastest.velocity};
+  for (std::size_t k = 1; k < region.points_world.size(); ++k) {
+    velocities.push_back(velocity_at(region.points_world[k]));
+    fastest.velocity = std::min(fastest.velocity, velocities.back());
   }
+  if (velocities[0] == fastest.velocity) return fastest;
+  const double alike = fastest.velocity + kSixDigits * std::abs(fastest.velocity);
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (std::size_t k = 1; k < velocities.size(); ++k) {
+    if (velocities[k] > alike) continue;
+    sum += region.points_world[k];
+    fastest.point_world = region.points_world[k];
+    ++count;
+  }
+  if (count > 1) fastest.point_world = sum / count;
   return fastest;
 }
 

@@ -3,9 +3,9 @@
 ///
 /// A pair that approaches gets the impulse of the laws at the middle of the region where the two
 /// touch, or, where the middle does not approach, at the corner of that region that approaches
-/// fastest; this is repeated until no point approaches faster than round-off. Callers fetch the
-/// bodies, and store what comes of it: a world of bodies with links and friction
-/// (sequential_impacts.h), and two free flights (events/flight_impact_response.h).
+/// fastest, or amid those that do so alike; this is repeated until no point approaches faster than
+/// round-off. Callers fetch the bodies, and store what comes of it: a world of bodies with links
+/// and friction (sequential_impacts.h), and two free flights (events/flight_impact_response.h).
 #pragma once
 
 #include <string>
@@ -23,11 +23,12 @@ struct TouchedRegion {
 };
 
 struct Approach {
-  double velocity;              // [m/s], negative when approaching
-  const Vector3d* point_world;  // of the region's points
+  double velocity;       // [m/s], negative when approaching
+  Vector3d point_world;  // of the region's points, or the mean of corners that approach alike
 };
 
-/// The middle counts first, so that a flat landing does not tip over its corners in turn.
+/// The middle counts first, so that a flat landing does not tip over its corners in turn; corners
+/// that approach equally fast count together, so that what is symmetric stays so.
 /// @param threshold  what counts as approaching [m/s], see ApproachThreshold
 Approach fastest_approach(const Laws& laws, const TouchedRegion& region, const Body& a,
                           const Body& b, double threshold);

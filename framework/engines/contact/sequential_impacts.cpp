@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -69,8 +70,8 @@ double friction_of(const World& world, const TouchingPair& pair) {
 struct SequentialImpacts::Work {
   ImpactBodies bodies;  // as they are between impulses
   Resolution result;
-  // at points of pairs: places stay as they are
-  std::map<const Vector3d*, ImpactBodies::Answer> answers;
+  // by pair and point: places stay as they are
+  std::map<std::tuple<const TouchingPair*, double, double, double>, ImpactBodies::Answer> answers;
 
   Work(MovingWorld& moving, const Laws& laws) : bodies(moving, laws) {}
   Body& body(int index) { return bodies.body(index); }
@@ -78,7 +79,7 @@ struct SequentialImpacts::Work {
 
   const ImpactBodies::Answer& answer(const TouchingPair& pair, const Vector3d& point,
                                      bool with_tangents) {
-    const auto [found, is_new] = answers.try_emplace(&point);
+    const auto [found, is_new] = answers.try_emplace({&pair, point.x(), point.y(), point.z()});
     if (is_new || (with_tangents && found->second.directions.cols() == 1))
       found->second =
           bodies.answer({pair.a, pair.b, point, pair.gap.normal_b_to_a_world}, with_tangents);
@@ -100,6 +101,9 @@ double SequentialImpacts::friction_at_impact(const World& world, const TouchingP
 bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
   Body& a = work.body(pair.a);
   Body& b = work.body(pair.b);
+  const double friction = friction_at_impact(work.world(), pair);
+  if (friction > 0 && pair.points_world.size() > 1)
+    return collide_together(work, {&pair}, threshold, true);
   auto [approach, point] = fastest_approach(laws_, region_of(pair), a, b, threshold);
   if (!(approach < -threshold)) return false;
   const bool is_held = work.bodies.is_held(pair.a, pair.b);
@@ -109,11 +113,10 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
     point = now.point_world;
     if (!(approach < -threshold)) return false;
   }
-  const Contact contact = contact_of(pair, *point);
+  const Contact contact = contact_of(pair, point);
   const TouchedPoint touched{pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world};
   const double restitution =
       stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
-  const double friction = friction_at_impact(work.world(), pair);
 
   // The law's impulse is that of the free bodies without friction: what holds them makes it
   // smaller, friction at the point both.
@@ -123,7 +126,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   static const ImpactBodies::Answer free_bodies;
   const ImpactBodies::Answer* answer = &free_bodies;
   if (is_held || friction > 0) {
-    answer = &work.answer(pair, *point, friction > 0);
+    answer = &work.answer(pair, point, friction > 0);
     const double free = answer->free_along(contact.normal_b_to_a_world),
                  held = answer->held_normal();
     if (!(held > kSolverResidue * free))
@@ -230,7 +233,7 @@ void SequentialImpacts::note_unsolved(const MovingWorld& moving, const std::vect
 
 // Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0
 // elsewhere, with friction, and with the rows of what is linked to them.
-void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs,
+bool SequentialImpacts::collide_together(Work& work, const std::vector<const TouchingPair*>& pairs,
                                          double threshold, bool rebounds) {
   // corners carry; the middle lies between them
   const auto first_corner = [](const TouchingPair& pair) {
@@ -240,13 +243,13 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     return laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a),
                                           work.body(pair.b));
   };
-  const auto approaches = [&](const TouchingPair& pair) {
-    for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k)
-      if (approach_at(pair, k) < -threshold) return true;
+  const auto approaches = [&](const TouchingPair* pair) {
+    for (std::size_t k = first_corner(*pair); k < pair->points_world.size(); ++k)
+      if (approach_at(*pair, k) < -threshold) return true;
     return false;
   };
-  if (std::none_of(pairs.begin(), pairs.end(), approaches)) return;
-  for (const TouchingPair& pair : pairs) work.bodies.put_on_constraints(pair.a, pair.b);
+  if (std::none_of(pairs.begin(), pairs.end(), approaches)) return false;
+  for (const TouchingPair* pair : pairs) work.bodies.put_on_constraints(pair->a, pair->b);
 
   // Bodies: those that touch, and what is linked to them.
   MovingWorld& moving = work.bodies.moving();
@@ -275,7 +278,8 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     double approach;
   };
   std::vector<Met> met;
-  for (const TouchingPair& pair : pairs)
+  for (const TouchingPair* touching : pairs) {
+    const TouchingPair& pair = *touching;
     for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k) {
       const double approach = approach_at(pair, k);
       const double restitution = !rebounds || stays(work.world(), pair, -approach)
@@ -286,6 +290,7 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
                                   approach < 0 ? -restitution * approach : 0.0, Vector3d::Zero()});
       met.push_back({&pair, approach});
     }
+  }
   for (const int group : held_groups)
     for (const int member : moving.linked_groups()[static_cast<std::size_t>(group)].bodies())
       place(member);
@@ -326,6 +331,7 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
                                   is_first ? energy.change : 0.0, is_first ? excess : 0.0});
     is_first = false;
   }
+  return true;
 }
 
 bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
@@ -333,10 +339,10 @@ bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
                                               work.body(pair.b), rules_.restitution_threshold);
   if (rate >= kFastEnough * rules_.restitution_threshold) return false;
   const Vector3d& n = pair.gap.normal_b_to_a_world;
-  const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
+  const ImpactBodies::Answer& answer = work.answer(pair, point, false);
   // links hold both where they are
   if (!(answer.held_normal() > kSolverResidue * answer.free_along(n))) return false;
-  work.bodies.push({pair.a, pair.b, *point, n}, answer,
+  work.bodies.push({pair.a, pair.b, point, n}, answer,
                    (rules_.restitution_threshold - rate) / answer.held_normal() * n);
   ++counters_.micro_impacts;
   return true;
@@ -448,21 +454,21 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   const double threshold = approach_threshold.value();
 
   bool again = false;
+  std::vector<const TouchingPair*> in_turn;
+  for (const TouchingPair& pair : pairs) in_turn.push_back(&pair);
   if (law_ == scene::ImpactLaw::kSimultaneous) {
-    collide_together(work, pairs, threshold, true);
+    collide_together(work, in_turn, threshold, true);
   } else {
     const bool is_watched = pairs.size() > 1 && pairs.size() <= kMostInOrder &&
                             !counters_.watch.has_said(kOrderOfImpacts, moving.time());
     const std::optional<Tie> tie = is_watched ? tie_of(work, pairs, threshold) : std::nullopt;
-    std::vector<const TouchingPair*> in_turn;
-    for (const TouchingPair& pair : pairs) in_turn.push_back(&pair);
     again = !collide_in_turn(work, in_turn, threshold);
     if (tie && !again) watch_order(work, *tie, pairs, threshold);
   }
   // what is left of an impact that many bodies in contact pass to and fro is resolved at all at
   // once
   if (again && contact_threshold_) {
-    collide_together(work, pairs, threshold, false);
+    collide_together(work, in_turn, threshold, false);
     again = false;
     work.result.events = one_a_pair(work.result.events);
   } else if (work.result.events.size() > kMostEventsPerPair * pairs.size()) {

@@ -3,7 +3,8 @@
 /// One round visits all pairs that touch at that instant, in the order of their body indices. A
 /// pair that approaches gets the impulse of the laws at the middle of the region where the two
 /// touch, or, when the middle does not approach, at the corner of that region that approaches
-/// fastest. Rounds follow until no pair approaches faster than round-off. For equal balls in a row
+/// fastest. With friction all corners of the pair are struck together: friction at the middle alone
+/// would turn a box that lands flat, which its corners can bear. Rounds follow until no pair approaches faster than round-off. For equal balls in a row
 /// and restitution 1 this is Newton's cradle. With restitution below 1 the outcome depends on the
 /// order, which is therefore part of the law; where two impacts of one body at one instant give
 /// another result in the opposite order, a notice says so.
@@ -111,7 +112,8 @@ class SequentialImpacts {
   ContactSolution solve_without_gain(const ContactProblem& problem);
   void note_unsolved(const MovingWorld& moving, const std::vector<int>& bodies,
                      const ContactSolution& solution);
-  void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold,
+  // false: none approaches
+  bool collide_together(Work& work, const std::vector<const TouchingPair*>& pairs, double threshold,
                         bool rebounds);
 
   const Laws& laws_;

@@ -74,7 +74,7 @@ void FlightImpactResponse::collide(Work& work) const {
         fastest_approach(laws_, work.region(), work.a, work.b, threshold.value());
     if (!(approach < -threshold.value())) return;
     if (round == kMostImpactRounds) throw StoppedRun(left_approaching_message(laws_));
-    const Contact contact = work.contact_at(*point);
+    const Contact contact = work.contact_at(point);
     const double impulse = laws_.collision_impulse(contact, work.a, work.b, restitution);
     const Velocity before_a{work.a.velocity_world, work.a.omega_world},
         before_b{work.b.velocity_world, work.b.omega_world};

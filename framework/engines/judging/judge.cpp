@@ -47,7 +47,10 @@ double energy_scale(const Frame& first, const Trajectory& run) {
 class EnergyRounding {
  public:
   EnergyRounding(const Scene& scene, const Trajectory& run)
-      : world_(build_world(scene)), step_s_(run.info.step_s > 0 ? run.info.step_s : scene.step_s) {}
+      : world_(build_world(scene)),
+        step_s_(run.info.step_s > 0 ? run.info.step_s : scene.step_s),
+        margin_(run.counters.counts.contains("large_island_steps") ? kContact.large_island_margin
+                                                                   : kContact.margin) {}
 
   double operator()(const Frame& frame) const {
     double terms = frame.kinetic_energy;  // all terms are positive
@@ -78,11 +81,12 @@ class EnergyRounding {
       sizes += bounding_radius(body.shape);
       weight += body.inertia.mass * world_.gravity_world->norm();
     }
-    return 2.0 * kContact.margin * sizes * weight;
+    return 2.0 * margin_ * sizes * weight;
   }
 
   World world_;
   double step_s_;
+  double margin_;  // that contacts are kept at, of the bodies' sizes
 };
 
 Finding energy(const CheckSpec& check, const Scene& scene, const Trajectory& run) {

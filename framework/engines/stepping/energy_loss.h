@@ -11,10 +11,10 @@
 /// What a part is given or loses where it is hit, or in persistent contact, is counted neither way:
 /// A stands still from the look before to the one after. Impacts are judged by themselves
 /// (`impact_energy`, judging/judge.h).
-/// What hangs on driven bodies that all move alike is seen from a frame that moves along: there they
-/// stand still. Where the frame is shaken, inertial forces -m a(t) act in it, like gravity that
-/// changes, and what they do is part of W. Where bodies are driven, and the energy of the world says
-/// nothing, a part's own energy must not rise either.
+/// What hangs on driven bodies that all move alike is seen from a frame that moves along: there
+/// they stand still. Where the frame is shaken, inertial forces -m a(t) act in it, like gravity
+/// that changes, and what they do is part of W. Where bodies are driven, and the energy of the
+/// world says nothing, a part's own energy must not rise either.
 /// Not watched: what is linked with bodies that are driven differently, what an effect acts on that
 /// says of no entry what it takes (effects::Takes::kUnknown), balls at rest without contacts; and
 /// where looks are taken at frames (event engines), what is dragged, damped, driven or hangs on

@@ -1,0 +1,99 @@
+// A box that lands flat: all corners of a face meet the floor at one instant, and what is symmetric
+// stays so.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "framework/core/random.h"
+#include "tests/engines/reference_runs.h"
+
+namespace tumble::testing::flat_landings_test {
+namespace {
+
+constexpr double kFall = 0.4, kEarth = 9.81;  // m, m/s^2
+
+scene::Scene lands(const Vector3d& half, double restitution, double friction,
+                   const Vector3d& velocity, double duration = 1.0) {
+  scene::Scene scene = scene_of({box("box", half, 1.0, {0, 0, half.z() + kFall}, velocity),
+                                 plane("floor", Vector3d::Zero(), Vector3d::UnitZ())},
+                                duration, Vector3d(0, 0, -kEarth));
+  for (scene::BodySpec& body : scene.bodies) {
+    body.restitution = restitution;
+    body.friction = friction;
+  }
+  scene.contact.emplace();
+  return scene;
+}
+
+// It slides along x; nothing moves it to the side, nothing turns it but about y.
+void expect_symmetric(const Trajectory& run, double allowed) {
+  EXPECT_EQ(run.stopped_by, "");
+  for (const Frame& frame : run.frames) {
+    const BodyPose& pose = frame.poses[0];
+    ASSERT_NEAR(pose.com_world.y(), 0.0, allowed) << frame.time;
+    ASSERT_NEAR(pose.omega_world.x(), 0.0, allowed) << frame.time;
+    ASSERT_NEAR(pose.omega_world.z(), 0.0, allowed) << frame.time;
+  }
+}
+
+// Without rebound, and flat enough for its corners to bear the friction of the landing (mu times
+// the height of its centre is less than half its length), it stays flat: the landing takes
+// mu v_n of its speed, the floor mu g a second of the rest.
+TEST(FlatLandings, SlideOnAsTheirCornersBear) {
+  const double fall_s = std::sqrt(2 * kFall / kEarth);
+  Random random(3);
+  for (int trial = 0; trial < 12; ++trial) {
+    const Vector3d half(random.between(0.1, 0.2), random.between(0.05, 0.2),
+                        random.between(0.05, 0.1));
+    const double mu = random.between(0.1, 0.9), v = random.between(1.0, 5.0);
+    const double after = v - mu * kEarth * fall_s;
+    const double x = v * fall_s + (after > 0 ? after * after / (2 * mu * kEarth) : 0.0);
+    for (const char* engine : {"rd", "ca", "tw"}) {
+      SCOPED_TRACE(fmt::format("trial {}, {}", trial, engine));
+      const Trajectory run = run_on(engine, lands(half, 0.0, mu, {v, 0, 0}, 4.0));
+      expect_symmetric(run, 1e-9);  // what solvers leave of m/s
+      EXPECT_NEAR(run.frames.back().poses[0].com_world.x(), x, 1e-6) << "margins, rounding";
+    }
+  }
+}
+
+// With rebounds and on edges, where it may tumble: by lot, along x.
+TEST(FlatLandings, StaySymmetric) {
+  Random random(4);
+  for (int trial = 0; trial < 40; ++trial) {
+    const Vector3d half(random.between(0.05, 0.2), random.between(0.05, 0.2),
+                        random.between(0.05, 0.2));
+    const double e = random.below(3) == 0 ? 0.0 : random.between(0.1, 0.9),
+                 mu = random.below(4) == 0 ? 0.0 : random.between(0.05, 1.0);
+    scene::Scene scene = lands(half, e, mu, {random.between(0.5, 4.0), 0, 0}, 0.7);
+    if (random.below(2) == 0)  // tilted about y: it lands on an edge
+      scene.bodies[0].world_from_body =
+          Eigen::AngleAxisd(random.between(-0.3, 0.3), Vector3d::UnitY());
+    if (random.below(2) == 0) scene.bodies[0].omega_world_rad_s.y() = random.between(-3, 3);
+    scene.bodies[0].position_m.z() += 0.2;
+    const char* engine = trial % 2 == 0 ? "rd" : "tw";
+    SCOPED_TRACE(fmt::format("trial {}, {}: e {}, mu {}", trial, engine, e, mu));
+    // rounding, which tumbling makes some thousand times larger
+    expect_symmetric(run_on(engine, scene), 1e-8);
+  }
+}
+
+// It lands on a step beneath most of it: the middle of where they touch is struck, which turns it,
+// and then both corners at the step's edge, which still approach, alike.
+TEST(FlatLandings, OnAStepTipOverItsEdge) {
+  for (const double e : {0.05, 0.1, 0.2})
+    for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
+      SCOPED_TRACE(fmt::format("e {}, {}", e, engine));
+      scene::Scene scene = lands({0.2, 0.1, 0.1}, e, 0.0, Vector3d::Zero(), 0.4);
+      scene.bodies[0].position_m.z() += 0.2;
+      scene.bodies.push_back(box("step", {0.5, 0.5, 0.1}, 1.0, {0.35, 0, 0.1}, Vector3d::Zero()));
+      scene.bodies.back().immovable = true;
+      scene.bodies.back().mass_kg.reset();
+      scene.bodies.back().restitution = e;
+      expect_symmetric(run_on(engine, scene), 1e-10);
+    }
+}
+
+}  // namespace
+}  // namespace tumble::testing::flat_landings_test
