@@ -5,7 +5,7 @@
 namespace tumble::live {
 namespace {
 
-// bytes: more than a page gets that is new (session_pages.cpp)
+// bytes: more than a page gets that is new (shown_run.cpp)
 constexpr std::size_t kMostWaiting = 128u << 20;
 
 }  // namespace

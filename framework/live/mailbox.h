@@ -17,6 +17,10 @@ class Mailbox {
   /// Of a page that does not read, what waits is thrown away and the mailbox closed: the page comes
   /// again and gets all anew.
   void put(const std::shared_ptr<const std::string>& text);
+  /// An event that other pages do not get.
+  void put(const std::string& name, const std::string& line) {
+    put(std::make_shared<const std::string>(event_of(name, line)));
+  }
   void close();
   bool is_closed() const;
 

@@ -1,0 +1,162 @@
+#include "framework/live/runs.h"
+
+#include <algorithm>
+
+#include "framework/core/error.h"
+
+namespace tumble::live {
+
+void Runs::begin(const std::string& reason, double from_s, const Recipe& recipe) {
+  // The recipe may be the one of the run that is starting, which ends with the assignment.
+  starting_ = std::make_unique<Simulator>(scenes_.shown().simulator, from_s, reason, recipe);
+  starting_->start(speed_, true);
+  pages_.tell({{"kind", "starting"}, {"reason", reason}});
+  scenes_.look_for_unsaved(wanted());
+}
+
+void Runs::stop() {
+  running_.reset();
+  starting_.reset();
+  place_.drop();
+  is_paused_ = false;
+}
+
+void Runs::set_pace(double speed, bool is_paused) {
+  if (!(speed > 0 && speed <= 1000)) throw UserError("speed", "must be from 0 to 1000", "");
+  speed_ = speed;
+  is_paused_ = is_paused;
+  keep_pace();
+  pages_.tell({{"kind", "pace"}, {"speed", speed_}, {"paused", is_paused_}});
+}
+
+void Runs::keep_pace() {
+  const bool is_watched = pages_.are_watched();
+  if (!is_watched) act({{"do", "release"}});
+  act({{"do", "pace"}, {"speed", speed_}, {"paused", is_paused_ || !is_watched}});
+}
+
+void Runs::act(const Json& command) {
+  const bool is_over = running_ ? running_->has_ended : !starting_;
+  if (is_over && (command.at("do") == "aim" || command.at("do") == "push"))
+    pages_.tell({{"kind", "notice"},
+                 {"text", "the run has ended: start over, or go back to an earlier instant"}});
+  if (running_ && !running_->has_ended) running_->child.say(dumped(command));
+}
+
+std::vector<const Child*> Runs::children() const {
+  std::vector<const Child*> children = {place_.child()};
+  for (const Simulator* simulator : {running_.get(), starting_.get()})
+    if (simulator != nullptr) children.push_back(&simulator->child);
+  return children;
+}
+
+void Runs::listen() {
+  if (running_) listen_to(running_);
+  if (starting_) listen_to(starting_);
+  if (const auto place = place_.listen()) shown_.tell_place(place->text);
+}
+
+void Runs::listen_to(std::unique_ptr<Simulator>& simulator) {
+  const bool is_open = simulator->read();
+  try {
+    // What a record leads to may put another process in this one's place.
+    const Simulator* const before = simulator.get();
+    while (simulator && simulator.get() == before) {
+      auto record = simulator->records.next();
+      if (!record) break;
+      if (&simulator == &starting_)
+        hear_starting(std::move(*record));
+      else
+        hear(*simulator, std::move(*record));
+    }
+    if (is_open || !simulator || simulator.get() != before) return;
+    if (auto loss = simulator->loss()) {
+      (*loss)["ends_run"] = simulator == running_;
+      shown_.tell_trouble(*loss);
+      find_place(simulator->talk);
+      if (simulator == starting_) settled_();
+    }
+    simulator.reset();
+  } catch (const std::exception& error) {
+    shown_.tell_trouble(
+        {{"title", "The process with your code is out of step"}, {"text", error.what()}});
+    simulator.reset();
+  }
+}
+
+void Runs::hear_starting(Record record) {
+  if (record.kind == RecordKind::kHead) {
+    adopt(record.bytes);
+    if (running_) listen_to(running_);  // what has come behind the head
+    return;
+  }
+  if (record.kind != RecordKind::kEnd && record.kind != RecordKind::kRefused) return;
+  starting_->has_ended = true;
+  Json said = Json::parse(record.bytes);
+  bool compiles = true;
+  if (record.kind == RecordKind::kEnd) {  // before its first frame
+    const std::string why = said.value("stopped_by", "");
+    shown_.tell_trouble({{"title", "The run stopped"},
+                         {"text", why.empty() ? "it ended before its first frame" : why}});
+    if (!why.empty()) find_place(why);
+  } else {
+    const std::string problem = said.at("problem");
+    compiles = !problem.starts_with("does not compile");
+    said["title"] = !compiles                            ? "Does not compile"
+                    : said.value("not_attempted", false) ? "Not attempted"
+                                                         : "The scene cannot begin";
+    said["text"] = problem;
+    if (!compiles) said["remedy"] = "";  // for the command line
+    shown_.tell_trouble(said);
+  }
+  scenes_.look_for_unsaved(wanted());
+  if (compiles) settled_();
+}
+
+// The run that has started takes the place of the one before.
+void Runs::adopt(const std::string& head) {
+  running_ = std::move(starting_);
+  shown_.begin(*running_, head, former_);
+  keep_pace();
+  if (running_->reason == "code") pages_.tell(scenes_.offered_words());  // may be written now
+  settled_();
+}
+
+void Runs::hear(Simulator& from, Record record) {
+  if (record.kind == RecordKind::kHand) return add_push(record.bytes);
+  if (record.kind == RecordKind::kAsked) return shown_.tell_asked(scenes_.asked(record.bytes));
+  if (record.kind == RecordKind::kEnd || record.kind == RecordKind::kRefused) from.has_ended = true;
+  const std::string stopped_by = shown_.hear(std::move(record));
+  if (!stopped_by.empty()) find_place(stopped_by);
+}
+
+void Runs::find_place(const std::string& said) {
+  const std::vector<std::string>& words = scenes_.shown().locate;
+  if (!words.empty()) place_.ask(words, said);
+}
+
+// A hand has acted: the run goes on with it, or runs again until then.
+void Runs::add_push(const std::string& text) {
+  Json push = Json::parse(text);
+  const bool runs_again = push.value("runs_again", false);
+  push.erase("runs_again");
+  if (!runs_again) {
+    shown_.add_push(dumped(push));
+    pages_.tell({{"kind", "push"}, {"push", push}});
+    if (!shown_.recipe().document.empty()) scenes_.tell_unsaved(true);
+    return;
+  }
+  // The run that is shown goes on without the push: it belongs to the one that is begun. A second
+  // push may come before that one has started.
+  if (is_starting() && starting_->reason != "push") {
+    pages_.tell({{"kind", "notice"}, {"text", "a new run is starting: push again when it goes"}});
+    return;
+  }
+  Recipe pushed = wanted();
+  pushed.pushes.push_back(dumped(push));
+  const double start_s = push.at("start_s");
+  pages_.tell({{"kind", "push"}, {"push", push}});
+  begin("push", is_starting() ? std::min(start_s, starting_->from_s) : start_s, pushed);
+}
+
+}  // namespace tumble::live
