@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include <fmt/format.h>
+
 namespace tumble::engines {
 namespace {
 
@@ -65,6 +67,21 @@ Groups groups_of(const std::vector<BegunFlight>& begun) {
   }
   std::sort(groups.begin(), groups.end());
   return groups;
+}
+
+void require_groups(const Scheduling& decide, const FlightWorld& world,
+                    const std::vector<BegunFlight>& begun) {
+  if (std::none_of(begun.begin(), begun.end(),
+                   [](const BegunFlight& flight) { return flight.flight.segment >= 0; }))
+    return;
+  std::vector<std::int32_t> bodies;
+  for (const BegunFlight& flight : begun) bodies.push_back(flight.body);
+  const Groups expected = groups_of(begun),
+               found = decide.contact_groups(bodies, contacts_of(world, begun));
+  if (found != expected)
+    throw StoppedRun(fmt::format("at t = {:.9g} s contact_groups makes {} of the islands {}",
+                                 begun.front().flight.begin, in_words(world, found),
+                                 in_words(world, expected)));
 }
 
 std::string in_words(const FlightWorld& world, const Groups& groups) {

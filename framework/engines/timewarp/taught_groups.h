@@ -32,6 +32,11 @@ std::vector<GroupContact> contacts_of(const FlightWorld& world,
 /// The groups of bodies of these flights: by lowest member, each ascending.
 Groups groups_of(const std::vector<BegunFlight>& begun);
 
+/// Asks the scheduler for the groups after an event: they follow from the contacts and links of its
+/// bodies. @throws StoppedRun where it finds others
+void require_groups(const Scheduling& decide, const FlightWorld& world,
+                    const std::vector<BegunFlight>& begun);
+
 /// "{1, 2} {3}", with names.
 std::string in_words(const FlightWorld& world, const Groups& groups);
 

@@ -15,8 +15,9 @@ namespace tumble::engines {
 /// not wait.
 class TaughtQueue {
  public:
-  explicit TaughtQueue(std::function<bool(const Stamp&, const Stamp&)> comes_before)
-      : comes_before_(std::move(comes_before)) {}
+  /// @param duration  of the run [s]
+  TaughtQueue(std::function<bool(const Stamp&, const Stamp&)> comes_before, double duration)
+      : comes_before_(std::move(comes_before)), duration_(duration) {}
 
   /// @return its index
   int add(const ScheduledEvent& event) {
@@ -30,6 +31,16 @@ class TaughtQueue {
     entry.event = event;
     heap_.push_back({event.stamp, id, ++entry.version});
     std::push_heap(heap_.begin(), heap_.end(), later());
+  }
+  /// The same for checks: the end of the run is a check time, too. Without it an impact before the
+  /// end would be missed where the next check is due after it.
+  int add_check(ScheduledEvent check) {
+    check.stamp.time = due(check);
+    return add(check);
+  }
+  void put_check(int id, ScheduledEvent check) {
+    check.stamp.time = due(check);
+    put(id, check);
   }
   void park(int id) { ++entries_.at(id).version; }
   void remove(int id) { entries_.erase(id); }
@@ -63,6 +74,9 @@ class TaughtQueue {
     int id;
     unsigned version;
   };
+  double due(const ScheduledEvent& check) const {
+    return check.safe_time < duration_ ? std::min(check.stamp.time, duration_) : check.stamp.time;
+  }
   // The standard heap has the largest item in front. With an order that is not a strict weak order
   // it only pops in a wrong order.
   std::function<bool(const Item&, const Item&)> later() const {
@@ -70,6 +84,7 @@ class TaughtQueue {
   }
 
   std::function<bool(const Stamp&, const Stamp&)> comes_before_;
+  double duration_;
   std::map<int, Entry> entries_;
   std::vector<Item> heap_;
   int next_id_ = 0;

@@ -7,7 +7,6 @@
 #include "framework/core/numbers.h"
 
 namespace tumble::engines {
-namespace {}  // namespace
 
 Stamp stamp_of(const EventStamp& key) {
   const WorkKind kind = key.kind == StampKind::kCallback  ? WorkKind::kCallback
