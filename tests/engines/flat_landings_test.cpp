@@ -1,5 +1,5 @@
-// A box that lands flat: all corners of a face meet the floor at one instant, and what is symmetric
-// stays so.
+// Boxes that land: flat, where all corners of a face meet the floor at one instant and what is
+// symmetric stays so, or turning, corner by corner.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -93,6 +93,32 @@ TEST(FlatLandings, OnAStepTipOverItsEdge) {
       scene.bodies.back().restitution = e;
       expect_symmetric(run_on(engine, scene), 1e-10);
     }
+}
+
+// On a smooth floor all forces are vertical: nothing changes the angular momentum about the vertical
+// of a plate that spins down, corner by corner, from one step's contacts to the next one's.
+TEST(SpinningDown, OnASmoothFloorKeepsTheSpinAboutTheVertical) {
+  Random random(8);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Vector3d half(random.between(0.05, 0.15), random.between(0.05, 0.15),
+                        random.between(0.005, 0.03));
+    scene::Scene scene = scene_of({box("plate", half, 1.0, {0, 0, half.norm()}, Vector3d::Zero()),
+                                   plane("floor", Vector3d::Zero(), Vector3d::UnitZ())},
+                                  1.0, Vector3d(0, 0, -9.81));
+    scene.bodies[0].world_from_body =
+        Eigen::AngleAxisd(random.between(0.1, 1.0), Vector3d::UnitY()) *
+        Eigen::AngleAxisd(random.between(0.0, 1.0), Vector3d::UnitX());
+    scene.bodies[0].omega_world_rad_s = {0, 0, random.between(5, 20)};
+    for (scene::BodySpec& body : scene.bodies) body.restitution = 0.0;
+    scene.contact.emplace();
+    const char* engine = trial % 2 == 0 ? "rd" : "tw";
+    SCOPED_TRACE(fmt::format("trial {}, {}", trial, engine));
+    const Trajectory run = run_on(engine, scene);
+    EXPECT_EQ(run.stopped_by, "");
+    const double spin = run.frames.front().angular_momentum_world.z();
+    for (const Frame& frame : run.frames)
+      ASSERT_NEAR(frame.angular_momentum_world.z(), spin, 1e-11 * std::abs(spin)) << "rounding";
+  }
 }
 
 }  // namespace

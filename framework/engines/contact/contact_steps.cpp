@@ -44,23 +44,22 @@ void PersistentContacts::find_ends(const ContactIsland& island, const ContactPro
     const int body = island.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
+    const RigidBodyState& free = moving_.path_end(body);
     RigidBodyState& end = ends_[body];
+    const Vector3d turning = after.angular_world - problem.bodies[k].omega_world;
+    const Quaterniond at = inertia_at_ends ? end.world_from_body : free.world_from_body;
     if (activation) {
       const RigidBodyState& start = moving_.state(body);
       end.com_world = start.com_world + h * after.linear_world;
       end.world_from_body = turned(start.world_from_body, h * after.angular_world);
-      end.angular_momentum_world =
-          angular_momentum_of(after.angular_world, end.world_from_body, inertia);
     } else {
-      const RigidBodyState& free = moving_.path_end(body);
-      const Quaterniond at = inertia_at_ends ? end.world_from_body : free.world_from_body;
-      const Vector3d turning = after.angular_world - problem.bodies[k].omega_world;
       end.com_world =
           free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
       end.world_from_body = turned(free.world_from_body, 0.5 * h * turning);
-      end.angular_momentum_world =
-          free.angular_momentum_world + angular_momentum_of(turning, at, inertia);
     }
+    // the free path's, and what the impulses give: nothing else changes it
+    end.angular_momentum_world =
+        free.angular_momentum_world + angular_momentum_of(turning, at, inertia);
     end.momentum_world = inertia.mass * after.linear_world;
   }
 }

@@ -64,16 +64,14 @@ void PositionCorrection::place_driven(std::vector<RigidBodyState>& states, doubl
     states[body].com_world = prescribed_position(moving_.world().bodies[body], t);
 }
 
-// Momenta follow: the velocities stay. @return whether the body has moved
+// Momenta stay, as no force acts: with the angular velocity kept, a flat body would gain angular
+// momentum by each turn. @return whether the body has moved
 bool PositionCorrection::apply_correction(int body, const Velocity& correction,
                                           std::vector<RigidBodyState>& states) const {
   if (correction.linear_world.isZero(0.0) && correction.angular_world.isZero(0.0)) return false;
   RigidBodyState& state = states[body];
-  const Inertia& inertia = moving_.world().bodies[body].inertia;
-  const Vector3d omega = omega_of(state, inertia);
   state.com_world += correction.linear_world;
   state.world_from_body = turned(state.world_from_body, correction.angular_world);
-  state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
   return true;
 }
 
