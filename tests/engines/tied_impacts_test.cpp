@@ -99,5 +99,31 @@ TEST(ImpactsAtOneInstant, WhoseOrderDecidesNothingAreNotReportedByEventEngines) 
   }
 }
 
+// A light ball that touches two heavy ones goes to and fro between them some hundred times at the
+// instant at which the first is hit, as fast as ever, until the two part faster: all of it elastic,
+// in contact as without.
+TEST(ImpactsAtOneInstant, OfALightBallBetweenHeavyOnesKeepTheirRestitution) {
+  for (const double light : {1e-3, 1e-4})
+    for (const char* engine : {"rd", "tw"}) {
+      SCOPED_TRACE(light);
+      scene::Scene scene = scene_of({ball("first", 0.5, 1.0, {-1.5, 0, 0}, Vector3d::UnitX()),
+                                     ball("light", 0.5, light, {0, 0, 0}, Vector3d::Zero()),
+                                     ball("last", 0.5, 1.0, {1, 0, 0}, Vector3d::Zero())},
+                                    1.0);
+      scene.contact.emplace();
+      const Trajectory run = run_on(engine, scene);
+      EXPECT_EQ(run.stopped_by, "");
+      EXPECT_NEAR(run.frames.back().kinetic_energy, 0.5, 1e-12) << "rounding of some 200 impulses";
+      double momentum = 0.0, before = -1e300;
+      for (int body = 0; body < 3; ++body) {
+        const double v = run.frames.back().poses[static_cast<std::size_t>(body)].velocity_world.x();
+        momentum += v * *scene.bodies[static_cast<std::size_t>(body)].mass_kg;
+        EXPECT_GE(v, before) << "none goes into the next one";
+        before = v;
+      }
+      EXPECT_NEAR(momentum, 1.0, 1e-12);
+    }
+}
+
 }  // namespace
 }  // namespace tumble::testing::tied_impacts_test

@@ -18,8 +18,11 @@
 namespace tumble::engines {
 namespace {
 
-// bodies in persistent contact pass an impact on in ever smaller parts
+// bodies in persistent contact pass an impact on in ever smaller parts; but a light one between
+// heavy ones goes to and fro as fast as it was hit: rounds go on while what approaches is faster
+// than this part of the first round's
 constexpr int kRoundsAmongContacts = 60;
+constexpr double kStillFast = 0.05;
 // impulses at one instant: more are reported as one for each pair
 constexpr std::size_t kMostEventsPerPair = 64;
 // of the largest change of a velocity at that instant: what another order changes and is worth a
@@ -370,11 +373,22 @@ void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<Touchi
 // @return false: pairs still approach after all rounds
 bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const TouchingPair*>& in_turn,
                                         double threshold) {
+  const std::vector<Event>& events = work.result.events;
+  const auto fastest_since = [&](std::size_t first) {
+    double fastest = 0.0;
+    for (std::size_t k = first; k < events.size(); ++k)
+      fastest = std::max(fastest, -events[k].normal_velocity_before);
+    return fastest;
+  };
+  double at_first = 0.0, now = 0.0;
   bool again = true;
-  const int most = contact_threshold_ ? kRoundsAmongContacts : kMostImpactRounds;
-  for (int rounds = 0; again && ++rounds < most;) {
+  for (int round = 1; again && round < kMostImpactRounds; ++round) {
+    if (contact_threshold_ && round >= kRoundsAmongContacts && now <= kStillFast * at_first) break;
+    const std::size_t first = events.size();
     again = false;
     for (const TouchingPair* pair : in_turn) again = collide(work, *pair, threshold) || again;
+    now = fastest_since(first);
+    if (round == 1) at_first = now;
   }
   return !again;
 }

@@ -4,10 +4,11 @@
 /// pair that approaches gets the impulse of the laws at the middle of the region where the two
 /// touch, or, when the middle does not approach, at the corner of that region that approaches
 /// fastest. With friction all corners of the pair are struck together: friction at the middle alone
-/// would turn a box that lands flat, which its corners can bear. Rounds follow until no pair approaches faster than round-off. For equal balls in a row
-/// and restitution 1 this is Newton's cradle. With restitution below 1 the outcome depends on the
-/// order, which is therefore part of the law; where two impacts of one body at one instant give
-/// another result in the opposite order, a notice says so.
+/// would turn a box that lands flat, which its corners can bear. Rounds follow until no pair
+/// approaches faster than round-off. For equal balls in a row and restitution 1 this is Newton's
+/// cradle. With restitution below 1 the outcome depends on the order, which is therefore part of
+/// the law; where two impacts of one body at one instant give another result in the opposite order,
+/// a notice says so.
 ///
 /// Bodies on rods and joints: the impulse acts on the constrained system (impact_bodies.h). Its
 /// size is that of the laws' collision_impulse for the free bodies, times K_free / K_held, so that
