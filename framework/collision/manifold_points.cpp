@@ -37,33 +37,18 @@ class Surface {
         side_(side),
         direction_body_(piece.in_body(side * n)),
         foremost_(piece.polytope->lowest_height(direction_body_)),
-        base_(n.dot(piece.translation)) {
-    const Polytope& p = *piece.polytope;
-    for (std::size_t f = 0; f < p.face_normals.size(); ++f)
-      if (const double lean = direction_body_.dot(p.face_normals[f]); lean <= -kSteep)
-        faces_.push_back({&p.face_normals[f], p.face_offsets[f], lean});
-  }
+        base_(n.dot(piece.translation)) {}
   double height_at(const Vector3d& over) const {
     const Vector3d over_body = piece_.in_body(over - piece_.translation);
-    const double base = direction_body_.dot(over_body);
-    double height = foremost_;
-    for (const Facing& face : faces_)  // m . (over + s d) = offset at the face
-      height = std::max(height, base + (face.offset - face.normal->dot(over_body)) / face.lean);
-    return side_ * height + base_;
+    const double entry = piece_.polytope->entry_along(direction_body_, over_body, kSteep);
+    return side_ * std::max(foremost_, direction_body_.dot(over_body) + entry) + base_;
   }
 
  private:
-  struct Facing {
-    const Vector3d* normal;  // body frame
-    double offset;           // normal . vertex [m]
-    double lean;             // cosine to the direction
-  };
-
   const PlacedPolytope& piece_;
   double side_;
   Vector3d direction_body_;
-  double foremost_, base_;          // [m]
-  InlineVector<Facing, 32> faces_;  // towards the other solid, none too steep
+  double foremost_, base_;  // [m]
 };
 
 std::vector<ManifoldPoint> nearest_point(const CollisionShape& a, const Pose& pose_a,

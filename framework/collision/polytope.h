@@ -19,11 +19,13 @@ struct Polytope {
   std::vector<std::pair<int, int>> edges;  // of vertices, each once
 
   // Computed from these by `prepare`.
-  using Lanes = double __attribute__((vector_size(16)));
-  using Columns = std::array<Lanes, 3>;  // x, y and z of two vertices, for SIMD instructions
-  std::vector<Columns> columns;          // padded with the last vertex to a multiple of four
-  std::vector<double> arms;              // distance of each vertex from the origin [m]
-  std::vector<double> face_offsets;      // largest normal . vertex [m]
+  static constexpr int kLanes = 4;
+  static constexpr std::size_t kMostColumns = 32;  // of polytopes whose vertices are looked at so
+  // x, then y, then z of four vertices, and so on, for SIMD instructions; padded with the last
+  std::vector<double> columns;
+  std::vector<double> arms;          // distance of each vertex from the origin [m]
+  std::vector<double> face_offsets;  // largest normal . vertex [m]
+  std::vector<double> face_columns;  // likewise: of four normals, then of their offsets
   // neighbours of vertex i: from first_neighbour[i] to first_neighbour[i + 1]
   std::vector<int> first_neighbour;
   std::vector<int> neighbours;
@@ -34,6 +36,9 @@ struct Polytope {
   int lowest(const Vector3d& direction, double& height) const;
   /// Only the height of the lowest vertex. [m]
   double lowest_height(const Vector3d& direction) const;
+  /// How far along a direction a line from a point has entered the half-spaces of all faces that
+  /// look against it, their cosine to it at most -`steep`; -infinity without any. [m]
+  double entry_along(const Vector3d& direction, const Vector3d& point, double steep) const;
 
  private:
   int lowest_of_many(const Vector3d& direction, double& height) const;

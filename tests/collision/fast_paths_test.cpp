@@ -418,6 +418,35 @@ TEST(Polytope, LowestVertexIsThatOfTryingAll) {
   }
 }
 
+// A line is inside a convex solid from where it has passed the last face that looks against it.
+TEST(Polytope, EntryIsThatOfTryingAllFaces) {
+  Chance chance(29);
+  constexpr double kSteep = 0.05;
+  for (const int n : {0, 1, 2, 3, 4, 5, 31, 64}) {
+    collision::Polytope polytope;
+    for (int i = 0; i < std::max(n, 1); ++i) polytope.vertices.push_back(chance.vector());
+    for (int f = 0; f < n; ++f) polytope.face_normals.push_back(chance.vector().normalized());
+    polytope.prepare();
+    for (int k = 0; k < 40; ++k) {
+      const Vector3d direction = chance.vector().normalized(), point = chance.vector();
+      double entry = -std::numeric_limits<double>::infinity();
+      for (int f = 0; f < n; ++f) {
+        const Vector3d& m = polytope.face_normals[static_cast<std::size_t>(f)];
+        if (const double lean = direction.dot(m); lean <= -kSteep)
+          entry = std::max(
+              entry, (polytope.face_offsets[static_cast<std::size_t>(f)] - m.dot(point)) / lean);
+      }
+      // the sums are those of the loop, in its order: a rounding of each is all that may differ
+      const double rounding = 8 * std::numeric_limits<double>::epsilon() / kSteep;
+      const double found = polytope.entry_along(direction, point, kSteep);
+      if (std::isinf(entry))
+        EXPECT_EQ(found, entry) << n << " faces";
+      else
+        EXPECT_NEAR(found, entry, rounding * (1 + std::abs(entry))) << n << " faces";
+    }
+  }
+}
+
 TEST(BroadPhase, FindsTheSamePairsAsTestingAll) {
   Chance chance(25);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
