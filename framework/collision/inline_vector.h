@@ -2,7 +2,9 @@
 /// Internal to collision.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace tumble::collision {
@@ -10,6 +12,28 @@ namespace tumble::collision {
 template <class T, int N>
 class InlineVector {
  public:
+  InlineVector() = default;
+  InlineVector(const InlineVector& other) : size_(other.size_), many_(other.many_) {
+    copy_few(other);
+  }
+  InlineVector(InlineVector&& other) : size_(other.size_), many_(std::move(other.many_)) {
+    copy_few(other);
+    other.size_ = 0;
+  }
+  InlineVector& operator=(const InlineVector& other) {
+    size_ = other.size_;
+    many_ = other.many_;
+    copy_few(other);
+    return *this;
+  }
+  InlineVector& operator=(InlineVector&& other) {
+    size_ = other.size_;
+    many_ = std::move(other.many_);
+    copy_few(other);
+    other.size_ = 0;
+    return *this;
+  }
+
   void push_back(const T& item) {
     if (size_ < N) {
       few_[size_] = item;
@@ -40,6 +64,11 @@ class InlineVector {
   T& back() { return begin()[size_ - 1]; }
 
  private:
+  // most vectors are nearly empty
+  void copy_few(const InlineVector& other) {
+    if (size_ <= N) std::copy(other.few_.begin(), other.few_.begin() + size_, few_.begin());
+  }
+
   int size_ = 0;
   std::array<T, N> few_;
   std::vector<T> many_;
