@@ -7,6 +7,11 @@
 namespace tumble::collision {
 namespace {
 
+// Room about a box on each side, of its size: more makes more pairs, less lasts for fewer steps.
+constexpr double kRoom = 0.1;
+// Questions to wait until pairs are kept again, where those kept answered none: boxes move fast.
+constexpr int kWaitForSlow = 8;
+
 constexpr int kLeaf = 4;  // boxes in a leaf: testing so few is faster than another split
 
 struct Leaf {
@@ -153,6 +158,45 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& 
     }
   BoxTree(leaves, pairs);
   return sorted(pairs, boxes.size());
+}
+
+bool NearBoxes::are_near(const std::vector<SweptBox>& boxes) const {
+  if (boxes.size() != rooms_.size()) return false;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const SweptBox &box = boxes[i], &room = rooms_[i];
+    const bool is_inside = (room.low.x() <= box.low.x()) & (room.low.y() <= box.low.y()) &
+                           (room.low.z() <= box.low.z()) & (box.high.x() <= room.high.x()) &
+                           (box.high.y() <= room.high.y()) & (box.high.z() <= room.high.z());
+    if (!is_inside || (box.can_move && !room.can_move)) return false;
+  }
+  return true;
+}
+
+std::vector<std::pair<int, int>> NearBoxes::overlapping_pairs(const std::vector<SweptBox>& boxes) {
+  if (are_near(boxes)) {
+    ++served_;
+  } else {
+    const bool was_in_vain = !rooms_.empty() && served_ == 0;
+    rooms_.clear();
+    if (was_in_vain) unused_ = kWaitForSlow;
+    if (unused_ > 0) {
+      --unused_;
+      return collision::overlapping_pairs(boxes);
+    }
+    for (const SweptBox& box : boxes) {
+      const Vector3d room = kRoom * (box.high - box.low);
+      rooms_.push_back({box.low - room, box.high + room, box.can_move});
+    }
+    pairs_ = collision::overlapping_pairs(rooms_);
+    served_ = 0;
+  }
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [i, j] : pairs_) {
+    const SweptBox &a = boxes[static_cast<std::size_t>(i)], &b = boxes[static_cast<std::size_t>(j)];
+    if ((a.can_move || b.can_move) && share_a_point(a.low, a.high, b.low, b.high))
+      pairs.emplace_back(i, j);
+  }
+  return pairs;
 }
 
 }  // namespace tumble::collision

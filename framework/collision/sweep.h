@@ -19,4 +19,21 @@ struct SweptBox {
 /// tested against every other box.
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& boxes);
 
+/// The same pairs of boxes that are asked for again and again while they move a little: those that
+/// come near each other are kept, until a box has left the room about where it was.
+class NearBoxes {
+ public:
+  /// overlapping_pairs(boxes).
+  /// @param boxes  always as many, in the same order
+  std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& boxes);
+
+ private:
+  bool are_near(const std::vector<SweptBox>& boxes) const;
+
+  std::vector<SweptBox> rooms_;             // about the boxes
+  std::vector<std::pair<int, int>> pairs_;  // of rooms that overlap
+  int served_ = 0;                          // questions answered by these pairs
+  int unused_ = 0;                          // questions to wait until pairs are kept again
+};
+
 }  // namespace tumble::collision

@@ -479,5 +479,32 @@ TEST(BroadPhase, FindsTheSamePairsAsTestingAll) {
   }
 }
 
+// Boxes that creep, and now and then leap far; what stands may begin to move.
+TEST(BroadPhase, FindsTheSamePairsOfMovingBoxesAsAnew) {
+  Chance chance(26);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double leap : {0.0, 0.02, 1.0}) {
+    collision::NearBoxes near;
+    std::vector<collision::SweptBox> boxes;
+    for (int i = 0; i < 60; ++i) {
+      const Vector3d middle = 4.0 * chance.vector(), half = 0.6 * chance.vector().cwiseAbs();
+      boxes.push_back({middle - half, middle + half, chance.below(3) > 0});
+    }
+    boxes[7] = {Vector3d::Constant(-kInfinity), Vector3d::Constant(kInfinity), false};
+    std::size_t met = 0;
+    for (int step = 0; step < 400; ++step) {
+      EXPECT_EQ(near.overlapping_pairs(boxes), collision::overlapping_pairs(boxes)) << step;
+      met += collision::overlapping_pairs(boxes).size();
+      for (collision::SweptBox& box : boxes) {
+        const Vector3d way = (chance.in(0, 1) < leap ? 1.0 : 0.01) * chance.vector();
+        box.low += way;
+        box.high += way;
+        if (chance.below(200) == 0) box.can_move = !box.can_move;
+      }
+    }
+    EXPECT_GT(met, 400u);  // or there was nothing to find
+  }
+}
+
 }  // namespace
 }  // namespace tumble::testing::fast_paths_test

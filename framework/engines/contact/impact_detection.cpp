@@ -81,22 +81,21 @@ std::vector<ImpactDetection::Pair> ImpactDetection::candidates() {
 }
 
 std::vector<ImpactDetection::Pair> ImpactDetection::pairs_of_boxes() {
-  std::vector<collision::SweptBox> boxes;
+  boxes_.clear();
   std::vector<Plane> planes;
-  boxes.reserve(colliding_.size());
   for (const int body : colliding_) {
     if (moving_.shape(body).is_half_space())
-      planes.push_back(plane_of(static_cast<int>(boxes.size())));
-    boxes.push_back(moving_.swept_box(body));
+      planes.push_back(plane_of(static_cast<int>(boxes_.size())));
+    boxes_.push_back(moving_.swept_box(body));
   }
   // Planes without end are in every box: whether one reaches the box of a body is asked directly.
   const auto is_missed = [&](const Pair& places) {
     return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-      return (plane.box == places.second && !plane.reaches(boxes[places.first])) ||
-             (plane.box == places.first && !plane.reaches(boxes[places.second]));
+      return (plane.box == places.second && !plane.reaches(boxes_[places.first])) ||
+             (plane.box == places.first && !plane.reaches(boxes_[places.second]));
     });
   };
-  auto pairs = collision::overlapping_pairs(boxes);
+  auto pairs = near_boxes_.overlapping_pairs(boxes_);
   std::erase_if(pairs, [&](const Pair& pair) {
     return !moving_.may_collide(colliding_[pair.first], colliding_[pair.second]) || is_missed(pair);
   });

@@ -74,7 +74,9 @@ class ImpactDetection {
   const Laws& laws_;
   RunCounters& counters_;
   bool apart_at_target_ = false;
-  std::vector<int> colliding_;  // bodies that may touch others, ascending
+  std::vector<int> colliding_;              // bodies that may touch others, ascending
+  std::vector<collision::SweptBox> boxes_;  // of these, in the step under way
+  collision::NearBoxes near_boxes_;
 };
 
 }  // namespace tumble::engines

@@ -23,7 +23,7 @@ const std::vector<StackSamples::Part>& time_parts() {
        {"tumble::collision::", "tumble::engines::find_impact",
         "tumble::engines::FlightImpactDetection::", "tumble::engines::ImpactDetection::"}},
       {"who may meet",
-       {"tumble::collision::overlapping_pairs",
+       {"tumble::collision::overlapping_pairs", "tumble::collision::NearBoxes::",
         "tumble::engines::ActivePairs::", "tumble::engines::ImpactDetection::candidates"}},
   };
   return parts;
