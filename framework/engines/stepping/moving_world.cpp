@@ -495,8 +495,11 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
 
 collision::Pose MovingWorld::pose_at(int body, double t) {
   if (t != time_ && t != target_) return motion_at(body, t).pose;
-  const RigidBodyState state = path(body, t);
-  return {state.com_world, state.world_from_body};
+  const auto pose = [](const RigidBodyState& state) -> collision::Pose {
+    return {state.com_world, state.world_from_body};
+  };
+  if (!can_move(body)) return pose(still_state(body, t));
+  return pose(t == time_ ? states_[body] : path_end(body));
 }
 
 collision::MotionBounds MovingWorld::work_out_bounds(int body) {

@@ -105,6 +105,7 @@ void SmoothPath::find_polynomials() const {
       std::max((2.0 * phi_[2]).norm(), (2.0 * phi_[2] + 6.0 * phi_[3]).norm()) / (h_ * h_);
   // |J'| <= |phi'| / 2 + |phi'| / 3
   bounds_.angular_acceleration = second + bounds_.angular_speed * bounds_.angular_speed;
+  at_start_ = motion_of(0.0);
 }
 
 Vector3d SmoothPath::omega_world(double s, Quaterniond& world_from_body) const {
@@ -130,14 +131,17 @@ RigidBodyState SmoothPath::at(double t) const {
   return state;
 }
 
-collision::MotionState SmoothPath::motion_at(double t) const {
-  const double s = (t - t0_) / h_;
-  work_out();
+collision::MotionState SmoothPath::motion_of(double s) const {
   collision::MotionState motion;
   motion.pose.com_world = value(x_, s);
   motion.omega_world = omega_world(s, motion.pose.world_from_body);
   motion.velocity_world = slope(x_, s) / h_;
   return motion;
+}
+
+collision::MotionState SmoothPath::motion_at(double t) const {
+  work_out();
+  return t == t0_ ? at_start_ : motion_of((t - t0_) / h_);
 }
 
 }  // namespace tumble::engines

@@ -55,6 +55,7 @@ class SmoothPath {
 
  private:
   Vector3d omega_world(double s, Quaterniond& world_from_body) const;
+  collision::MotionState motion_of(double s) const;
 
   void find_polynomials() const;
 
@@ -68,6 +69,7 @@ class SmoothPath {
   Momenta momenta_ = Momenta::kOfPath;
   Vector3d momentum_[2], angular_momentum_[2];  // at the ends
   mutable collision::MotionBounds bounds_;
+  mutable collision::MotionState at_start_;  // a search for impacts asks for it once a pair
 };
 
 }  // namespace tumble::engines
