@@ -113,6 +113,12 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
   collision::MotionBounds bounds;
   if (measures_path && bound_turning(body, duration, bounds)) return duration;
   const Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
+  // |omega| <= (|L| + |torque| h) / I_min: nearly always that is enough
+  const double momentum =
+      states_[body].angular_momentum_world.norm() + disturbance.torque * duration;
+  if (!measures_path &&
+      (1.0 + kUnder) * momentum * duration <= kMostTurnInStep * principal_of(body).moments[0])
+    return duration;
   const double speed =
       bound_rotation(states_[body], world_.bodies[body].inertia, principal_of(body), disturbance)
           .angular_speed;
