@@ -11,6 +11,7 @@
 #include "framework/core/math.h"
 #include "framework/core/numbers.h"
 #include "framework/dynamics/body.h"
+#include "framework/engines/contact/pair_table.h"
 
 namespace tumble::engines {
 
@@ -33,7 +34,8 @@ struct ContactMemory {
   std::set<Pair> persistent;  // pairs in contact
   double longest_step = 0.0;  // so far, at least that of the scene's grid [s]
   // Warm start: of the last step, and of attempts at the one that has begun.
-  std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
+  PairTable<std::vector<KnownImpulse>> last_impulses;
+  std::map<Pair, std::vector<KnownImpulse>> tried_impulses;
   // What contacts pressed bodies with in the last step that was not very short, its mean: of bodies
   // on which forces act that follow their motion (MovingWorld::lead_pressed).
   std::map<int, Wrench> pressing;

@@ -15,7 +15,7 @@ void ContactReach::clear() {
 }
 
 double ContactReach::of(Pair pair) const {
-  if (const auto known = reach_of_.find(pair); known != reach_of_.end()) return known->second;
+  if (const double* known = reach_of_.find(pair)) return *known;
   return farthest(pair);
 }
 
@@ -143,7 +143,7 @@ std::vector<ContactReach::Pair> ContactReach::look(const std::vector<Pair>& cand
   for (const Near& of : near) {
     const double room = bend(of.pair) + 2 * geometry_.large_island_margin(of.pair);
     if (of.distance <= room || persistent.contains(of.pair))
-      reach_of_[of.pair] = std::min(farthest(of.pair), of.reach + room);
+      reach_of_.enter(of.pair, std::min(farthest(of.pair), of.reach + room));
   }
   return pairs;
 }

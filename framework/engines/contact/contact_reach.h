@@ -3,12 +3,12 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "framework/engines/contact/contact_geometry.h"
+#include "framework/engines/contact/pair_table.h"
 #include "framework/engines/stepping/moving_world.h"
 
 namespace tumble::engines {
@@ -51,7 +51,7 @@ class ContactReach {
   // by body: how far the path of the step may be from where it leads without contacts [m]
   std::vector<double> bends_;
   std::vector<Velocity> velocities_;  // by body, at the step's start
-  std::map<Pair, double> reach_of_;   // of pairs that may meet [m]
+  PairTable<double> reach_of_;        // of pairs that may meet [m]
 };
 
 }  // namespace tumble::engines

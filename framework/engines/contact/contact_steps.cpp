@@ -81,7 +81,7 @@ double PersistentContacts::turn_of_normals(const ContactIsland& island,
                                            const std::vector<RigidBodyState>& ends) const {
   double turn = 0.0;
   for (const Pair& pair : island.pairs) {
-    if (!geometry_.are_balls(pair) || points_.at(pair).empty()) continue;
+    if (!geometry_.are_balls(pair) || points_.find(pair)->empty()) continue;
     const auto end = [&](int body) -> Vector3d {
       return moving_.world().bodies[body].immovable()
                  ? prescribed_position(moving_.world().bodies[body], moving_.target())

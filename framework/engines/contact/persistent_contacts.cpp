@@ -96,7 +96,7 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
 StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
   StepContacts contacts;
   for (const Pair& pair : island.pairs)
-    for (const collision::ManifoldPoint& point : points_.at(pair)) {
+    for (const collision::ManifoldPoint& point : *points_.find(pair)) {
       if (!locates() && !reach_.may_close(pair, point, moving_.target() - moving_.time())) continue;
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
       const bool is_apart =
@@ -133,7 +133,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     ContactManifold points = geometry_.points_at(pair, moving_.states(), reach_.of(pair));
     if (points.empty()) continue;
     touching.push_back(pair);
-    points_.emplace(pair, std::move(points));
+    points_.enter(pair, std::move(points));
   }
   if (touching.empty()) {
     memory_.pressing.clear();
@@ -148,13 +148,13 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   for (const ContactIsland& island : islands_)
     if (island.large && locates())
       memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
-  if (in_step)
-    for (ContactIsland& island : islands_) {
+  if (in_step) {
+    for (const Pair& pair : touching) points_.enter(pair, {});
+    for (const ContactIsland& island : islands_)
       for (const Pair& pair : island.pairs)
-        points_.emplace(pair, island.large || !reach_.may_meet(pair)
-                                  ? ContactManifold{}
-                                  : geometry_.points_at(pair, moving_.states(), reach_.of(pair)));
-    }
+        if (!island.large && reach_.may_meet(pair))
+          *points_.find(pair) = geometry_.points_at(pair, moving_.states(), reach_.of(pair));
+  }
   note_near_pairs(candidates);
   pressed_.begin_step(islands_);
   // Every island gets its paths; where one asks for a shorter step, the step begins again for all.

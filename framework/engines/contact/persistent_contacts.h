@@ -45,6 +45,7 @@
 #include "framework/engines/contact/contact_progress.h"
 #include "framework/engines/contact/contact_reach.h"
 #include "framework/engines/contact/large_islands.h"
+#include "framework/engines/contact/pair_table.h"
 #include "framework/engines/contact/position_correction.h"
 #include "framework/engines/contact/pressed_bodies.h"
 #include "framework/engines/contact/sliding_stop.h"
@@ -198,7 +199,7 @@ class PersistentContacts {
   LargeIslands large_;
   // Of the step that has begun:
   std::vector<ContactIsland> islands_;
-  std::map<Pair, ContactManifold> points_;
+  PairTable<ContactManifold> points_;
   std::set<Pair> next_stuck_, next_sharing_;
   std::vector<ContactPoint> forces_;
   // By body, of the island whose step is taken: where it comes out, and the middle of the way

@@ -1,7 +1,6 @@
 /// Impulses that an earlier problem of a pair had: the next one begins with them.
 #pragma once
 
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -29,31 +28,23 @@ class WarmStart {
   void begin_step() { next_.clear(); }
   /// An attempt at the step has found this: the next attempt begins with it.
   void remember_attempt(const StepContacts& contacts, const ContactProblem& problem,
-                        const ContactSolution& solution, double h) {
-    store(contacts, problem, solution, h, memory_.tried_impulses);
-  }
+                        const ContactSolution& solution, double h);
   /// This is what an island's step comes out with.
   void remember(const StepContacts& contacts, const ContactProblem& problem,
-                const ContactSolution& solution, double h) {
-    store(contacts, problem, solution, h, next_);
-  }
+                const ContactSolution& solution, double h);
   /// All islands have their step: the next one begins with what they remember.
-  void end_step() {
-    memory_.last_impulses = std::exchange(next_, {});
-    memory_.tried_impulses.clear();
-  }
+  void end_step();
 
  private:
-  using Impulses = std::map<Pair, std::vector<KnownImpulse>>;
-
   const std::vector<KnownImpulse>* known(Pair pair) const;
+  template <class ImpulsesOf>
   void store(const StepContacts& contacts, const ContactProblem& problem,
-             const ContactSolution& solution, double h, Impulses& impulses) const;
+             const ContactSolution& solution, double h, const ImpulsesOf& impulses_of) const;
 
   const MovingWorld& moving_;
   const ContactGeometry& geometry_;
   ContactMemory& memory_;
-  Impulses next_;
+  std::vector<std::pair<Pair, std::vector<KnownImpulse>>> next_;  // island by island
 };
 
 }  // namespace tumble::engines
