@@ -31,10 +31,12 @@ void PersistentContacts::begin(Pair pair, const collision::Gap& gap) {
 
 void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
-    const collision::Gap gap = geometry_.gap_of(pair, moving_.states());
     const double within =
         std::max(geometry_.margin(pair),
                  geometry_.is_inelastic(pair) ? kSixDigits * geometry_.size_of(pair) : 0.0);
+    // twice: margins are above what a bound is rounded by
+    if (geometry_.least_gap_of(pair, moving_.states()) > 2 * within) continue;
+    const collision::Gap gap = geometry_.gap_of(pair, moving_.states());
     if (gap.distance > within) continue;
     const ContactManifold points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
