@@ -92,6 +92,18 @@ TEST(RunWatch, KeepsTheFirstTheWorstAndTheirNumber) {
   EXPECT_NE(faults[0].remedy.find("0.005 s"), std::string::npos) << faults[0].remedy;
 }
 
+// Two driven plates that close on a box leave steps of a rounding: no step mends that.
+TEST(RunWatch, NamesNoStepThatNobodyRuns) {
+  const auto remedy = [](double step) {
+    RunWatch watch;
+    watch.note(RunWatch::Kind::kOverlapLeft, "'a' and 'b'", {2e-3, 1e-3, 0.1, step});
+    return watch.faults().at(0).remedy;
+  };
+  EXPECT_NE(remedy(1e-4).find("a step of at most 5e-05 s"), std::string::npos) << remedy(1e-4);
+  EXPECT_EQ(remedy(1e-16).find("step"), std::string::npos) << remedy(1e-16);
+  EXPECT_NE(remedy(1e-16).find("more room"), std::string::npos) << remedy(1e-16);
+}
+
 // 16 times what is allowed: half of the step by the fourth root, a sixteenth where contacts make it
 // go with the step itself; four fifths of that to be safe.
 TEST(RunWatch, TheStepThatItNamesGoesByTheOrderOfTheError) {

@@ -141,6 +141,9 @@ std::vector<RunFault> RunWatch::faults() const {
   // A criterion of stability that the step breaks explains all that follows, and its step is
   // computed, not a guess from a size.
   if (std::isfinite(named_step_)) step = named_step_;
+  // what goes wrong in the last rounding of a time is mended by no step
+  constexpr double kShortestNamed = 1e-7;  // [s]
+  if (step < kShortestNamed) step = std::numeric_limits<double>::infinity();
   const std::string said =
       std::isfinite(named_step_) ? fmt::format("{:.4g}", step) : fmt::format("{:.2g}", step);
   for (const auto& [kind, incident] : incidents_) {
@@ -161,7 +164,7 @@ std::vector<RunFault> RunWatch::faults() const {
           fmt::format(": {:.3g} J of the {:.3g} J that moved, were stored or came down",
                       incident.worst.found * incident.worst.whole, incident.worst.whole);
     const std::string remedy = incident.worst.remedy.empty() ? words.remedy : incident.worst.remedy;
-    fault.remedy = remedy;
+    fault.remedy = remedy.empty() ? "another method, or another scene: no step helps" : remedy;
     if (std::isfinite(step))
       fault.remedy =
           fmt::format("{}a step of at most {} s (\"step_s\"){}{}", incident.worst.first_remedy,
