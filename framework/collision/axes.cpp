@@ -12,13 +12,17 @@ namespace {
 // Edges at a smaller angle (rad) are parallel and define no axis: the axes of faces and other edges
 // cover them.
 constexpr double kParallel = 1e-9;
+// An axis this close (rad) to a barred direction is that direction: far above the error of a cross
+// product of edges at an angle of kParallel.
+constexpr double kSameAxis = 1e-6;
 
 // Keeps the best of the axes tested. Cheap rejections first: any known corner of A - B bounds the
 // separation along every axis.
 class Search {
  public:
-  Search(const PlacedPolytope& a, const PlacedPolytope& b, double size)
-      : a_(a), b_(b), handicap_(16 * kEpsilon * size) {}
+  Search(const PlacedPolytope& a, const PlacedPolytope& b, double size,
+         const BarredAxes* barred = nullptr)
+      : a_(a), b_(b), handicap_(16 * kEpsilon * size), barred_(barred) {}
 
   void offer_face_of_a(int face) {
     const Vector3d m = a_.query_from_body * a_.polytope->face_normals[face];
@@ -49,6 +53,7 @@ class Search {
  private:
   void keep(const Vector3d& n, double separation, double handicap, int i, int j) {
     if (!(separation > best_.separation + handicap)) return;
+    if (barred_ && barred_->holds(n)) return;
     best_ = {separation, n};
     if (i < 0) i = a_.lowest(n);
     if (j < 0) j = b_.lowest(-n);
@@ -59,6 +64,7 @@ class Search {
   const PlacedPolytope& a_;
   const PlacedPolytope& b_;
   double handicap_;
+  const BarredAxes* barred_;
   Axis best_;
   bool has_corner_ = false;
   Vector3d corner_ = Vector3d::Zero();  // of A - B, foremost along the best axis
@@ -94,8 +100,16 @@ void edges_between(const PlacedPolytope& piece, const Indices& vertices, Edges& 
 
 }  // namespace
 
-Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size) {
-  Search search(a, b, size);
+bool BarredAxes::holds(const Vector3d& n) const {
+  const auto same = [&](const std::optional<Vector3d>& direction) {
+    return direction && (*direction - n).norm() < kSameAxis;
+  };
+  return same(first) || same(second);
+}
+
+Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size,
+               const BarredAxes* barred) {
+  Search search(a, b, size, barred);
   for (int f = 0; f < static_cast<int>(a.polytope->face_normals.size()); ++f)
     search.offer_face_of_a(f);
   for (int f = 0; f < static_cast<int>(b.polytope->face_normals.size()); ++f)

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "framework/collision/polytope.h"
 
@@ -19,10 +20,18 @@ struct Axis {
   Vector3d normal_b_to_a = Vector3d::UnitZ();
 };
 
+/// Directions that no axis may have, to a millionth of a radian. Unit, frame of the query.
+struct BarredAxes {
+  std::optional<Vector3d> first, second;
+  bool holds(const Vector3d& n) const;
+};
+
 /// The best of all axes. Separation -infinity for two points, which have no axis.
+/// @param barred  may be null
 /// Cost: a cross product for every pair of edge directions, and a loop over all vertices for the
 /// few axes that may be the best.
-Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size);
+Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size,
+               const BarredAxes* barred = nullptr);
 
 /// The best of the axes within about `angle` (rad) of a direction: those of the faces, edges and
 /// corners that face each other along it. Separation -infinity where there is none.

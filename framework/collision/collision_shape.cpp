@@ -74,6 +74,7 @@ Polytope triangle_polytope(const TriangleMesh& mesh, const Face& face) {
   const Vector3d n = across(mesh, face).normalized();
   const bool flat = n.allFinite() && n.squaredNorm() > 0;
   if (flat) piece.face_normals = {n, -n};
+  piece.is_face = flat;
   for (int i = 0; i < 3; ++i) {
     const Vector3d edge = piece.vertices[(i + 1) % 3] - piece.vertices[i];
     add_direction(piece.edge_directions, edge, true);

@@ -39,7 +39,7 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
     for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
       const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
       const PolytopeGap found =
-          polytope_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
+          surface_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
       if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSamePlane)
         continue;
       for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance))

@@ -20,8 +20,10 @@ struct Gap {
 
 /// The gap between two solids.
 /// Round shapes and half-spaces: closed forms, also when overlapping. Polytopes: see
-/// polytope_gap.h. Surfaces that are not convex: the minimum over their faces; an overlap gives
-/// some negative number, and a solid entirely inside another is not detected (see `overlapping`).
+/// polytope_gap.h. Surfaces that are not convex: the minimum over their faces, which have an inner
+/// and an outer side (`surface_gap`); an overlap gives some negative number, also where no face
+/// crosses another because the solids are aligned; a solid entirely inside another is not detected
+/// (see `overlapping`).
 /// @param cache  of this pair, may be null: see pair_cache.h
 /// @return distance with an error of a few roundings of the solids' size and of the distance of
 ///   their centres. Infinite between two half-spaces.

@@ -94,8 +94,8 @@ class Nearest {
   double reach() const { return std::max(std::min(limit_, best_.gap.distance), 0.0) + rounding_; }
   void test(int i, int j) {
     const PolytopeGap found =
-        polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach(), points_);
-    if (found.beyond || found.distance > limit_) return;
+        surface_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach(), points_);
+    if (found.beyond || found.grazes || found.distance > limit_) return;
     const bool first = std::pair(i, j) < std::pair(best_.piece_a, best_.piece_b);
     if (found.distance < best_.gap.distance || (found.distance == best_.gap.distance && first))
       best_ = {i, j, found};

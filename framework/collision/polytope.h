@@ -15,6 +15,8 @@ struct Polytope {
   std::vector<Vector3d> vertices;  // at least one [m]
   // unit, outward; a flat triangle has its two faces and its three sides
   std::vector<Vector3d> face_normals;
+  // a face of a solid's surface: the first of its normals points out of the solid
+  bool is_face = false;
   std::vector<Vector3d> edge_directions;   // unit, each direction once
   std::vector<std::pair<int, int>> edges;  // of vertices, each once
 

@@ -25,6 +25,11 @@ constexpr std::size_t kFewPairs = 32;
 // Angles (rad) around the direction from the expanding polytope algorithm within which the axis is
 // searched: usually, and where facets are slivers.
 constexpr double kSearchAngles[] = {1e-7, 1e-3};
+// Relative to the size: faces closer than this touch. A few roundings, and less than what
+// searches among pieces look beyond their limit.
+constexpr double kTouchingFaces = 32 * kEpsilon;
+// rad: faces at a smaller angle lie in one plane.
+constexpr double kSinglePlane = 1e-6;
 
 PolytopeGap from_simplex(const PlacedPolytope& a, const PlacedPolytope& b, const GjkResult& found) {
   PolytopeGap gap;
@@ -89,6 +94,33 @@ PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, doubl
   if (!std::isfinite(axis.separation)) {  // two points
     if (found.verdict == Apartness::kApart) return from_simplex(a, b, found);
     return {0.0, a.vertex(0), b.vertex(0), Vector3d::UnitZ()};
+  }
+  return from_axis(a, b, axis, size, points);
+}
+
+PolytopeGap surface_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit,
+                        Points points) {
+  PolytopeGap found = polytope_gap(a, b, size, limit, points);
+  const double touching = kTouchingFaces * size;
+  if (found.beyond || std::abs(found.distance) > touching) return found;
+  const auto outward = [](const PlacedPolytope& piece) {
+    return Vector3d(piece.query_from_body * piece.polytope->face_normals.front());
+  };
+  BarredAxes from_within;
+  if (a.polytope->is_face) from_within.first = outward(a);
+  if (b.polytope->is_face) from_within.second = -outward(b);
+  if (!from_within.holds(found.normal_b_to_a)) return found;
+  const Axis axis = best_axis(a, b, size, &from_within);
+  if (!std::isfinite(axis.separation)) return found;  // a point has no axis of its own
+  const auto apart_along = [&](const std::optional<Vector3d>& n) {
+    return n && separation_along(a, b, *n) >= -touching;
+  };
+  // of faces in one plane the two directions are one line
+  if (axis.separation < -touching && apart_along(from_within.first) &&
+      apart_along(from_within.second) &&
+      from_within.first->cross(*from_within.second).norm() > kSinglePlane) {
+    found.grazes = true;
+    return found;
   }
   return from_axis(a, b, axis, size, points);
 }

@@ -172,8 +172,8 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
   for (const auto& [i, j] : pieces_within(query, relative.reach(bound.duration) + radius, cache)) {
     if (i == nearest.piece_a && j == nearest.piece_b) continue;
     const double limit = relative.reach(bound.duration) + radius;
-    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size,
-                                           limit, Points::kUnwanted);
+    const PolytopeGap found =
+        surface_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, limit, Points::kUnwanted);
     if (!found.beyond && found.distance <= limit) shorten_by_pair(i, j, found);
   }
   return bound;
