@@ -36,14 +36,21 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
   } else if (!a.is_ball() && !b.is_ball()) {
     const Query query(a, pose_a, b, pose_b);
     const double reach = std::max(gap.distance, 0.0) + tolerance;
-    for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
-      const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
-      const PolytopeGap found =
-          surface_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
-      if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSamePlane)
-        continue;
-      for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance))
-        points.push_back(pose_b.com_world + p);
+    const auto pairs = pieces_within(query, reach, nullptr);
+    // The middle of many normals is that of no pair: then the pairs that it separates.
+    for (const bool of_any_normal : {false, true}) {
+      if (!points.empty()) break;
+      for (const auto& [i, j] : pairs) {
+        const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
+        const PolytopeGap found =
+            surface_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
+        if (found.beyond || found.distance > reach) continue;
+        if (of_any_normal ? separation_along(placed_a, placed_b, n) < -tolerance
+                          : (found.normal_b_to_a - n).norm() > kSamePlane)
+          continue;
+        for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance))
+          points.push_back(pose_b.com_world + p);
+      }
     }
   }
   if (points.empty()) points.push_back(gap.point_a_world);

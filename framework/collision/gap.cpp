@@ -6,6 +6,7 @@
 
 #include "framework/collision/ellipsoid.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/collision/touching_normal.h"
 #include "framework/core/error.h"
 #include "framework/core/numbers.h"
 
@@ -70,7 +71,11 @@ Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionSha
 
 Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query,
                   const Vector3d& com_b_world, PairCache* cache) {
-  const PolytopeGap best = nearest_pieces(query, kInfinity, cache, Points::kWanted).gap;
+  const NearestPieces nearest = nearest_pieces(query, kInfinity, cache, Points::kWanted);
+  const bool of_balls = a.is_ball() || b.is_ball(),
+             of_several = a.is_closed_surface() || b.is_closed_surface();
+  const PolytopeGap best =
+      of_several && !of_balls ? with_common_normal(query, nearest, cache) : nearest.gap;
   Gap gap;
   gap.distance = best.distance - (a.radius() + b.radius());
   gap.normal_b_to_a_world = best.normal_b_to_a;

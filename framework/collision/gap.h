@@ -23,7 +23,8 @@ struct Gap {
 /// polytope_gap.h. Surfaces that are not convex: the minimum over their faces, which have an inner
 /// and an outer side (`surface_gap`); an overlap gives some negative number, also where no face
 /// crosses another because the solids are aligned; a solid entirely inside another is not detected
-/// (see `overlapping`).
+/// (see `overlapping`). Where such surfaces touch, the normal is one that separates all parts that
+/// touch there (touching_normal.h).
 /// @param cache  of this pair, may be null: see pair_cache.h
 /// @return distance with an error of a few roundings of the solids' size and of the distance of
 ///   their centres. Infinite between two half-spaces.
