@@ -19,10 +19,10 @@ namespace tumble::engines {
 namespace {
 
 // bodies in persistent contact pass an impact on in ever smaller parts; but a light one between
-// heavy ones goes to and fro as fast as it was hit: rounds go on while what approaches is faster
-// than this part of the first round's
+// heavy ones goes to and fro as fast as it was hit, where it rebounds by this much and nothing is
+// driven: rounds go on while what approaches is faster than this part of the first round's
 constexpr int kRoundsAmongContacts = 60;
-constexpr double kStillFast = 0.05;
+constexpr double kRebounds = 0.5, kStillFast = 0.05;
 // impulses at one instant: more are reported as one for each pair
 constexpr std::size_t kMostEventsPerPair = 64;
 // of the largest change of a velocity at that instant: what another order changes and is worth a
@@ -380,10 +380,18 @@ bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const Touc
       fastest = std::max(fastest, -events[k].normal_velocity_before);
     return fastest;
   };
+  const bool goes_on = !contact_threshold_ ||
+                       std::all_of(in_turn.begin(), in_turn.end(), [&](const TouchingPair* pair) {
+                         const MovingWorld& moving = work.bodies.moving();
+                         return restitution_of(work.world(), *pair) >= kRebounds &&
+                                !moving.is_driven(pair->a) && !moving.is_driven(pair->b);
+                       });
   double at_first = 0.0, now = 0.0;
   bool again = true;
   for (int round = 1; again && round < kMostImpactRounds; ++round) {
-    if (contact_threshold_ && round >= kRoundsAmongContacts && now <= kStillFast * at_first) break;
+    if (contact_threshold_ && round >= kRoundsAmongContacts &&
+        (!goes_on || now <= kStillFast * at_first))
+      break;
     const std::size_t first = events.size();
     again = false;
     for (const TouchingPair* pair : in_turn) again = collide(work, *pair, threshold) || again;
