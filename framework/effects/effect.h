@@ -313,6 +313,14 @@ class Effect : public scene::Words {
                                 std::vector<Constraint>&) const {}
   virtual void append_carriers(const World&, std::vector<Carrier>&) const {}
 
+  /// How long the next step may be from these states, for methods that sample it to see all that
+  /// acts: what begins or ends within so short a way that a step passes over it is met by shorter
+  /// ones. @param asked  the step that is to be taken [s] @return  infinite: any. [s]
+  virtual double longest_step(const World&, const std::vector<RigidBodyState>& /*states*/,
+                              double /*asked*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
+
   // What is recorded and reported of it -----------------------------------------------------------
 
   /// Where a frame keeps what its entries pull with; nullptr where nothing of it is recorded.

@@ -109,4 +109,19 @@ Submerged Floatable::under(const Vector3d& normal_body, double offset) const {
   return submerged_mesh(std::get<TriangleMesh>(solid_), normal_body, offset);
 }
 
+std::pair<double, double> Floatable::reach(const Vector3d& direction_body) const {
+  if (const auto* sphere = std::get_if<Sphere>(&solid_)) return {-sphere->radius, sphere->radius};
+  if (const auto* ellipsoid = std::get_if<Ellipsoid>(&solid_)) {
+    const double middle = direction_body.dot(ellipsoid->center_body),
+                 half = direction_body.cwiseProduct(ellipsoid->semi_axes_body).norm();
+    return {middle - half, middle + half};
+  }
+  std::pair<double, double> reach{radius_, -radius_};
+  for (const Vector3d& vertex : std::get<TriangleMesh>(solid_).vertices) {
+    const double along = direction_body.dot(vertex);
+    reach = {std::min(reach.first, along), std::max(reach.second, along)};
+  }
+  return reach;
+}
+
 }  // namespace tumble::effects

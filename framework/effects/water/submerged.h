@@ -2,6 +2,7 @@
 /// surfaces.
 #pragma once
 
+#include <utility>
 #include <variant>
 
 #include "framework/geometry/shape.h"
@@ -38,6 +39,8 @@ class Floatable {
   explicit Floatable(const Shape& shape);
 
   Submerged under(const Vector3d& normal_body, double offset) const;
+  /// How far it reaches along a direction: the least and the largest x . direction. (2) [m]
+  std::pair<double, double> reach(const Vector3d& direction_body) const;
   const Submerged& whole() const { return whole_; }
   // of a ball about the body's origin that holds it [m]
   double radius() const { return radius_; }

@@ -38,7 +38,7 @@ WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
   choose_coordinates();
   // Bodies go where they would without each other. A sleeper that would be met takes the step
   // awake.
-  stages.begin(target);
+  stages.begin(followed(target));
   ++counters_.steps;
   if (searches_) taken.searched = pairs_in_step();
   if (stages.wake_approached(taken.searched)) return give_up();
@@ -61,6 +61,14 @@ WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
   if (searches_) remove_overlaps(taken);
   if (!earliest) moving_.watch_links(reached - start);
   return taken;
+}
+
+// The step's target, or an earlier one up to which what acts can be followed.
+double WorldStep::followed(double target) {
+  const double asked = target - moving_.time(), longest = moving_.longest_step(asked);
+  if (!(longest < asked)) return target;
+  ++counters_.shortened_steps;
+  return moving_.time() + longest;
 }
 
 // Of what is linked: contacts push bodies of six coordinates each.

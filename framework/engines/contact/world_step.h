@@ -109,6 +109,7 @@ class WorldStep {
     std::size_t trigger = 0;        // which of them stopped the step
   };
 
+  double followed(double target);
   void choose_coordinates();
   std::vector<Pair> pairs_in_step();
   bool keep_contacts(Taken& taken, StepStages& stages);

@@ -169,6 +169,8 @@ class LinkedBodies final : effects::GroupPlaces {
   std::vector<RigidBodyState> advance_reduced(std::vector<RigidBodyState> local, double t,
                                               double h);
   VectorXd begin_reduced(std::vector<RigidBodyState>& local, double t);
+  void keep_momentum(const std::vector<RigidBodyState>& before, double h,
+                     std::vector<RigidBodyState>& after) const;
   VectorXd reduced_rate(double t, const VectorXd& y);
   void accelerate_tree(double t, const VectorXd& y);
   VectorXd multipliers_of_tree(std::vector<RigidBodyState> local, double t);

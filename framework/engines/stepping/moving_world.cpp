@@ -33,6 +33,13 @@ double measure_path_bend(const Laws& laws) {
   }
 }
 
+std::vector<const effects::Effect*> acting_in(const World& world) {
+  std::vector<const effects::Effect*> acting;
+  for (const effects::Effect* effect : effects::all())
+    if (effect->count_in(world) > 0) acting.push_back(effect);
+  return acting;
+}
+
 }  // namespace
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
@@ -59,6 +66,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
   for (std::size_t k = 0; k < effects::all().size(); ++k)
     if (auto acting = effects::all()[k]->steady_forces({world_, laws_, counters_.effect_calls[k]}))
       steady_.push_back({static_cast<int>(k), std::move(acting)});
+  acting_ = acting_in(world_);
   group_of_.assign(world_.bodies.size(), -1);
   for (LinkedGroup& group : groups_of_linked_bodies(world_)) {
     for (const int body : group.bodies) group_of_[body] = static_cast<int>(linked_.size());
@@ -235,6 +243,7 @@ void MovingWorld::take_in(const scene::Scene& more) {
     if (auto acting = effect.steady_forces({world_, laws_, counters_.effect_calls[k]}))
       steady_.insert(place, {static_cast<int>(k), std::move(acting)});
   }
+  acting_ = acting_in(world_);
 }
 
 RigidBodyState MovingWorld::still_state(int body, double t) const {
@@ -409,6 +418,13 @@ void MovingWorld::lead_pressed(const std::map<int, Wrench>& pressing) {
                                         [&](int body) { return pressing_.contains(body); });
     if (is_pressed && !asleep(group.bodies().front())) lead(group);
   }
+}
+
+double MovingWorld::longest_step(double asked) const {
+  double longest = std::numeric_limits<double>::infinity();
+  for (const effects::Effect* effect : acting_)
+    longest = std::min(longest, effect->longest_step(world_, states_, asked));
+  return longest;
 }
 
 void MovingWorld::begin_step(double target) {

@@ -160,6 +160,9 @@ class MovingWorld {
     return paths_[body].smooth;
   }
 
+  /// How long the next step may be for the effects that act, where `asked` would be taken.
+  /// infinite: any. [s]
+  double longest_step(double asked) const;
   /// Begins a step from the committed time: works out where all come out. The motion's bounds are
   /// worked out where motion() asks for them.
   void begin_step(double target);
@@ -254,6 +257,7 @@ class MovingWorld {
   std::vector<std::optional<Rest>> rests_;
   // asked for often: a byte each is read faster than a bit
   std::vector<char> asleep_;
+  std::vector<const effects::Effect*> acting_;
   std::vector<Steady> steady_;  // of the effects that act on bodies by themselves
   std::vector<Path> paths_;
   mutable PairCaches caches_;

@@ -306,9 +306,56 @@ void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) 
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = tree_->state(static_cast<int>(i), 0.0);
 }
 
+// What nothing but gravity acts on keeps its angular momentum about its centre of mass, and its
+// momentum changes by m g h. In coordinates of joints a method keeps both to its order only: the
+// rest is given back to the bodies as to one rigid body, which no link notices.
+void LinkedBodies::keep_momentum(const std::vector<RigidBodyState>& before, double h,
+                                 std::vector<RigidBodyState>& after) const {
+  struct Whole {
+    double mass = 0.0;
+    Vector3d centre = Vector3d::Zero(), momentum = Vector3d::Zero(), spin = Vector3d::Zero();
+  };
+  const auto whole_of = [&](const std::vector<RigidBodyState>& states) {
+    Whole whole;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      whole.mass += seen_[i].inertia.mass;
+      whole.centre += seen_[i].inertia.mass * states[i].com_world;
+      whole.momentum += states[i].momentum_world;
+    }
+    whole.centre /= whole.mass;
+    for (const RigidBodyState& state : states)
+      whole.spin += state.angular_momentum_world +
+                    (state.com_world - whole.centre).cross(state.momentum_world);
+    return whole;
+  };
+  const Whole then = whole_of(before), now = whole_of(after);
+  Matrix3d inertia = Matrix3d::Zero();  // of the whole, about its centre
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const Matrix3d R = after[i].world_from_body.toRotationMatrix();
+    const Vector3d arm = after[i].com_world - now.centre;
+    inertia +=
+        R * seen_[i].inertia.inertia_body * R.transpose() +
+        seen_[i].inertia.mass * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
+  }
+  const Vector3d gravity_world = world_.gravity_world.value_or(Vector3d::Zero()),
+                 velocity = (then.momentum - now.momentum) / now.mass + h * gravity_world,
+                 omega = least_squares(inertia, then.spin - now.spin, kRedundant);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    RigidBodyState& state = after[i];
+    state.momentum_world +=
+        seen_[i].inertia.mass * (velocity + omega.cross(Vector3d(state.com_world - now.centre)));
+    state.angular_momentum_world +=
+        angular_momentum_of(omega, state.world_from_body, seen_[i].inertia);
+  }
+}
+
 std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyState> local,
                                                           double t, double h) {
   const VectorXd y = begin_reduced(local, t);
+  const bool falls_freely =
+      fixed_.empty() && pulling_.empty() &&
+      std::all_of(feels_gravity_.begin(), feels_gravity_.end(), [](char feels) { return feels; });
+  const std::vector<RigidBodyState> before = falls_freely ? local : std::vector<RigidBodyState>();
   choose_rows(local, t);
   const OdeFunction f =
       SplitOde{[&](double time, const VectorXd& state) {
@@ -327,6 +374,7 @@ std::vector<RigidBodyState> LinkedBodies::advance_reduced(std::vector<RigidBodyS
   if (!loop_rows_.empty() && world_.stabilisation &&
       world_.stabilisation->kind == scene::StabilisationKind::kProjection)
     project_local(local, t + h, true);
+  if (falls_freely) keep_momentum(before, h, local);
   return local;
 }
 
