@@ -191,7 +191,7 @@ TEST(Water, WhatEntersItFastIsBrakedByWhatIsUnder) {
     const double depth = depth_after(0.25, start_speed, mass, height, drag, under);
     for (const char* engine : {"rd", "tw"}) {
       const Trajectory result = run_by(engine, scene);
-      const double reached = radius - result.frames.back().bodies[0].com_world.z();
+      const double reached = radius - result.frames.back().poses[0].com_world.z();
       EXPECT_NEAR(reached, depth, 2e-3 * (std::abs(depth) + height))
           << engine << ", lot " << i << (is_ball ? ": ball" : ": box") << " of " << height
           << " m at " << start_speed << " m/s, drag " << drag << ", density " << density;
