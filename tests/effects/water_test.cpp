@@ -192,7 +192,8 @@ TEST(Water, WhatEntersItFastIsBrakedByWhatIsUnder) {
     for (const char* engine : {"rd", "tw"}) {
       const Trajectory result = run_by(engine, scene);
       const double reached = radius - result.frames.back().poses[0].com_world.z();
-      EXPECT_NEAR(reached, depth, 2e-3 * (std::abs(depth) + height))
+      // where steps pass over the level, up to a quarter
+      EXPECT_NEAR(reached, depth, 5e-4 * (std::abs(depth) + height))
           << engine << ", lot " << i << (is_ball ? ": ball" : ": box") << " of " << height
           << " m at " << start_speed << " m/s, drag " << drag << ", density " << density;
     }
