@@ -130,6 +130,11 @@ struct ContactConstants {
   /// Larger: it comes back as speed. Smaller: more corrections.
   double restored = 0.2;
 
+  /// of the smaller body: corners of a pair in contact that are this near take part in an impact
+  /// that passes through it. Larger: corners that have opened are struck. Smaller: the path within
+  /// a step, which stands off by 1e-7 or so, decides through which corner an impact passes first.
+  double impact_band = 1e-6;
+
   // ---- Activation: contacts that become active within a step
   /// of the time until the gap closes: the step ends before, and a second, short one takes it all
   /// the way. Larger: the prediction's error leads too deep. Smaller: longer second steps.

@@ -186,10 +186,11 @@ std::vector<Vector3d> touching_points(const collision::CollisionShape& a,
   return points;
 }
 
-std::vector<Vector3d> ImpactDetection::touching_points(Pair pair, const collision::Gap& gap) const {
+std::vector<Vector3d> ImpactDetection::touching_points(Pair pair, const collision::Gap& gap,
+                                                       double band) const {
   return engines::touching_points(moving_.shape(pair.first), pose_of(pair.first),
                                   moving_.shape(pair.second), pose_of(pair.second), gap,
-                                  touching_distance(pair));
+                                  touching_distance(pair) + band);
 }
 
 // The last guard: bounds hold for every method of integration that moves bodies smoothly, but what

@@ -53,7 +53,9 @@ class ImpactDetection {
   double touching_distance(Pair pair) const;
   /// The middle of where the two touch, then the corners of that region if it is more than a point.
   /// World frame. [m]
-  std::vector<Vector3d> touching_points(Pair pair, const collision::Gap& gap) const;
+  /// @param band  that much farther apart than the nearest, points touch too [m]
+  std::vector<Vector3d> touching_points(Pair pair, const collision::Gap& gap,
+                                        double band = 0.0) const;
   /// Takes back what rounding left of overlaps. Notes what it cannot take back (kOverlapLeft).
   void separate(const std::vector<Pair>& pairs);
 

@@ -136,6 +136,9 @@ class PersistentContacts {
   double open_distance(Pair pair) const { return kContact.open_band * geometry_.margin(pair); }
   /// Friction of a pair: the smaller of the two.
   double friction(Pair pair) const { return geometry_.friction(pair); }
+  /// How much farther away than its nearest a point of a pair in contact takes part in an impact
+  /// that passes through the pair. [m]
+  double impact_band(Pair pair) const { return kContact.impact_band * geometry_.size_of(pair); }
 
   /// Goes on from what is remembered of another state; what was known of a step is forgotten.
   void recall(ContactMemory memory);

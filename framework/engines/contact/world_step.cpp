@@ -161,12 +161,13 @@ WorldStep::TouchingPairs WorldStep::touching_pairs(const std::vector<Pair>& pair
   TouchingPairs touching;
   for (const Pair& pair : pairs) {
     const collision::Gap gap = impact_detection_.gap(pair);
-    if (pair != trigger && !is_in_contact(pair) &&
-        !(gap.distance <= impact_detection_.touching_distance(pair)))
+    const bool lasts = is_in_contact(pair);
+    if (pair != trigger && !lasts && !(gap.distance <= impact_detection_.touching_distance(pair)))
       continue;
     if (pair == trigger) touching.trigger = touching.all.size();
+    const double band = lasts ? contacts_->impact_band(pair) : 0.0;
     touching.all.push_back(
-        {pair.first, pair.second, gap, impact_detection_.touching_points(pair, gap)});
+        {pair.first, pair.second, gap, impact_detection_.touching_points(pair, gap, band)});
   }
   return touching;
 }
