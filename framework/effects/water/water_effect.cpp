@@ -19,8 +19,8 @@ namespace {
 const Vector3d kSheetColor(0.10, 0.36, 0.52);
 // of gravity: across the vertical, which decimals may leave
 constexpr double kSinePerTurn = 1e-12;
-// of a body's height, in a step through the level: RK4 then leaves up to 1.5e-4 of the depth and the
-// height (Water.WhatEntersItFastIsBrakedByWhatIsUnder, 200 by lot; with a half 1.5e-3)
+// of a body's height, in a step through the level: RK4 then leaves up to 1.5e-4 of the depth and
+// the height (Water.WhatEntersItFastIsBrakedByWhatIsUnder, 200 by lot; with a half 1.5e-3)
 constexpr double kPartPassed = 0.125;
 
 /// What is under the level, in the body's frame, and the level's normal there.
