@@ -58,6 +58,29 @@ TEST(FlatLandings, SlideOnAsTheirCornersBear) {
   }
 }
 
+// A box in contact whose far corners stand off by less than is seen: a ball that drops on its middle
+// drives it into the floor at all corners, as if it lay flat. Struck at the near corners alone it
+// would turn, and the far ones would lift these again.
+TEST(FlatLandings, WhatIsStruckInContactLiesOnAllItsCorners) {
+  const Vector3d half(0.2, 0.15, 0.1);
+  for (const double tilt : {1e-9, 1e-8, 5e-8}) {  // the far corners: up to 2e-8 m
+    scene::Scene scene = lands(half, 0.0, 0.0, Vector3d::Zero(), 0.1);
+    scene.bodies[0].position_m.z() = half.z() + half.x() * tilt;
+    scene.bodies[0].world_from_body = Eigen::AngleAxisd(tilt, Vector3d::UnitY());
+    // it meets the box before gravity has closed the corners (2e-5 s)
+    scene.bodies.push_back(ball("ball", 0.05, 1.0, {0, 0, 2 * half.z() + 0.05 + 1e-6}, {0, 0, -2}));
+    scene.bodies.back().restitution = 0.5;
+    for (const char* engine : {"rd", "tw"}) {
+      SCOPED_TRACE(fmt::format("tilt {}, {}", tilt, engine));
+      const Trajectory run = run_on(engine, scene);
+      EXPECT_EQ(run.stopped_by, "");
+      for (const Frame& frame : run.frames)
+        // of the tilt, whose corners close without rebound
+        ASSERT_NEAR(frame.poses[0].omega_world.norm(), 0.0, 1e-5) << frame.time;
+    }
+  }
+}
+
 // With rebounds and on edges, where it may tumble: by lot, along x.
 TEST(FlatLandings, StaySymmetric) {
   Random random(4);
