@@ -23,6 +23,8 @@ namespace {
 // driven: rounds go on while what approaches is faster than this part of the first round's
 constexpr int kRoundsAmongContacts = 60;
 constexpr double kRebounds = 0.5, kStillFast = 0.05;
+// of the first round's approach: where rounds end with more to rebound, it is worth a word
+constexpr double kSeenRebound = 0.02;
 // impulses at one instant: more are reported as one for each pair
 constexpr std::size_t kMostEventsPerPair = 64;
 // of the largest change of a velocity at that instant: what another order changes and is worth a
@@ -73,6 +75,8 @@ double friction_of(const World& world, const TouchingPair& pair) {
 struct SequentialImpacts::Work {
   ImpactBodies bodies;  // as they are between impulses
   Resolution result;
+  // once rounds have ended: what approaches still and would rebound, of the first round's fastest
+  double rebound_left = 0.0;
   // by pair and point: places stay as they are
   std::map<std::tuple<const TouchingPair*, double, double, double>, ImpactBodies::Answer> answers;
 
@@ -398,6 +402,11 @@ bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const Touc
     now = fastest_since(first);
     if (round == 1) at_first = now;
   }
+  work.rebound_left = 0.0;
+  if (again)
+    for (const TouchingPair* pair : in_turn)
+      work.rebound_left =
+          std::max(work.rebound_left, restitution_of(work.world(), *pair) * now / at_first);
   return !again;
 }
 
@@ -490,6 +499,16 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   // what is left of an impact that many bodies in contact pass to and fro is resolved at all at
   // once
   if (again && contact_threshold_) {
+    if (work.rebound_left > kSeenRebound)
+      counters_.watch.say(
+          "rebounds left out", moving.time(),
+          fmt::format(
+              "at t = {:.6g} s {} bodies, among them {}, passed an impact to and fro: after "
+              "{} rounds {:.2g} of its speed was left to rebound, and was resolved without "
+              "rebound",
+              moving.time(), work.bodies.changed().size(),
+              names_of(moving.world(), {pairs[trigger].a, pairs[trigger].b}), kRoundsAmongContacts,
+              work.rebound_left));
     collide_together(work, in_turn, threshold, false);
     again = false;
     work.result.events = one_a_pair(work.result.events);
