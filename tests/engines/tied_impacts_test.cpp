@@ -125,5 +125,25 @@ TEST(ImpactsAtOneInstant, OfALightBallBetweenHeavyOnesKeepTheirRestitution) {
     }
 }
 
+// Where surfaces rebound by less, rounds end while the light ball is as fast as ever. What is left is
+// resolved without rebound, and the run says so.
+TEST(ImpactsAtOneInstant, ThatLeaveOutReboundsSaySo) {
+  for (const double restitution : {0.0, 0.3, 1.0})
+    for (const char* engine : {"rd", "tw"}) {
+      SCOPED_TRACE(restitution);
+      scene::Scene scene = scene_of({ball("first", 0.5, 1.0, {-1.5, 0, 0}, Vector3d::UnitX()),
+                                     ball("light", 0.5, 1e-4, {0, 0, 0}, Vector3d::Zero()),
+                                     ball("last", 0.5, 1.0, {1, 0, 0}, Vector3d::Zero())},
+                                    1.0);
+      for (scene::BodySpec& body : scene.bodies) body.restitution = restitution;
+      scene.contact.emplace();
+      const std::vector<std::string> notices = run_on(engine, scene).counters.notices;
+      const bool is_said = std::any_of(notices.begin(), notices.end(), [](const std::string& said) {
+        return said.find("was resolved without rebound") != std::string::npos;
+      });
+      EXPECT_EQ(is_said, restitution == 0.3) << engine;
+    }
+}
+
 }  // namespace
 }  // namespace tumble::testing::tied_impacts_test
