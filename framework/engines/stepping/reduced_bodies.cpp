@@ -306,9 +306,10 @@ void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) 
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = tree_->state(static_cast<int>(i), 0.0);
 }
 
-// What nothing but gravity acts on keeps its angular momentum about its centre of mass, and its
-// momentum changes by m g h. In coordinates of joints a method keeps both to its order only: the
-// rest is given back to the bodies as to one rigid body, which no link notices.
+// What nothing but gravity acts on keeps its angular momentum about its centre of mass, its momentum
+// changes by m g h, and the centre goes along a parabola, or it would not keep the angular momentum
+// about another point. In coordinates of joints a method keeps these to its order only: the rest is
+// given back to the bodies as to one rigid body, which no link notices.
 void LinkedBodies::keep_momentum(const std::vector<RigidBodyState>& before, double h,
                                  std::vector<RigidBodyState>& after) const {
   struct Whole {
@@ -339,11 +340,14 @@ void LinkedBodies::keep_momentum(const std::vector<RigidBodyState>& before, doub
   }
   const Vector3d gravity_world = world_.gravity_world.value_or(Vector3d::Zero()),
                  velocity = (then.momentum - now.momentum) / now.mass + h * gravity_world,
+                 place = then.centre - now.centre + h * then.momentum / then.mass +
+                         0.5 * h * h * gravity_world,
                  omega = least_squares(inertia, then.spin - now.spin, kRedundant);
   for (std::size_t i = 0; i < after.size(); ++i) {
     RigidBodyState& state = after[i];
     state.momentum_world +=
         seen_[i].inertia.mass * (velocity + omega.cross(Vector3d(state.com_world - now.centre)));
+    state.com_world += place;
     state.angular_momentum_world +=
         angular_momentum_of(omega, state.world_from_body, seen_[i].inertia);
   }
