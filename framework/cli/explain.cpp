@@ -259,9 +259,15 @@ void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects
     fmt::print("  rods and joints are kept together by {}\n",
                kinds[static_cast<int>(scene.stabilisation->kind)]);
   }
-  if (scene.coordinates == scene::Coordinates::kReduced)
-    for (const std::string& words : engines::coordinates_in_words(build_world(scene)))
-      fmt::print("  {}; in persistent contact six coordinates a body\n", words);
+  if (scene.coordinates != scene::Coordinates::kMaximal) {
+    scene::Scene reduced = scene;
+    reduced.coordinates = scene::Coordinates::kReduced;
+    for (const std::string& words : engines::coordinates_in_words(build_world(reduced)))
+      fmt::print("  {}; in persistent contact six coordinates a body{}\n", words,
+                 scene.coordinates == scene::Coordinates::kAutomatic
+                     ? ", and where a module's rows are what the run shows"
+                     : "");
+  }
   print_effects(scene, effects, run);
   print_stages(stages, run);
   if (run == nullptr)

@@ -67,6 +67,13 @@ inline void append_laws_of_rows(const scene::Scene& scene, const Laws& laws,
         {static_cast<bool>(laws.baumgarte_acceleration), "Baumgarte's acceleration", "a3"});
 }
 
+/// Whose rows hold a link, for a message that says where a force comes from: in joint coordinates
+/// a tree asks for none.
+inline std::string rows_in_words(const World& world, const std::string& rows) {
+  if (world.coordinates != scene::Coordinates::kReduced) return rows;
+  return "in joint coordinates; " + rows + " in loops and contact only";
+}
+
 /// Does `work`; a StoppedRun out of it is thrown again with the link in front. Words are made where
 /// they are needed only: this is asked at every stage.
 template <class Work>

@@ -380,6 +380,22 @@ TEST_F(CommandLine, ExplainSaysWhereTheRestSpeedIsMuchForASmallBody) {
   EXPECT_FALSE(holds(large.out, "rest_speed_m_s")) << large.out;
 }
 
+TEST_F(CommandLine, ExplainSaysInWhichCoordinatesAnIslandGoes) {
+  const std::string scene = test::source_dir() + "/assignments/a3_constraints/scenes/four_bar.json";
+  const std::string text = contents_of(scene);
+  for (const auto& [coordinates, says, leaves] :
+       {std::tuple{"maximal", false, false}, {"reduced", true, false}, {"auto", true, true}}) {
+    std::string with = text;
+    with.insert(with.find("\"duration_s\""),
+                std::string("\"coordinates\": \"") + coordinates + "\", ");
+    write_whole(folder_ / "bars.json", with);
+    const Said said = type("explain bars.json");
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(holds(said.out, "joint coordinates, 3 bodies"), says) << said.out;
+    EXPECT_EQ(holds(said.out, "where a module's rows are what the run shows"), leaves) << said.out;
+  }
+}
+
 TEST_F(CommandLine, APathThatIsNoPlainFileSaysSo) {
   fs::create_directory(folder_ / "f.json");
   for (const char* words : {"run f.json", "run ./f.json", "explain f.json"}) {

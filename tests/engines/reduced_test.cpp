@@ -184,6 +184,23 @@ TEST(JointCoordinates, OfATreeNeedNoLawOfRows) {
     }
 }
 
+TEST(JointCoordinates, DoNotBlameRowsThatATreeAsksForNone) {
+  // a bob of ten kilograms on links of a gram: their swings are too fast for this step
+  scene::Scene scene = of_course("heavy_bob", 1.0);
+  for (const auto coordinates : {Coordinates::kReduced, Coordinates::kMaximal}) {
+    scene.coordinates = coordinates;
+    engines::RunOptions options;
+    options.step_s = 1.0 / 240;
+    TrajectoryRecorder recorder;
+    engines::run_scene(scene, laws(), options, recorder);
+    const std::string& said = recorder.trajectory().stopped_by;
+    EXPECT_NE(said.find("comes from rod"), std::string::npos) << said;
+    EXPECT_EQ(said.find("(in joint coordinates; ") != std::string::npos,
+              coordinates == Coordinates::kReduced)
+        << said;
+  }
+}
+
 TEST(JointCoordinates, OfALoopAskForTheModuleThatHasRows) {
   const scene::Scene scene = of_course("four_bar", 0.1);
   try {

@@ -263,10 +263,10 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
                     std::vector<Pull>& pulls) const override {
     for (std::size_t k = 0; k < measured.size(); ++k) {
       const JointLink& joint = held(world)[k];
-      pulls.push_back(
-          {joint.a.body, joint.b.body, std::abs(measured[k]),
-           fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})",
-                       joint.name, laws.source_of_links())});
+      const std::string rows = fmt::format("constraint_multipliers, constraint_correction of {}",
+                                           laws.source_of_links());
+      pulls.push_back({joint.a.body, joint.b.body, std::abs(measured[k]),
+                       fmt::format("joint '{}' ({})", joint.name, rows_in_words(world, rows))});
     }
   }
   std::vector<scene::LinkCheck> link_checks() const override {

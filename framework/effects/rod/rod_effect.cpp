@@ -156,11 +156,12 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
                     std::vector<Pull>& pulls) const override {
     for (std::size_t k = 0; k < measured.size(); ++k) {
       const RodLink& rod = held(world)[k];
-      pulls.push_back(
-          {rod.a.body, rod.b.body, std::abs(measured[k]),
-           fmt::format("rod '{}' (rod_row{}, constraint_multipliers, constraint_correction of {})",
-                       rod.name, laws.link_solver.empty() ? "" : " of " + laws.source_of<RodRow>(),
-                       laws.source_of_links())});
+      const std::string rows =
+          fmt::format("rod_row{}, constraint_multipliers, constraint_correction of {}",
+                      laws.link_solver.empty() ? "" : " of " + laws.source_of<RodRow>(),
+                      laws.source_of_links());
+      pulls.push_back({rod.a.body, rod.b.body, std::abs(measured[k]),
+                       fmt::format("rod '{}' ({})", rod.name, rows_in_words(world, rows))});
     }
   }
   std::vector<scene::LinkCheck> link_checks() const override { return {{"rod_length", "m"}}; }
