@@ -421,24 +421,31 @@ std::string coordinates_compared(const report::CostPage& page) {
   std::erase_if(with_rows.curves, is_in_joints);
   std::erase_if(in_joints.curves, std::not_fn(is_in_joints));
   if (with_rows.curves.empty() || in_joints.curves.empty()) return "";
+  std::string words;  // of what one of the two reaches: the other may have had no time for it
   for (auto mark = page.marks.rbegin(); mark != page.marks.rend(); ++mark) {
     const report::CostCurve *rows = cheapest_curve(with_rows, *mark),
                             *joints = cheapest_curve(in_joints, *mark);
     if (joints == nullptr && rows == nullptr) continue;
     const std::string error = report::mark_in_words(page, *mark);
-    if (joints == nullptr)
-      return fmt::format("{} is reached with six coordinates a body only ({}).", error, rows->name);
-    if (rows == nullptr)
-      return fmt::format("{} is reached in joint coordinates only ({}).", error, joints->name);
+    if (joints == nullptr || rows == nullptr) {
+      if (words.empty())
+        words =
+            fmt::format("Of these runs only those {} reach {} ({}). ",
+                        joints == nullptr ? "with six coordinates a body" : "in joint coordinates",
+                        error, (joints == nullptr ? rows : joints)->name);
+      continue;
+    }
     const double price = report::cheapest(*joints, *mark)->cpu_s,
                  ratio = report::cheapest(*rows, *mark)->cpu_s / price;
-    return fmt::format(
-        "{} costs {} in joint coordinates, and {:.1f} times {} with six coordinates a body and "
-        "their rows ({}).",
-        error, report::price_of(price), ratio >= 1.0 ? ratio : 1.0 / ratio,
-        ratio >= 1.0 ? "as much" : "less", rows->name);
+    return words + fmt::format(
+                       "{} costs {} in joint coordinates, and {:.1f} times {} with six coordinates "
+                       "a body and "
+                       "their rows ({}).",
+                       error, report::price_of(price), ratio >= 1.0 ? ratio : 1.0 / ratio,
+                       ratio >= 1.0 ? "as much" : "less", rows->name);
   }
-  return "";
+  if (!words.empty()) words.pop_back();
+  return words;
 }
 
 void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws,

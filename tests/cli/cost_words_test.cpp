@@ -59,6 +59,19 @@ TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
                     "none is given"));
 }
 
+TEST_F(CommandLine, CostComparesCoordinatesAtAnErrorThatBothReach) {
+  // at this one step RK4 is right to 1e-6 m with rows, and to 1.4e-6 m in joint coordinates
+  const Said said = type(
+      "cost double_pendulum --modules reference --methods rk4 --engines none --duration-s 1 "
+      "--steps 0.01");
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_TRUE(holds(said.out,
+                    "Of these runs only those with six coordinates a body reach 1e-6 m (RK4). "
+                    "1e-3 m costs "))
+      << said.out;
+  EXPECT_TRUE(holds(said.out, " in joint coordinates, and ")) << said.out;
+}
+
 TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
   const Said said = type("cost toi --tolerances 1e-3,1e-9");
   EXPECT_EQ(said.code, 0) << said.err;
