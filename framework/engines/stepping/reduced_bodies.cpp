@@ -306,10 +306,10 @@ void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) 
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = tree_->state(static_cast<int>(i), 0.0);
 }
 
-// What nothing but gravity acts on keeps its angular momentum about its centre of mass, its momentum
-// changes by m g h, and the centre goes along a parabola, or it would not keep the angular momentum
-// about another point. In coordinates of joints a method keeps these to its order only: the rest is
-// given back to the bodies as to one rigid body, which no link notices.
+// What nothing but gravity acts on keeps its angular momentum about its centre of mass, its
+// momentum changes by m g h, and the centre goes along a parabola, or it would not keep the angular
+// momentum about another point. In coordinates of joints a method keeps these to its order only:
+// the rest is given back to the bodies as to one rigid body, which no link notices.
 void LinkedBodies::keep_momentum(const std::vector<RigidBodyState>& before, double h,
                                  std::vector<RigidBodyState>& after) const {
   struct Whole {
