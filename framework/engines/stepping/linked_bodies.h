@@ -27,6 +27,10 @@
 
 namespace tumble::engines {
 
+/// What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2.
+/// Asked once, so that bounds hold for whichever method a student wrote. [-]
+double path_bend(const Laws& laws);
+
 /// What the links of a world pull with, by their places in its lists; zero for links of other
 /// groups. [N]
 struct LinkForces {
@@ -170,7 +174,7 @@ class LinkedBodies final : effects::GroupPlaces {
                                               double h);
   VectorXd begin_reduced(std::vector<RigidBodyState>& local, double t);
   void keep_momentum(const std::vector<RigidBodyState>& before, double h,
-                     std::vector<RigidBodyState>& after) const;
+                     std::vector<RigidBodyState>& after);
   VectorXd reduced_rate(double t, const VectorXd& y);
   void accelerate_tree(double t, const VectorXd& y);
   VectorXd multipliers_of_tree(std::vector<RigidBodyState> local, double t);
@@ -224,7 +228,8 @@ class LinkedBodies final : effects::GroupPlaces {
   std::vector<FixedEnd> ends_;
   std::vector<Body> seen_;
   std::vector<Wrench> wrenches_;
-  double begun_at_ = 0.0;  // time of the coordinates' beginning [s]
+  std::optional<double> bend_;  // of paths, once asked
+  double begun_at_ = 0.0;       // time of the coordinates' beginning [s]
 };
 
 /// What becomes of each group of a world that asks for joint coordinates, in words: its numbers, or

@@ -17,22 +17,6 @@
 namespace tumble::engines {
 namespace {
 
-// What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2.
-// Asked once, so that bounds hold for whichever method a student wrote.
-double measure_path_bend(const Laws& laws) {
-  constexpr int kHeight = 0, kSpeed = 1;
-  const OdeFunction fall = [](double, const VectorXd& y) {
-    VectorXd dy(2);
-    dy << y[kSpeed], 1.0;
-    return dy;
-  };
-  try {
-    return 2.0 * laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0)[kHeight];
-  } catch (const StoppedRun&) {
-    return 1.0;  // the first step of a body fails in the same way, and names the body
-  }
-}
-
 std::vector<const effects::Effect*> acting_in(const World& world) {
   std::vector<const effects::Effect*> acting;
   for (const effects::Effect* effect : effects::all())
@@ -62,7 +46,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters,
     for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
     for (const collision::CollisionShape& shape : own_shapes_) shapes_.push_back(&shape);
   }
-  path_bend_ = measure_path_bend(laws);
+  path_bend_ = path_bend(laws);
   for (std::size_t k = 0; k < effects::all().size(); ++k)
     if (auto acting = effects::all()[k]->steady_forces({world_, laws_, counters_.effect_calls[k]}))
       steady_.push_back({static_cast<int>(k), std::move(acting)});

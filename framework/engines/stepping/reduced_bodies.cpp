@@ -307,11 +307,13 @@ void LinkedBodies::settle_on_tree(std::vector<RigidBodyState>& local, double t) 
 }
 
 // What nothing but gravity acts on keeps its angular momentum about its centre of mass, its
-// momentum changes by m g h, and the centre goes along a parabola, or it would not keep the angular
-// momentum about another point. In coordinates of joints a method keeps these to its order only:
-// the rest is given back to the bodies as to one rigid body, which no link notices.
+// momentum changes by m g h, and the centre goes along what the method makes of a parabola, or the
+// angular momentum about another point would change. In coordinates of joints a method keeps these
+// to its order only: the rest is given back to the bodies as to one rigid body, which no link
+// notices.
 void LinkedBodies::keep_momentum(const std::vector<RigidBodyState>& before, double h,
-                                 std::vector<RigidBodyState>& after) const {
+                                 std::vector<RigidBodyState>& after) {
+  if (!bend_) bend_ = path_bend(laws_);
   struct Whole {
     double mass = 0.0;
     Vector3d centre = Vector3d::Zero(), momentum = Vector3d::Zero(), spin = Vector3d::Zero();
@@ -341,7 +343,7 @@ void LinkedBodies::keep_momentum(const std::vector<RigidBodyState>& before, doub
   const Vector3d gravity_world = world_.gravity_world.value_or(Vector3d::Zero()),
                  velocity = (then.momentum - now.momentum) / now.mass + h * gravity_world,
                  place = then.centre - now.centre + h * then.momentum / then.mass +
-                         0.5 * h * h * gravity_world,
+                         0.5 * *bend_ * h * h * gravity_world,
                  omega = least_squares(inertia, then.spin - now.spin, kRedundant);
   for (std::size_t i = 0; i < after.size(); ++i) {
     RigidBodyState& state = after[i];
