@@ -329,7 +329,7 @@ void add_live(CLI::App& app, Context& context) {
   verb.option("--id", words->id, "").hidden();
   verb.footer(
       "The page is served to this machine alone, at an address that holds a token. Drag a body to "
-      "push it; what was done by\nhand can be saved as a scene, which runs again byte for byte.\n"
+      "push it; what was done by hand can be saved as a scene, which runs again byte for byte.\n"
       "Example: tumble live a1\n         tumble live drop_a_box --modules student");
   verb.runs([&context, words] { live_verb(context, *words); });
 }

@@ -44,6 +44,19 @@ void set_mass(Json& body, double kg) {
   body["mass_kg"] = kg;
 }
 
+/// Nothing: as long as the scene says. A run on the page goes on after that, and so may what is done
+/// to it; the scene that has these pushes lasts until the last of them.
+std::optional<double> duration_of(const Recipe& recipe, double of_scene_s) {
+  if (recipe.duration_s) return recipe.duration_s;
+  double end = of_scene_s;
+  for (const std::string& text : recipe.pushes) {
+    const Json push = Json::parse(text);
+    end = std::max(end, push.at("start_s").get<double>() + push.at("duration_s").get<double>());
+  }
+  if (end > of_scene_s) return end;
+  return std::nullopt;
+}
+
 Json changed(const Recipe& recipe) {
   Json scene = Json::parse(recipe.document);
   const Changes& changes = recipe.changes;
@@ -68,7 +81,9 @@ Json changed(const Recipe& recipe) {
   if (changes.step_s) scene["step_s"] = *changes.step_s;
   if (!changes.engine.empty()) scene["engine"] = changes.engine;
   if (!changes.coordinates.empty()) scene["coordinates"] = changes.coordinates;
-  if (recipe.duration_s) scene["duration_s"] = *recipe.duration_s;
+  if (const auto duration =
+          duration_of(recipe, scene.value("duration_s", scene::Scene{}.duration_s)))
+    scene["duration_s"] = *duration;
   for (const std::string& push : recipe.pushes) scene["point_forces"].push_back(Json::parse(push));
   return scene;
 }
@@ -159,7 +174,7 @@ void apply(const Recipe& recipe, scene::Scene& scene) {
   if (!changes.engine.empty()) scene.engine = changes.engine;
   if (!changes.coordinates.empty())
     scene.coordinates = scene::coordinates_named(changes.coordinates, "coordinates");
-  if (recipe.duration_s) scene.duration_s = *recipe.duration_s;
+  if (const auto duration = duration_of(recipe, scene.duration_s)) scene.duration_s = *duration;
   for (const std::string& text : recipe.pushes) {
     const Json push = Json::parse(text);
     write("point_forces", {{"body", push.at("body").get<std::string>()},

@@ -133,6 +133,9 @@ test('a saved slip shows its verdict; errors, loops and crashes are shown and th
   await save(right.replace('return', 'retrun'), 'save to the compiler\'s error', () => '/not compile/.test(document.body.dataset.trouble || "")');
   expect(/a1_impulse\.cpp.*\d+/s.test(await page.value('document.body.dataset.trouble')), 'the error has file and line');
   if (pictures) await page.picture(join(pictures, 'error.png'));
+  // A run that has stopped is no save that changed nothing.
+  await save(right.replace('return -(1.0', 'return std::sqrt(-1.0'), 'save to the run that stopped', () => '/not a number/.test(document.body.dataset.trouble || "")');
+  await page.until('/^This run has stopped; it is the same as the run before until [0-9.]+ s\\.$/.test(document.querySelector("#difference span").textContent)', 'that it stopped, and no advice', 20);
   await save(right, 'mended', runs => `Number(document.body.dataset.runs) > ${runs} && !document.body.dataset.trouble && tumble.run.length > 2`);
   expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
   await live.stop('SIGTERM');
@@ -194,7 +197,8 @@ test('the view finds and follows; changes keep pushes; a refused number stands a
   if (pictures) await page.picture(join(pictures, 'lost.png'));
   await page.value('document.getElementById("go").click()');
   await page.until('document.getElementById("state").textContent === "paused"', 'the pause', 20);
-  await page.value('document.getElementById("all").click()');
+  // The page has drawn nothing since the pause: found is what has moved on until then.
+  await page.value('tumble.time = tumble.pushes[1].start_s; document.getElementById("all").click()');
   await page.until('!/left the picture/.test(document.getElementById("hint").textContent)', 'that it is found', 20);
   await page.value('document.getElementById("go").click()');
   await page.value('document.getElementById("follow").click()');

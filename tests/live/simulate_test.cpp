@@ -297,6 +297,27 @@ TEST(LiveRecipe, ChangesStandInTheDocument) {
   EXPECT_FALSE(Json::parse(live::document_of(recipe)).contains("gravity_m_s2"));
 }
 
+// On the page a run goes on after the end of its scene: what was done there stays done.
+TEST(LiveRecipe, ASceneLastsUntilTheLastPush) {
+  const auto push_at = [](double start_s) {
+    return Json{{"body", "box"},
+                {"force_n", {1, 0, 0}},
+                {"point_m", {0, 0, 0}},
+                {"start_s", start_s},
+                {"duration_s", 0.25}}
+        .dump();
+  };
+  live::Recipe recipe = recipe_with({push_at(1)});
+  recipe.duration_s.reset();  // as in the page
+  EXPECT_EQ(Json::parse(live::document_of(recipe)).at("duration_s"), 3);
+  recipe.pushes.push_back(push_at(7));
+  const scene::Scene scene = scene::parse_scene(live::document_of(recipe), "pushed.json");
+  EXPECT_EQ(scene.duration_s, 7.25);
+  scene::Scene made = scene::parse_scene(kScene, "made.json");
+  live::apply(recipe, made);
+  EXPECT_EQ(made.duration_s, 7.25);
+}
+
 TEST(LiveRecipe, ImpossibleChangesAreRefused) {
   live::Changes changes;
   for (const char* change :

@@ -3,7 +3,7 @@
 const byId = id => document.getElementById(id);
 
 const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
-const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false };
+const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false, finds: false, findsUntil: 0 };
 
 // One after the other: a pull that came behind its release would hold the body for ever.
 let posted = Promise.resolve();
@@ -284,7 +284,12 @@ function addControls() {
   });
 }
 
-function findAll() { if (page.picture && page.picture.stage) page.picture.findAll(page.time); }
+// At the next picture, which may be of a later instant than the one that is shown. Of a run that has just been paused
+// some frames are still on their way: what they move is found, too.
+function findAll() {
+  page.finds = true;
+  page.findsUntil = page.paused && page.follows ? performance.now() + 500 : 0;
+}
 
 function follow() {
   if (!page.picture) return;
@@ -305,6 +310,7 @@ function tick(now) {
     try {
       if (page.picture) {
         if (page.needsStage) { page.picture.setRun(run, page.former, page.hadStage); page.needsStage = false; page.hadStage = true; }
+        if (page.finds && page.picture.stage) { page.picture.findAll(page.time, page.chosen); page.finds = page.paused && now < page.findsUntil; }
         // where the processor draws, the compiler has it first
         const waits = page.isCompiling && page.picture.isSoftware;
         if (!waits && page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);

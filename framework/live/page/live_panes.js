@@ -53,8 +53,8 @@ class ChangePane {
     return true;
   }
 
-  choice(value, options, send) {
-    const select = html('select', {}, ...options.map(([word, text]) => html('option', { value: word }, text)));
+  choice(value, name, options, send) {
+    const select = html('select', { ariaLabel: name }, ...options.map(([word, text]) => html('option', { value: word }, text)));
     select.value = value;
     select.addEventListener('change', () => send(select.value));
     return select;
@@ -72,10 +72,10 @@ class ChangePane {
     const body = movable.includes(chosen) ? chosen : movable[0];
     if (body !== undefined) row(`mass of ${bodies[body].name} [kg]`, this.number(facts.bodies[body].mass_kg, 'mass', [1e-9, 1e12, 'above 0, from 1e-9 kg to 1e12 kg'], value => this.act({ mass_kg: { [bodies[body].name]: value } })));
     row('step [s]', this.number(Number(facts.step_s.toPrecision(6)), 'step', [1e-5, 1, 'from 0.00001 s to 1 s'], value => this.act({ step_s: value })), html('button', { onclick: () => this.act({ step_s: facts.step_s / 2 }) }, '÷ 2'), html('button', { onclick: () => this.act({ step_s: facts.step_s * 2 }) }, '× 2'));
-    row('method', this.choice(changes.method || '', [['', 'that of the code'], ...['euler', 'symplectic', 'midpoint', 'verlet', 'rk4'].map(word => [word, word])], value => this.act({ method: value || null })));
-    row('engine', this.choice(facts.engine, [['rd', 'rd: step by step'], ['ca', 'ca: from impact to impact'], ['tw', 'tw: a clock for each body (timewarp)'], ['ordered', 'ordered: all events by their time']], value => this.act({ engine: value })));
+    row('method', this.choice(changes.method || '', 'method', [['', 'that of the code'], ...['euler', 'symplectic', 'midpoint', 'verlet', 'rk4'].map(word => [word, word])], value => this.act({ method: value || null })));
+    row('engine', this.choice(facts.engine, 'engine', [['rd', 'rd: step by step'], ['ca', 'ca: from impact to impact'], ['tw', 'tw: a clock for each body (timewarp)'], ['ordered', 'ordered: all events by their time']], value => this.act({ engine: value })));
     if (run.about.rods.length + run.about.joints.length > 0)
-      row('coordinates', this.choice(changes.coordinates || '', [['', 'those of the scene'], ['maximal', 'maximal: six a body, rows hold rods and joints'], ['reduced', 'reduced: what rods and joints leave free']], value => this.act({ coordinates: value || null })));
+      row('coordinates', this.choice(changes.coordinates || '', 'coordinates', [['', 'those of the scene'], ['maximal', 'maximal: six a body, rows hold rods and joints'], ['reduced', 'reduced: what rods and joints leave free']], value => this.act({ coordinates: value || null })));
     form.append(html('label', { className: 'wide' }, this.keep, ' keep the pushes'), html('button', { className: 'wide', onclick: () => this.act({ all: null }) }, 'The scene as it is in its file'));
     this.box.textContent = '';
     this.showWhatGoes();

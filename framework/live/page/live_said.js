@@ -89,11 +89,11 @@ function showDifference() {
   const message = page.difference, line = byId('difference');
   line.hidden = !message;
   if (!message) return;
-  const isDifferent = message.time_s !== undefined, isSave = !isDifferent && page.reason === 'code' && page.savedId;
+  const isDifferent = message.time_s !== undefined, hasStopped = Boolean(page.run && page.run.stopped), isSave = !isDifferent && !hasStopped && page.reason === 'code' && page.savedId;
   line.classList.toggle('same', !isDifferent);
   byId('toDifference').hidden = !isDifferent;
   byId('toScenes').hidden = !isSave;
-  line.querySelector('span').textContent = isDifferent ? `First difference from the run before, at ${short(message.time_s, 6)} s: ${message.what}` : `The same as the run before until ${short(message.same_until_s, 4)} s.${isSave && page.asked ? ` ${adviceOnSame(page.asked, page.savedId)}` : ''}`;
+  line.querySelector('span').textContent = isDifferent ? `First difference from the run before, at ${short(message.time_s, 6)} s: ${message.what}` : `${hasStopped ? 'This run has stopped; it is the same' : 'The same'} as the run before until ${short(message.same_until_s, 4)} s.${isSave && page.asked ? ` ${adviceOnSame(page.asked, page.savedId)}` : ''}`;
   document.body.dataset.difference = isDifferent ? String(message.time_s) : '';
 }
 
@@ -173,6 +173,7 @@ const told = {
     else if (message.faults) showTrouble({ title: 'This run cannot be trusted', text: message.faults, where: '' });
     say(message.stopped_by ? `stopped at ${short(message.time_s)} s` : `ended at ${short(message.time_s)} s`, message.stopped_by ? 'bad' : '');
     page.ended = true;
+    showDifference();
     showHint();
     showTime();
   },
@@ -183,6 +184,7 @@ const told = {
     if (message.ends_run && page.run) {
       page.ended = true;
       page.run.stopped = page.run.stopped || message.title;
+      showDifference();
       showHint();
     }
     say(message.title.toLowerCase(), 'bad');

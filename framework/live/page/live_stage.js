@@ -254,8 +254,9 @@ class LivePicture {
     return places;
   }
 
-  // Turns nothing: the view moves, so that all movable bodies are in it.
-  findAll(t) {
+  // Turns nothing: the view moves, so that all movable bodies are in it. A view that follows a body goes on from there.
+  findAll(t, chosen) {
+    this.follow(t, chosen);
     const box = new THREE.Box3();
     for (const { place, radius } of this.placesAt(t)) box.expandByPoint(place.clone().addScalar(radius)).expandByPoint(place.clone().addScalar(-radius));
     if (box.isEmpty()) return;
