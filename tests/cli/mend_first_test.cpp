@@ -93,6 +93,27 @@ TEST_F(MendFirst, WhatIsRightIsFolded) {
   EXPECT_GT(html.find("a miss"), fold);
 }
 
+// Where a scene is to be looked at, those that are right are folded behind it; the arguments of a
+// call that ended a run fill no screen.
+TEST_F(MendFirst, ScenesThatAreRightAreFolded) {
+  SceneMedia right, stopped;
+  right.scene = "right";
+  right.title = "A right scene";
+  stopped.scene = "stopped";
+  stopped.title = "A scene that stopped";
+  stopped.story = "SIGSEGV, in hit, a9_things.cpp:7\n  called with: x = 3";
+  grade.media = {right, stopped};
+  const std::string html = page(grade);
+  const auto fold = html.find("1 scene is right</summary>");
+  ASSERT_NE(fold, std::string::npos);
+  EXPECT_GT(html.find("A right scene"), fold);
+  EXPECT_LT(html.find("A scene that stopped"), fold);
+  EXPECT_NE(html.find("ended early: SIGSEGV, in hit, a9_things.cpp:7</p>"), std::string::npos);
+  EXPECT_NE(html.find("called with: x = 3"), std::string::npos);
+  grade.media = {right};
+  EXPECT_EQ(page(grade).find("1 scene is right"), std::string::npos);
+}
+
 TEST_F(MendFirst, AStudentSeesTheCauseAndNothingOfAHiddenTest) {
   const std::string html = page(for_student(grade));
   for (const char* word : {"Secret", "seam"}) EXPECT_EQ(html.find(word), std::string::npos) << word;

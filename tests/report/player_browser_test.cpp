@@ -357,6 +357,8 @@ TEST_F(PlayerInBrowser, TwoRunsAreDrawnToOneScale) {
 TEST_F(PlayerInBrowser, ARunThatStoppedIsNotCalledTheSame) {
   Trajectory stopped = thrown_run();
   stopped.frames.resize(13);
+  // The arguments stand below the picture, not on it.
+  stopped.stopped_by = "SIGSEGV in hit\n  called with: x = 3";
   std::erase_if(stopped.events, [](const Event& event) { return event.time > 0.2; });
   const std::string elements = browser.elements(browser.serve(
       player_page(thrown_ball(), {{stopped, "submission"}, {thrown_run(), "reference"}})));
@@ -365,6 +367,8 @@ TEST_F(PlayerInBrowser, ARunThatStoppedIsNotCalledTheSame) {
       elements.find("submission stopped at 0.2 s of 0.8 s; both runs are the same until then."),
       std::string::npos);
   EXPECT_EQ(elements.find("class=\"same\""), std::string::npos);
+  EXPECT_NE(elements.find("stopped: SIGSEGV in hit</span>"), std::string::npos);
+  EXPECT_NE(elements.find("<pre>SIGSEGV in hit\n  called with: x = 3</pre>"), std::string::npos);
 }
 
 // A runs ahead to 0.4 s; B is found to hit it at 0.2 s: A rolls back alone, then both are

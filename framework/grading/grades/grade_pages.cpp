@@ -198,38 +198,60 @@ void add_stories(report::Page& page, const Grade& grade, const PageView& view) {
   add_story(page, text, view);
 }
 
+// Its numbers are right, or it has none, and it ran to its end.
+bool is_right(const SceneMedia& scene) {
+  return scene.story.empty() && std::all_of(scene.checks.begin(), scene.checks.end(),
+                                            [](const auto& c) { return c.passed; });
+}
+
+void add_scene(report::Page& page, const SceneMedia& scene, const std::filesystem::path& folder) {
+  page.heading(scene.title, 3, "s-" + anchor_of_story(scene.scene));
+  const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(),
+                                   [](const auto& c) { return !c.passed; });
+  if (!scene.story.empty()) {
+    // The arguments of the call that ended it may fill a screen.
+    const std::size_t line = std::min(scene.story.find('\n'), scene.story.size());
+    page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") +
+                       plain_text(scene.story.substr(0, line)),
+                   scene.attempted ? Look::kBad : Look::kMuted);
+    if (line < scene.story.size())
+      page.fold("More about it", plain_text(scene.story.substr(line + 1)));
+  } else if (wrong > 0)
+    page.paragraph(fmt::format("{} of its {} numbers are wrong.", wrong, scene.checks.size()),
+                   Look::kBad);
+  else if (!scene.checks.empty())
+    page.paragraph(scene.checks.size() == 1
+                       ? "Its number is right."
+                       : fmt::format("All of its {} numbers are right.", scene.checks.size()),
+                   Look::kGood);
+  if (!scene.picture.empty() || !scene.video.empty()) {
+    report::Figure figure;
+    if (!scene.picture.empty()) figure.picture = folder / scene.picture;
+    if (!scene.video.empty()) figure.video = folder / scene.video;
+    figure.caption = scene.about;
+    page.figures({figure});
+  }
+  if (!scene.page.empty())
+    page.links(
+        {{"Play the run: rotate it, step through it, see its curves and the first difference",
+          report::link_to(folder / scene.page)}});
+  add_checks(page, scene, false);
+  add_checks(page, scene, true);
+}
+
 void add_media(report::Page& page, const std::vector<SceneMedia>& media,
                const std::filesystem::path& folder) {
-  for (const SceneMedia& scene : media) {
-    page.heading(scene.title, 3, "s-" + anchor_of_story(scene.scene));
-    const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(),
-                                     [](const auto& c) { return !c.passed; });
-    if (!scene.story.empty())
-      page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") +
-                         plain_text(scene.story),
-                     scene.attempted ? Look::kBad : Look::kMuted);
-    else if (wrong > 0)
-      page.paragraph(fmt::format("{} of its {} numbers are wrong.", wrong, scene.checks.size()),
-                     Look::kBad);
-    else if (!scene.checks.empty())
-      page.paragraph(scene.checks.size() == 1
-                         ? "Its number is right."
-                         : fmt::format("All of its {} numbers are right.", scene.checks.size()),
-                     Look::kGood);
-    if (!scene.picture.empty() || !scene.video.empty()) {
-      report::Figure figure;
-      if (!scene.picture.empty()) figure.picture = folder / scene.picture;
-      if (!scene.video.empty()) figure.video = folder / scene.video;
-      figure.caption = scene.about;
-      page.figures({figure});
-    }
-    if (!scene.page.empty())
-      page.links(
-          {{"Play the run: rotate it, step through it, see its curves and the first difference",
-            report::link_to(folder / scene.page)}});
-    add_checks(page, scene, false);
-    add_checks(page, scene, true);
-  }
+  const auto right = std::count_if(media.begin(), media.end(), is_right);
+  // What is right is folded where something else is to be looked at.
+  const bool folds = right > 0 && right < static_cast<std::ptrdiff_t>(media.size());
+  for (const SceneMedia& scene : media)
+    if (!folds || !is_right(scene)) add_scene(page, scene, folder);
+  if (!folds) return;
+  page.begin(report::Part::kFold,
+             right == 1 ? "1 scene is right" : fmt::format("{} scenes are right", right));
+  for (const SceneMedia& scene : media)
+    if (is_right(scene)) add_scene(page, scene, folder);
+  page.end();
 }
 
 void add_cost(report::Page& page, const CostSection& cost) {

@@ -241,15 +241,19 @@ function happeningIn(player, run) {
   return words.join(' · ');
 }
 
+// What a run stopped by may list a call's arguments, which would cover the picture: below it they are told whole.
+function firstLine(text) { return text.split('\n', 1)[0]; }
+
 function addWords(player, picture) {
   const labels = [];
   player.runs.forEach((run, r) => {
     const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
     const now = html('p', { className: 'now' });
-    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('i', {}, ' (ghost)'), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''),
+    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('i', {}, ' (ghost)'), html('span', {}, run.head.stopped ? ` stopped: ${firstLine(run.head.stopped)}` : ''),
       html('span', {}, run.head.faults ? ` cannot be trusted: ${run.head.faults}` : ''), now);
     player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
     labels.push(box);
+    if (run.head.stopped && run.head.stopped.includes('\n')) byId('difference').after(html('details', { className: 'stopped' }, html('summary', {}, `By what ${run.label || 'the run'} was stopped`), html('pre', {}, run.head.stopped)));
     box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;
     byId('words').append(box);
   });
