@@ -44,8 +44,8 @@ void set_mass(Json& body, double kg) {
   body["mass_kg"] = kg;
 }
 
-/// Nothing: as long as the scene says. A run on the page goes on after that, and so may what is done
-/// to it; the scene that has these pushes lasts until the last of them.
+/// Nothing: as long as the scene says. A run on the page goes on after that, and so may what is
+/// done to it; the scene that has these pushes lasts until the last of them.
 std::optional<double> duration_of(const Recipe& recipe, double of_scene_s) {
   if (recipe.duration_s) return recipe.duration_s;
   double end = of_scene_s;
