@@ -76,6 +76,8 @@ class LinkedBodies final : effects::GroupPlaces {
   /// Whether its control laws drive it otherwise than by what they held before.
   bool is_driven_otherwise(const std::map<int, effects::Memory>& before) const;
   bool has_constraints() const { return row_count_ > 0; }
+  /// Whether it is integrated in joint coordinates as long as nothing touches it.
+  bool has_tree() const { return tree_.has_value(); }
   /// Whether forces act on its bodies that follow within a step where these are and how fast:
   /// springs, drag, water. What a motor holds does not.
   bool has_forces_of_motion() const;

@@ -584,11 +584,13 @@ void MovingWorld::commit(double t) {
   if (is_cut_short) counters_.undone_integrations += before;
   states_ = std::move(arrived);
   time_ = t;
-  if (!is_cut_short) return;
-  // momenta that change evenly between a step's ends fit rods and joints at these only
+  // Momenta that change evenly between a step's ends fit rods and joints at these only, and what
+  // contacts give along the directions of the middle fits them there. A tree goes on from states
+  // that fit its joints, so that nothing jumps where its last contact ends.
   for (LinkedBodies& group : linked_) {
     const std::optional<SmoothPath>& path = paths_[group.bodies().front()].smooth;
-    if (path && path->momenta() == SmoothPath::Momenta::kEven)
+    if ((is_cut_short || group.has_tree()) && path &&
+        path->momenta() == SmoothPath::Momenta::kEven)
       group.project_velocities(states_, time_);
   }
 }
