@@ -589,8 +589,7 @@ void MovingWorld::commit(double t) {
   // that fit its joints, so that nothing jumps where its last contact ends.
   for (LinkedBodies& group : linked_) {
     const std::optional<SmoothPath>& path = paths_[group.bodies().front()].smooth;
-    if ((is_cut_short || group.has_tree()) && path &&
-        path->momenta() == SmoothPath::Momenta::kEven)
+    if ((is_cut_short || group.has_tree()) && path && path->momenta() == SmoothPath::Momenta::kEven)
       group.project_velocities(states_, time_);
   }
 }
