@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/json_output.h"
+#include "framework/cli/kept_at_stop.h"
 #include "framework/cli/module_choice.h"
 #include "framework/cli/read_truth.h"
 #include "framework/cli/record.h"
@@ -109,19 +110,25 @@ void run_battery(Context& context, const BatteryOptions& options) {
     fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case",
                "closest to its threshold; methods that must fail", "value", "threshold", "margin",
                "verdict");
+  const fs::path page = fs::path(options.out) / "battery.html";
+  const std::string subtitle =
+      std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") +
+      "; integration: " + given.laws.integrator_source +
+      ", impulses: " + given.laws.impulse_source + ", constraints: " + given.laws.constraint_source;
+  KeptAtStop stop("cases");
   for (const battery::Case& a_case : wanted) {
     fmt::print(stderr, "tumble: {} {}\n", a_case.row, a_case.name);
     rows.push_back(battery::run(a_case, given));
     if (!options.json) print_row(rows.back(), options.each);
+    const std::string so_far =
+        rows.size() == wanted.size()
+            ? ""
+            : fmt::format("; {} of {} cases so far", rows.size(), wanted.size());
+    stop.keep(rows.size(), wanted.size(), page.string(), [&] {
+      report::write_battery_page(rows, subtitle + so_far, record_of(context), page);
+    });
   }
   const report::BatteryCount count = report::count_of(rows);
-  const fs::path page = fs::path(options.out) / "battery.html";
-  report::write_battery_page(
-      rows,
-      std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") +
-          "; integration: " + given.laws.integrator_source + ", impulses: " +
-          given.laws.impulse_source + ", constraints: " + given.laws.constraint_source,
-      record_of(context), page);
   if (options.json)
     print_json(context, {{"is_long", options.is_long},
                          {"summary", report::sentence_of(count)},

@@ -10,6 +10,7 @@
 #include "framework/cli/verb.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/version.h"
+#include "framework/grading/course/handout_page.h"
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/class_files.h"
 #include "framework/grading/grades/class_facts.h"
@@ -131,10 +132,17 @@ void write_page(const Class& all, const grading::Grade& whole, const std::string
   const grading::Grade grade = grading::for_student(whole);
   grading::PageView view;
   view.is_alone = true;
+  const modules::ModuleKind& kind = all.context.registry.find(all.settings.assignment);
+  const fs::path handout = out / grading::kHandoutPage;
+  if (whole.has_handout && fs::exists(handout)) {
+    view.handout = grading::kHandoutPage;
+    view.handout_name = kind.folder;
+  }
   view.bench = grading::bench_of(out / grade.folder, script);
-  grading::submission_page(all.context.registry.find(all.settings.assignment), grade,
-                           version_in_words(kProgramVersion), view)
+  grading::submission_page(kind, grade, version_in_words(kProgramVersion), view)
       .write(to / "index.html");
+  if (!view.handout.empty())  // a copy: what lies outside of OUT may be changed
+    fs::copy_file(handout, to / view.handout, fs::copy_options::overwrite_existing);
   if (fs::is_directory(out / grade.folder / "media"))
     fs::copy(out / grade.folder / "media", to / "media",
              fs::copy_options::recursive | fs::copy_options::overwrite_existing);

@@ -16,6 +16,7 @@
 #include "framework/cli/cost_sampling.h"
 #include "framework/cli/cost_scheduler.h"
 #include "framework/cli/json_output.h"
+#include "framework/cli/kept_at_stop.h"
 #include "framework/core/files.h"
 #include "framework/report/tables_json.h"
 #include "framework/sampling/sampler.h"
@@ -76,14 +77,19 @@ void tell_impacts(const Context& context, const CostWords& words) {
 void run_cost(Context& context, const CostWords& words) {
   const std::filesystem::path out = words.out;
   expect_writable((words.scene == kAllWord ? out : out / words.name()) / "index.html");
+  KeptAtStop stop(words.scene == kAllWord ? "scenes" : "methods");
   if (words.scene == kImpactWord) return tell_impacts(context, words);
-  if (words.scene == kAllWord) return cost_of_all(context, words);
+  if (words.scene == kAllWord) return cost_of_all(context, words, stop);
   for (const modules::ModuleKind* kind : context.registry.all()) {
     if (kind->id != words.scene) continue;
     if (kind->is_scheduler) return cost_of_scheduler(context, *kind, words);
     if (kind->note<sampling::Sampler>().functions) return cost_of_sampling(context, *kind, words);
   }
-  const MeasuredCost measured = measure_cost(context, words);
+  const auto keep = [&](const MeasuredCost& so_far, std::size_t done, std::size_t all) {
+    const std::filesystem::path page = out / words.name() / "index.html";
+    stop.keep(done, all, page.string(), [&] { report::write_cost_page(so_far.page, page); });
+  };
+  const MeasuredCost measured = measure_cost(context, words, keep);
   print_and_write(context, measured.page, words, measured.against);
   if (measured.not_attempted) context.exit = ExitCode::kNotAttempted;
 }

@@ -200,7 +200,7 @@ void write_page(const Context& context, const std::vector<report::Table>& tables
 
 }  // namespace
 
-void cost_of_all(Context& context, const CostWords& words) {
+void cost_of_all(Context& context, const CostWords& words, KeptAtStop& stop) {
   if (words.n || words.duration_s || !words.on.empty())
     throw UserError("tumble cost all", "sizes, durations and --on belong to one scene",
                     "Leave --n, --duration-s and --on out, or name a scene.");
@@ -221,6 +221,8 @@ void cost_of_all(Context& context, const CostWords& words) {
                                               static_cast<double>(scenes.size() - k) / 60.0)));
     lines.push_back(line_of(context, words, scenes[k]));
     if (!lines.back().problem.empty()) context.exit = ExitCode::kCheckFailed;
+    stop.keep(lines.size(), scenes.size(), (fs::path(words.out) / "index.html").string(),
+              [&] { write_page(context, {table_of(lines)}, words, false); });
   }
   std::vector<report::Table> tables{table_of(lines)};
   const fs::path rows = fs::path("out") / "peers" / "rows";

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "framework/cli/cost_methods.h"
+#include "framework/cli/kept_at_stop.h"
 
 namespace tumble::cli {
 
@@ -11,6 +12,7 @@ inline constexpr const char* kAllWord = "all";
 /// Writes OUT/SCENE/index.html of every scene and OUT/index.html with the table, and prints the
 /// tables. Peers are included where tests/bench/peers/run.sh has left rows in out/peers/rows. A
 /// scene that fails gives a line with its error, and exit code 1.
-void cost_of_all(Context& context, const CostWords& words);
+/// @param stop  keeps OUT/index.html after each scene
+void cost_of_all(Context& context, const CostWords& words, KeptAtStop& stop);
 
 }  // namespace tumble::cli

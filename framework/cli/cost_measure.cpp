@@ -160,7 +160,9 @@ class Refinements {
     for (const CostMethod& method : subject.methods) refinements.push_back({method, {}});
   }
 
-  void run() {
+  /// @param each  called after each part
+  void run(const std::function<void()>& each) {
+    each_ = each;
     const double first_until = until_ - kForTheBest * budget_;
     for (std::size_t k = 0; k < refinements.size(); ++k) {
       const double share =
@@ -214,6 +216,10 @@ class Refinements {
                      refinements.size(), refinements[k].method.name, fineness_of(result), found,
                      left());
         });
+    if (!each_) return;
+    const double before = cpu_seconds();
+    each_();
+    until_ += cpu_seconds() - before;
   }
 
   bool can_go_on(std::size_t k) const {
@@ -292,6 +298,7 @@ class Refinements {
   double budget_;
   engines::CostOptions options_;
   double until_;
+  std::function<void()> each_;
 };
 
 /// Whether one of a scene's numbers measures accuracy: a gap with tolerance 0 is only kept or not.
@@ -459,7 +466,7 @@ void check_with_files(const Context& context, const scene::Scene& scene, const L
   }
 }
 
-MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
+MeasuredCost measure_cost(const Context& context, const CostWords& asked, const CostSoFar& each) {
   asked.steps_s();  // refused before any run
   engines::CostOptions options;
   options.timewarp = engines::fast_timewarp();
@@ -490,35 +497,54 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
                           [](const CostMethod& method) { return method.word == "rk4"; });
   // Runs all methods within the budget.
   Refinements all(subject, reference, words, options);
-  all.run();
-  const std::vector<Refinement>& refinements = all.refinements;
   // The page and its summary.
-  MeasuredCost measured;
-  measured.page = page_of(context, refinements, reference, subject);
-  measured.page.not_run = subject.not_run;
-  measured.page.not_run.insert(measured.page.not_run.end(), all.not_run.begin(), all.not_run.end());
-  if (usual_n) {
-    measured.size = fmt::format("n = {}", *words.n);
-    measured.page.title += ", " + measured.size;
-    measured.page.readings.push_back(
-        fmt::format("Measured with n = {}: at its usual size, {}, one run takes longer than {:.3g} "
-                    "s here. Request it with --n {} and a larger --budget-s.",
-                    *words.n, *usual_n, std::max(kLeastProbe, kProbe * words.budget()), *usual_n));
-  }
-  if (reference.by_numbers)
-    measured.against = fmt::format(
-        "judged by its numbers, over {:.3g} s: the worst of them over its tolerance [-]",
-        reference.duration_s);
-  else
-    measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", reference.what,
-                                   reference.floor_m, reference.duration_s);
-  measured.duration_s = reference.duration_s;
-  measured.asked_s = reference.asked_s;
-  const auto unwritten = [](const Refinement& refinement) {
-    return !refinement.results.empty() && refinement.results.back().not_attempted;
+  const auto measured_so_far = [&, &words = words, &usual_n = usual_n] {
+    std::vector<Refinement> refinements;
+    MeasuredCost measured;
+    for (const Refinement& refinement : all.refinements)
+      if (!refinement.results.empty()) refinements.push_back(refinement);
+    measured.page = page_of(context, refinements, reference, subject);
+    measured.page.not_run = subject.not_run;
+    measured.page.not_run.insert(measured.page.not_run.end(), all.not_run.begin(),
+                                 all.not_run.end());
+    if (usual_n) {
+      measured.size = fmt::format("n = {}", *words.n);
+      measured.page.title += ", " + measured.size;
+      measured.page.readings.push_back(fmt::format(
+          "Measured with n = {}: at its usual size, {}, one run takes longer than {:.3g} "
+          "s here. Request it with --n {} and a larger --budget-s.",
+          *words.n, *usual_n, std::max(kLeastProbe, kProbe * words.budget()), *usual_n));
+    }
+    if (reference.by_numbers)
+      measured.against = fmt::format(
+          "judged by its numbers, over {:.3g} s: the worst of them over its tolerance [-]",
+          reference.duration_s);
+    else
+      measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", reference.what,
+                                     reference.floor_m, reference.duration_s);
+    measured.duration_s = reference.duration_s;
+    measured.asked_s = reference.asked_s;
+    const auto unwritten = [](const Refinement& refinement) {
+      return !refinement.results.empty() && refinement.results.back().not_attempted;
+    };
+    measured.not_attempted = std::any_of(refinements.begin(), refinements.end(), unwritten);
+    return measured;
   };
-  measured.not_attempted = std::any_of(refinements.begin(), refinements.end(), unwritten);
-  return measured;
+  const std::size_t methods = all.refinements.size();
+  all.run([&] {
+    if (!each) return;
+    MeasuredCost so_far = measured_so_far();
+    const auto is_left_out = [&](const std::string& name) {
+      return std::any_of(all.not_run.begin(), all.not_run.end(),
+                         [&](const std::string& why) { return why.starts_with(name + ": "); });
+    };
+    for (const Refinement& refinement : all.refinements)
+      if (refinement.results.empty() && !is_left_out(refinement.method.name))
+        so_far.page.not_run.push_back(refinement.method.name +
+                                      ": its turn had not come when this page was written");
+    each(so_far, so_far.page.curves.size(), methods);
+  });
+  return measured_so_far();
 }
 
 }  // namespace tumble::cli

@@ -1,6 +1,7 @@
 /// The measurements of tumble cost for one scene or module, as a page.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,16 @@ struct MeasuredCost {
   bool not_attempted = false;  // a required function is a stub
 };
 
+/// What is measured so far, where `all` methods are to be; the others are named as not run.
+using CostSoFar =
+    std::function<void(const MeasuredCost& so_far, std::size_t done, std::size_t all)>;
+
 /// Computes the reference, runs every refinement, and reads them. Progress goes to stderr.
+/// @param each  called whenever a method was measured farther; its time is nobody's budget
 /// @throws UserError as find_subject, and for a scene with neither a reference solution nor numbers
 ///   of its own
-MeasuredCost measure_cost(const Context& context, const CostWords& words);
+MeasuredCost measure_cost(const Context& context, const CostWords& words,
+                          const CostSoFar& each = {});
 
 /// A file of tests/truths for the same problem gives a better error floor than two runs of one
 /// engine.

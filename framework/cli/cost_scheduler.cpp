@@ -286,6 +286,9 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
                                  : line.is_right     ? report::Look::kGood
                                  : line.is_attempted ? report::Look::kBad
                                                      : report::Look::kMuted);
+    if (line.more.empty()) continue;
+    if (!words.json) fmt::print("{}\n", line.more);
+    page.fold("More about it", line.more);
   }
   for (const report::Plot& plot : grading::scheduler_plots(curves)) page.plot(plot);
   if (!measuring.sized().empty()) page.plot(plot_of_prices(ways));

@@ -3,6 +3,7 @@
 // Without a scene: the course's scenes on one page (engines_all).
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "framework/cli/engines_all.h"
 #include "framework/cli/find_scene.h"
 #include "framework/cli/json_output.h"
+#include "framework/cli/kept_at_stop.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -24,8 +26,10 @@ namespace {
 
 using report::EngineRow;
 
+/// @param each  called after each engine with the rows so far
 std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene,
-                               const ChosenLaws& chosen, const EnginesWords& words) {
+                               const ChosenLaws& chosen, const EnginesWords& words,
+                               const std::function<void(const std::vector<EngineRow>&)>& each) {
   std::vector<EngineRun> runs;
   for (EngineChoice& choice : engines_named(words.engines)) {
     std::fprintf(stderr, "tumble: %s by %s\n", scene.name.c_str(), choice.engine.c_str());
@@ -35,8 +39,9 @@ std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene
     choice.threads = words.threads;
     choice.by_the_clock = words.threads > 1;
     runs.push_back(measure_engine(context, scene, chosen, choice));
+    tell_agreement(runs);
+    each(rows_of(runs));
   }
-  tell_agreement(runs);
   return rows_of(runs);
 }
 
@@ -62,14 +67,25 @@ void run_engines(Context& context, const EnginesWords& words) {
   const std::filesystem::path page = std::filesystem::path(words.out) / scene.name / "index.html";
   expect_writable(page);
   for (const int n : words.sizes) find_scene(context, words.scene, n);  // refused before any run
+  KeptAtStop stop("runs");
+  const bool runs_own_size = words.sizes.empty() || words.n;
+  const std::size_t all = engines_named(words.engines).size() *
+                          (words.sizes.size() + static_cast<std::size_t>(runs_own_size));
+  std::size_t done = 0;
+  const auto keep = [&](const std::vector<EngineRow>& so_far) {
+    stop.keep(++done, all, page.string(), [&] {
+      report::write_engines_page(scene.title, scene.about, so_far, ladder,
+                                 record_of(context, scene), page);
+    });
+  };
   for (const int n : words.sizes) {
-    ladder.push_back(run_all(context, find_scene(context, words.scene, n), chosen, words));
+    ladder.push_back(run_all(context, find_scene(context, words.scene, n), chosen, words, keep));
     if (words.json) continue;
     fmt::print("n = {}\n", n);
     print_rows(ladder.back());
   }
   const std::vector<EngineRow> rows =
-      ladder.empty() || words.n ? run_all(context, scene, chosen, words) : ladder.back();
+      runs_own_size ? run_all(context, scene, chosen, words, keep) : ladder.back();
   report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene),
                              page);
   if (words.json) {

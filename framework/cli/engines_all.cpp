@@ -11,6 +11,7 @@
 #include "framework/cli/engine_rows.h"
 #include "framework/cli/find_scene.h"
 #include "framework/cli/json_output.h"
+#include "framework/cli/kept_at_stop.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -305,6 +306,8 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   double total = ladder_share + kPongShare;
   for (const Shown& shown : all) total += share_of(shown);
   TableProgress progress(total);
+  std::optional<KeptAtStop> stop;  // a larger report has its own end
+  if (!words.quiet) stop.emplace("scenes");
   report::EnginesIndex index;
   index.record = record_of(context);
   index.is_full = words.full;
@@ -329,7 +332,9 @@ void engines_of_all(Context& context, const EnginesWords& words) {
     const EnginesScene& scene = index.scenes.back();
     if (!scene.problem.empty() || !scene.is_right) context.exit = ExitCode::kCheckFailed;
     // after each scene: a stopped run leaves the page of all scenes so far
-    report::write_engines_index(index, fs::path(words.out) / "index.html");
+    const auto write = [&] { report::write_engines_index(index, out / "index.html"); };
+    stop ? stop->keep(index.scenes.size(), all.size(), (out / "index.html").string(), write)
+         : write();
     if (!words.quiet && !words.json) print_scene(scene);
   }
   if (words.quiet) return;

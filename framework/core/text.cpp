@@ -1,8 +1,33 @@
 #include "framework/core/text.h"
 
 #include <cctype>
+#include <cstdio>
+#include <string_view>
 
 namespace tumble {
+namespace {
+
+bool is_small(char c) { return c >= 'a' && c <= 'z'; }
+
+std::size_t letters_from(const std::string& text, std::size_t at) {
+  std::size_t end = at;
+  while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
+  return end - at;
+}
+
+// "the kinetic energy", "a ball", "round-off"; not "e = 1", "a t^2", "mu = 0.5", "w' = 0",
+// "rk4_step".
+bool begins_with_a_word(const std::string& text) {
+  const std::size_t length = letters_from(text, 0);
+  if (length == text.size()) return length > 1;
+  const char end = text[length], next = length + 1 < text.size() ? text[length + 1] : ' ';
+  if (end == '-' || end == '\'') return length > 1 && letters_from(text, length + 1) > 0;
+  if (end != ' ') return length > 1 && std::string_view(",:;.").find(end) != std::string_view::npos;
+  if (length == 1) return text[0] == 'a' && letters_from(text, 2) > 1;
+  return std::string_view("=<>+*/^").find(next) == std::string_view::npos;
+}
+
+}  // namespace
 
 std::string lowercase(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -11,6 +36,34 @@ std::string lowercase(std::string text) {
 
 std::string counted(std::size_t n, const std::string& noun) {
   return std::to_string(n) + ' ' + noun + (n == 1 ? "" : "s");
+}
+
+std::string sentence(std::string text) {
+  if (text.empty()) return text;
+  if (is_small(text[0])) {
+    if (begins_with_a_word(text))
+      text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    else
+      text.insert(0, "Here ");
+  }
+  if (std::string_view(".!?").find(text.back()) == std::string_view::npos) text += '.';
+  return text;
+}
+
+std::string sentences(const std::string& first, const std::string& second) {
+  return sentence(first) + (first.empty() || second.empty() ? "" : " ") + sentence(second);
+}
+
+std::string three_digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x == 0.0 ? 0.0 : x);
+  std::string shown = text;
+  // "1e-09", "1e+06"
+  const std::size_t power = shown.find('e');
+  if (power == std::string::npos || power + 2 >= shown.size()) return shown;
+  while (power + 3 < shown.size() && shown[power + 2] == '0') shown.erase(power + 2, 1);
+  if (shown[power + 1] == '+') shown.erase(power + 1, 1);
+  return shown;
 }
 
 std::string without_middle(const std::string& text, std::size_t width) {

@@ -13,6 +13,16 @@ std::string lowercase(std::string text);
 /// "1 test", "3 tests".
 std::string counted(std::size_t n, const std::string& noun);
 
+/// A text as a sentence: a capital letter at its beginning, a full stop at its end. Where it begins
+/// with a symbol or a name of the program ("e = 1: ..."), that stays as it is, behind "Here". An
+/// empty text stays empty.
+std::string sentence(std::string text);
+/// Both, with a blank between them where neither is empty.
+std::string sentences(const std::string& first, const std::string& second);
+
+/// Three digits, and no zeros that say nothing: "0.323", "1e-9", never "-0".
+std::string three_digits(double x);
+
 /// At most `width` bytes: a longer text loses its middle, "begin..end".
 std::string without_middle(const std::string& text, std::size_t width);
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -36,9 +37,14 @@ class Connection {
   /// The call ends without its answer because a callback threw; the worker still waits inside the
   /// call.
   virtual void abandon_call() {}
-  /// Called before each callback runs. May throw to end the call (the budget of evaluations is
-  /// spent).
-  virtual void count_callback() = 0;
+  /// Called before each callback runs. False: a budget is used up (of evaluations, or of time), and
+  /// the call ends by end_at_budget().
+  virtual bool count_callback() = 0;
+  /// Must throw; the call is over.
+  [[noreturn]] virtual void end_at_budget(const char* function) {
+    refuse(function, "used up its budget");
+    throw std::runtime_error(function);  // unreachable: refuse throws
+  }
   /// A callback has run, and its answer is sent next: the worker resumes the call.
   virtual void resume_call() {}
   virtual Channel::Clock::time_point deadline() const = 0;
@@ -130,7 +136,10 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           return result;
         });
       case MessageKind::kCallback: {
-        connection.count_callback();
+        if (!connection.count_callback()) {
+          connection.note_arguments(name, show_arguments(arguments...));
+          connection.end_at_budget(name);
+        }
         const Bytes answer = transport([&] {
           std::uint32_t which = 0;
           reader.value(which);

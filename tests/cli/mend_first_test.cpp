@@ -2,6 +2,8 @@
 // student.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/grades/scoring.h"
@@ -108,10 +110,51 @@ TEST_F(MendFirst, ScenesThatAreRightAreFolded) {
   ASSERT_NE(fold, std::string::npos);
   EXPECT_GT(html.find("A right scene"), fold);
   EXPECT_LT(html.find("A scene that stopped"), fold);
-  EXPECT_NE(html.find("ended early: SIGSEGV, in hit, a9_things.cpp:7</p>"), std::string::npos);
+  EXPECT_NE(html.find("ended early: SIGSEGV, in hit, a9_things.cpp:7.</p>"), std::string::npos);
   EXPECT_NE(html.find("called with: x = 3"), std::string::npos);
   grade.media = {right};
   EXPECT_EQ(page(grade).find("1 scene is right"), std::string::npos);
+}
+
+TEST_F(MendFirst, ANumberOfASceneIsToldInSentences) {
+  SceneMedia scene;
+  scene.scene = scene.title = "boxes";
+  engines::CheckResult wrong;
+  wrong.kind = "angular_momentum";
+  wrong.passed = false;
+  wrong.subject = "all";
+  wrong.value = 0.3234;
+  wrong.threshold = 1e-9;
+  wrong.unit = "kg m^2/s";
+  wrong.why = "both impulses act at the same point: round-off only";
+  wrong.detail = "at t = 0.933 s";
+  engines::CheckResult symbols = wrong;
+  symbols.value = std::numeric_limits<double>::infinity();
+  symbols.at_least = true;
+  symbols.why = "e = 1, and rods do no work";
+  scene.checks = {wrong, symbols};
+  grade.media = {scene};
+  const std::string html = page(grade);
+  EXPECT_NE(html.find("At t = 0.933 s. Both impulses act at the same point: round-off only."),
+            std::string::npos)
+      << html;
+  EXPECT_NE(html.find("0.323 kg m^2/s, allowed at most 1e-9 kg m^2/s"), std::string::npos);
+  EXPECT_NE(html.find("At t = 0.933 s. Here e = 1, and rods do no work."), std::string::npos);
+  EXPECT_NE(html.find("no number, allowed at least 1e-9 kg m^2/s"), std::string::npos);
+}
+
+// As at the scene's own picture.
+TEST_F(MendFirst, TheArgumentsThatEndedACostAreFolded) {
+  grade.cost.scene = "A free top";
+  grade.cost.lines = {line_that_says(
+      "your rk4: the refinement sequence ended early: no answer within 3 s\n  called with: t = 1")};
+  const std::string html = page(grade);
+  EXPECT_NE(
+      html.find(
+          "Your rk4: the refinement sequence ended early: no answer within 3 s.</p>\n<details"),
+      std::string::npos)
+      << html;
+  EXPECT_NE(html.find("<pre>  called with: t = 1</pre></details>"), std::string::npos) << html;
 }
 
 TEST_F(MendFirst, AStudentSeesTheCauseAndNothingOfAHiddenTest) {

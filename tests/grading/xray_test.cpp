@@ -81,6 +81,23 @@ TEST(Xray, SaysThatTheTermCannotBeReadWhereNoVariantFits) {
   EXPECT_EQ(xray_in_words(impulse(7.0), false).find("<-"), std::string::npos);  // no answer came
 }
 
+// A step that takes a slope at the wrong place adds up rightly what it got there.
+TEST(Xray, WhatWasAskedMayBeWrongWhereTheAnswerIsRight) {
+  Xray x = impulse(9.0);
+  x.terms[1].found = numbers(1.0);
+  EXPECT_TRUE(is_answered_rightly(x)) << "a part of the answer, which is right";
+  x.terms[1].is_asked = true;
+  EXPECT_FALSE(is_answered_rightly(x));
+  x.variants = {{1, "1, that is e twice,", numbers(9.0)}};
+  const std::string words = xray_in_words(x);
+  EXPECT_NE(words.find("<- what was found comes out with 1, that is e twice, in its place\n"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(words.find("9 N s found, as these terms give"), std::string::npos) << words;
+  x.terms[1].found = numbers(1.5);
+  EXPECT_TRUE(is_answered_rightly(x));
+}
+
 TEST(Xray, ARightAnswerIsNotShown) {
   EXPECT_EQ(xray_in_words(impulse(9.0 * (1 + 1e-14))), "");
   EXPECT_FALSE(is_answered_rightly(impulse(std::numeric_limits<double>::quiet_NaN())));
@@ -104,6 +121,30 @@ TEST(Xray, ReadsTheLastCallAsItTravelled) {
   EXPECT_EQ(xray_of_last_call(), "");
   last_call() = {"unknown", {}, {}};
   EXPECT_EQ(xray_of_last_call(), "");
+}
+
+// A test that asks more of a function before it tells what is wrong.
+TEST(Xray, GoesBackToTheCallThatWasAnsweredWrongly) {
+  ASSERT_TRUE(add_xray_of("doubled", doubled));
+  const auto call = [](double x, double found) {
+    modules::Writer arguments, answer;
+    arguments.value(x);
+    arguments.value(Vector3d(1, 2, 3));
+    answer.value(found);
+    begin_call_to_show();
+    last_call() = {"doubled", arguments.bytes, answer.bytes};
+  };
+  call(4.0, 9.0);
+  call(3.0, 7.0);
+  call(1.0, 2.0);
+  call(2.0, 4.0);
+  EXPECT_NE(xray_of_last_call().find("8 expected, 9 found"), std::string::npos);
+  call(5.0, 11.0);
+  EXPECT_NE(xray_of_last_call().find("10 expected, 11 found"), std::string::npos);
+  begin_call_to_show();
+  last_call().function = "another";
+  last_call().answer = {1};
+  EXPECT_EQ(xray_of_last_call(), "") << "it is of no other function";
 }
 
 }  // namespace

@@ -147,7 +147,10 @@ class Loop : public modules::Connection {
     ::close(ends_[1]);
   }
   Channel& begin_call(const char*) override { return *near_; }
-  void count_callback() override { ++callbacks; }
+  bool count_callback() override {
+    ++callbacks;
+    return true;
+  }
   Channel::Clock::time_point deadline() const override {
     return Channel::Clock::now() + std::chrono::seconds(10);
   }

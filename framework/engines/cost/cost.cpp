@@ -11,6 +11,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
+#include "framework/core/text.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/truths/memory_scene.h"
@@ -125,9 +126,11 @@ void judge(const scene::Scene& scene, const Trajectory& run, CostResult& result)
     if (!check.passed && !(share > 1.0)) share = std::numeric_limits<double>::infinity();
     if (share <= result.error_m) continue;
     result.error_m = share;
+    const std::string unit = check.unit.empty() ? "" : ' ' + check.unit;
     result.worst =
-        fmt::format("{} of {}: {:.3g} {}{:.3g} {}", check.kind, check.subject, check.value,
-                    check.at_least ? ">= " : "<= ", check.threshold, check.unit);
+        fmt::format("{}{}: {}{}, allowed at {} {}{}", check.kind,
+                    check.subject == "all" ? "" : " of " + check.subject, three_digits(check.value),
+                    unit, check.at_least ? "least" : "most", three_digits(check.threshold), unit);
   }
   double scale = 0.0, lowest = std::numeric_limits<double>::infinity();
   for (const Frame& frame : run.frames) {

@@ -45,4 +45,20 @@ void write_handout(const Course& course, const std::string& id, const fs::path& 
   });
 }
 
+void add_handout(const fs::path& page, const fs::path& folder) {
+  const fs::path own = folder / kHandoutPage, draft = folder / ".handout.draft0.html";
+  std::error_code failed;
+  if (!fs::exists(page) || !fs::is_directory(folder) || fs::equivalent(page, own, failed)) return;
+  fs::remove(draft, failed);
+  fs::create_hard_link(page, draft, failed);
+  if (failed == std::errc::too_many_links) {  // from here on another file with the same text
+    const fs::path again = page.parent_path() / ".handout.draft0.html";
+    fs::copy_file(page, again, fs::copy_options::overwrite_existing);
+    fs::rename(again, page);
+    fs::create_hard_link(page, draft, failed);
+  }
+  if (failed) fs::copy_file(page, draft, fs::copy_options::overwrite_existing);
+  fs::rename(draft, own);
+}
+
 }  // namespace tumble::grading

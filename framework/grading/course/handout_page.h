@@ -20,4 +20,8 @@ bool has_handout(const Course& course, const std::string& id);
 /// @throws UserError when the file cannot be written
 void write_handout(const Course& course, const std::string& id, const std::filesystem::path& file);
 
+/// Puts that page into a submission's folder, which can then be handed on alone: as one more name
+/// of the same file, which takes no room; as a copy where the file system gives none.
+void add_handout(const std::filesystem::path& page, const std::filesystem::path& folder);
+
 }  // namespace tumble::grading

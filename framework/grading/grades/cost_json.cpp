@@ -86,7 +86,8 @@ Json cost_json(const CostSection& cost) {
     lines.push_back({{"reading", line.reading},
                      {"is_right", line.is_right},
                      {"is_attempted", line.is_attempted},
-                     {"is_wasteful", line.is_wasteful}});
+                     {"is_wasteful", line.is_wasteful},
+                     {"more", line.more}});
   for (const report::Plot& plot : cost.plots) plots.push_back(plot_json(plot));
   for (const report::Table& table : cost.tables) tables.push_back(table_json(table));
   return {{"scene", cost.scene},
@@ -101,8 +102,8 @@ CostSection cost_of(const Json& json) {
   cost.scene = json.at("scene");
   cost.truth = json.at("truth");
   for (const Json& line : json.at("lines"))
-    cost.lines.push_back(
-        {line.at("reading"), line.at("is_right"), line.at("is_attempted"), line.at("is_wasteful")});
+    cost.lines.push_back({line.at("reading"), line.at("is_right"), line.at("is_attempted"),
+                          line.at("is_wasteful"), line.value("more", std::string())});
   for (const Json& plot : json.at("plots")) cost.plots.push_back(plot_of(plot));
   for (const Json& table : json.at("tables")) cost.tables.push_back(table_of(table));
   return cost;

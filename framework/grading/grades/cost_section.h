@@ -17,7 +17,11 @@ struct CostLine {
   bool is_right = false;  // the method has its nominal order and accuracy
   bool is_attempted = true;
   bool is_wasteful = false;  // right, but costlier than necessary
+  std::string more = {};  // of what ended it: the arguments of its last call, which fill a screen
 };
+
+/// What is to be read in a line, of a text whose first line says it.
+CostLine line_that_says(const std::string& text);
 
 struct CostSection {
   std::string scene;            // its title; empty: this module is not measured

@@ -100,7 +100,7 @@ struct Grade {
   std::string student_id;            // of the submission
   std::string sandbox;               // what protected the grader, in words
   bool is_official = true;           // the policy accepts that protection
-  bool has_handout = false;          // OUT/handout.html, which stories link to
+  bool has_handout = false;          // handout.html, which stories link to
   std::string no_page_code = {};     // why its code does not run in its page, where it was to
   // for the grader only: "the pictures: why", of each stage behind the verdicts that failed
   // (stages.h)

@@ -337,7 +337,7 @@ std::map<std::string, std::string> digests_below(const fs::path& folder) {
   for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
        it.increment(failed)) {
     const std::string name = it->path().lexically_relative(folder).string();
-    if (fs::is_directory(it->symlink_status()) || name == kRecord) continue;
+    if (fs::is_directory(it->symlink_status()) || name == kRecord || name == kHandoutPage) continue;
     digests[name] =
         fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "not a file";
   }
@@ -430,7 +430,7 @@ void write_grade(const modules::ModuleKind& kind, const Grade& grade, const Grad
     }
   };
   PageView view;
-  if (grade.has_handout) view = {std::string("../") + kHandoutPage, kind.folder};
+  if (grade.has_handout) view = {kHandoutPage, kind.folder};
   write_page("index.html", [&] {
     view.bench = bench_of(folder, laws.script, laws.right);
     view.no_right_law = laws.why_no_right;

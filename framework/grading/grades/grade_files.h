@@ -26,7 +26,7 @@ std::string csv_cell(const std::string& raw);
 /// The cell of a student's name, which is never read as the row of points possible.
 std::string csv_name(const std::string& name);
 
-/// record.json: the grade with its key, and the digest of every other file of its folder.
+/// record.json: the grade with its key, and the digests of digests_below().
 struct GradeRecord {
   Grade grade;
   GradeKey key;
@@ -46,7 +46,8 @@ struct EarlierRun {
 EarlierRun read_earlier_run(const std::filesystem::path& folder, const std::string& assignment,
                             const std::string& machine_key);
 
-/// Digests of all files of a folder but record.json, by path.
+/// Digests of all files of a folder, by path, but of record.json and of the handout, which is put
+/// there last and is everybody's.
 std::map<std::string, std::string> digests_below(const std::filesystem::path& folder);
 
 /// Writes results.json, index.html and record.json of a grade into its folder, which already has

@@ -551,9 +551,12 @@ class Batch {
     nlohmann::ordered_json times = {{"command", course_.command},
                                     {"seconds", nlohmann::ordered_json::object()}};
     std::size_t left_out = 0, distrusted = 0;
+    std::vector<fs::path> with_handout;
     for (Work& work : work_) {
       (work.earlier.problem.empty() ? left_out : distrusted) += work.is_left_out;
       if (work.is_left_out) continue;
+      if (work.record.grade.has_handout && !work.is_untouched)
+        with_handout.push_back(place_of(work));
       work.record.grade.remarks = work.remarks;
       work.record.grade.student_id = work.submission->student_id;
       grades.push_back(std::move(work.record.grade));
@@ -576,7 +579,10 @@ class Batch {
     make_page("index.html", [&] {
       index_page(kind_, grades, static_cast<bool>(options_.overview)).write(out / "index.html");
     });
-    make_page(kHandoutPage, [&] { write_handout(course_, id_, out / kHandoutPage); });
+    make_page(kHandoutPage, [&] {
+      write_handout(course_, id_, out / kHandoutPage);
+      for (const fs::path& place : with_handout) add_handout(out / kHandoutPage, place);
+    });
     write_whole(out / "times.json",
                 times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
     if (options_.overview) options_.overview(out, grades);

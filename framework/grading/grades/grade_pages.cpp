@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -123,8 +124,10 @@ void add_changes(report::Page& page, const Grade& grade) {
 }
 
 std::string numbers_of(const engines::CheckResult& c) {
-  return fmt::format("{:.3g} {} {:.3g}{}{}", c.value == 0.0 ? 0.0 : c.value,
-                     c.at_least ? ">=" : "<=", c.threshold, c.unit.empty() ? "" : " ", c.unit);
+  const std::string unit = c.unit.empty() ? "" : ' ' + c.unit,
+                    reached = std::isfinite(c.value) ? three_digits(c.value) + unit : "no number";
+  return fmt::format("{}, allowed at {} {}{}", reached, c.at_least ? "least" : "most",
+                     three_digits(c.threshold), unit);
 }
 
 std::string title_of_check(std::string kind) {
@@ -139,7 +142,7 @@ void add_checks(report::Page& page, const SceneMedia& scene, bool passed) {
   table.columns = {{"Judged by"},
                    {"Of"},
                    {"Verdict"},
-                   {"Reached and allowed", true},
+                   {"Reached and allowed"},
                    {passed ? "Because" : "Where, and because"}};
   for (const auto& c : scene.checks)
     if (c.passed == passed)
@@ -148,7 +151,7 @@ void add_checks(report::Page& page, const SceneMedia& scene, bool passed) {
            {c.subject},
            {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad},
            {numbers_of(c)},
-           {c.passed || c.detail.empty() ? c.why : c.detail + ". " + c.why, "", Look::kMuted}});
+           {c.passed ? sentence(c.why) : sentences(c.detail, c.why), "", Look::kMuted}});
   if (table.rows.empty()) return;
   if (!passed) return page.table(table);
   page.begin(report::Part::kFold, counted(table.rows.size(), "number") + " right");
@@ -211,9 +214,10 @@ void add_scene(report::Page& page, const SceneMedia& scene, const std::filesyste
   if (!scene.story.empty()) {
     // The arguments of the call that ended it may fill a screen.
     const std::size_t line = std::min(scene.story.find('\n'), scene.story.size());
-    page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") +
-                       plain_text(scene.story.substr(0, line)),
-                   scene.attempted ? Look::kBad : Look::kMuted);
+    page.paragraph(
+        sentence((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") +
+                 plain_text(scene.story.substr(0, line))),
+        scene.attempted ? Look::kBad : Look::kMuted);
     if (line < scene.story.size())
       page.fold("More about it", plain_text(scene.story.substr(line + 1)));
   } else if (wrong > 0)
@@ -257,11 +261,13 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media,
 void add_cost(report::Page& page, const CostSection& cost) {
   if (cost.scene.empty()) return;
   page.heading("What accuracy costs", 2, "cost");
-  for (const CostLine& line : cost.lines)
+  for (const CostLine& line : cost.lines) {
     page.paragraph(line.reading, line.is_wasteful    ? Look::kWarning
                                  : line.is_right     ? Look::kGood
                                  : line.is_attempted ? Look::kBad
                                                      : Look::kMuted);
+    if (!line.more.empty()) page.fold("More about it", line.more);
+  }
   if (std::none_of(cost.lines.begin(), cost.lines.end(),
                    [](const CostLine& line) { return line.is_attempted; }))
     return;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/cost/showcase.h"
@@ -88,17 +89,14 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostMethod>
 }
 
 CostLine line_of(const Measured& measured, const CostReference& reference) {
-  CostLine line;
+  CostLine line = line_that_says(
+      measured.story.empty()
+          ? engines::read_refinement(measured.method, measured.results, reference, true)
+          : fmt::format("{}: the refinement sequence ended early: {}", measured.method.name,
+                        measured.story));
   line.is_attempted = measured.results.empty() || !measured.results.back().not_attempted;
-  if (!measured.story.empty())
-    line.reading = fmt::format("{}: the refinement sequence ended early. {}", measured.method.name,
-                               plain_text(measured.story));
-  else
-    line.reading =
-        plain_text(engines::read_refinement(measured.method, measured.results, reference, true));
   line.is_right = measured.story.empty() && line.is_attempted &&
                   engines::keeps_promise(measured.method, measured.results, reference);
-  line.reading[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line.reading[0])));
   return line;
 }
 
@@ -136,6 +134,14 @@ fs::path scene_file(const Course& course, const ModuleKind& kind) {
 }
 
 }  // namespace
+
+CostLine line_that_says(const std::string& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  CostLine line;
+  line.reading = sentence(plain_text(text.substr(0, end)));
+  if (end < text.size()) line.more = plain_text(text.substr(end + 1));
+  return line;
+}
 
 CostSection measure_cost(const Course& course, const std::string& id, const fs::path& submission,
                          const CostSectionOptions& options) {

@@ -29,8 +29,8 @@ constexpr const char* kDraft = ".making-";
 constexpr std::array<std::string_view, 9> kOverview = {
     "index.html", "gradebook.csv", "ledger.jsonl", "times.json",  "standing.json",
     "class.html", "pictures.html", "similar.html", "handout.html"};
-constexpr std::array<std::string_view, 4> kOfASubmission = {"index.html", "student.html",
-                                                            "results.json", "record.json"};
+constexpr std::array<std::string_view, 5> kOfASubmission = {
+    "index.html", "student.html", "results.json", "record.json", "handout.html"};
 const char* const kElsewhere = "Give --out a folder of its own, or one that does not exist yet.";
 
 std::string shown(const fs::path& path) { return plain_name(path.string()); }

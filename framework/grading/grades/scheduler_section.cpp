@@ -145,9 +145,7 @@ class RunSequence {
 }  // namespace
 
 CostLine line_of(const SchedulerReading& reading) {
-  CostLine line;
-  line.reading = plain_text(reading.text);
-  line.reading[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line.reading[0])));
+  CostLine line = line_that_says(reading.text);
   line.is_wasteful = reading.kind == SchedulerReading::Kind::kWasteful;
   line.is_right = line.is_wasteful || reading.kind == SchedulerReading::Kind::kRight;
   line.is_attempted = reading.kind != SchedulerReading::Kind::kNotWritten;

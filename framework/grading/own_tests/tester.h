@@ -25,7 +25,7 @@ enum class TestReport : std::uint8_t { kBegins, kPassed, kFailed };
 class TesterConnection final : public modules::Connection {
  public:
   modules::Channel& begin_call(const char*) override { return channel_; }
-  void count_callback() override {}
+  bool count_callback() override { return true; }
   modules::Channel::Clock::time_point deadline() const override {
     return modules::Channel::Clock::time_point::max();
   }

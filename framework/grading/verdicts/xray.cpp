@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <map>
 
 namespace tumble::grading {
@@ -19,23 +20,11 @@ std::map<std::string, XrayOfCall>& xrays() {
   return all;
 }
 
-bool is_near(const VectorXd& a, const VectorXd& b) {
-  if (a.size() != b.size() || !a.allFinite() || !b.allFinite()) return false;
-  const double scale = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-  return (a - b).cwiseAbs().maxCoeff() <= kRoundOff * scale;
-}
-
 std::string digits_of(double x, int digits) {
   if (std::isnan(x)) return "nan";  // its sign says nothing
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, x == 0.0 ? 0.0 : x);
   return text;
-}
-
-std::string shown(const VectorXd& v, const std::string& unit, int digits = kDigits) {
-  std::string text = v.size() == 1 ? "" : "(";
-  for (Eigen::Index i = 0; i < v.size(); ++i) text += (i > 0 ? ", " : "") + digits_of(v[i], digits);
-  return text + (v.size() == 1 ? "" : ")") + (unit.empty() ? "" : ' ' + unit);
 }
 
 // As many digits as tell two values apart: an error of float's size does not show in six.
@@ -106,9 +95,26 @@ std::string why_no_mark(const Xray& xray) {
 
 }  // namespace
 
+bool is_near(const VectorXd& a, const VectorXd& b) {
+  if (a.size() != b.size() || !a.allFinite() || !b.allFinite()) return false;
+  const double scale = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  return (a - b).cwiseAbs().maxCoeff() <= kRoundOff * scale;
+}
+
+std::string shown(const VectorXd& v, const std::string& unit, int digits) {
+  std::string text = v.size() == 1 ? "" : "(";
+  for (Eigen::Index i = 0; i < v.size(); ++i) text += (i > 0 ? ", " : "") + digits_of(v[i], digits);
+  return text + (v.size() == 1 ? "" : ")") + (unit.empty() ? "" : ' ' + unit);
+}
+
 VectorXd numbers(double x) { return VectorXd::Constant(1, x); }
 
-bool is_answered_rightly(const Xray& xray) { return is_near(xray.expected, xray.found); }
+bool is_answered_rightly(const Xray& xray) {
+  return is_near(xray.expected, xray.found) &&
+         std::none_of(xray.terms.begin(), xray.terms.end(), [](const XrayTerm& term) {
+           return term.is_asked && !is_near(term.value, term.found);
+         });
+}
 
 std::string xray_in_words(const Xray& xray, bool is_answered) {
   if (is_answered && is_answered_rightly(xray)) return "";
@@ -125,6 +131,9 @@ std::string xray_in_words(const Xray& xray, bool is_answered) {
     text += line_of(term.name, shown(term.value, term.unit, digits));
     if (is_marked) text += "   <- " + marks[i];
   }
+  if (is_answered && is_near(xray.expected, xray.found))  // a term before it is wrong
+    return text +
+           line_of(xray.answer, shown(xray.found, xray.unit) + " found, as these terms give");
   const int digits = is_answered ? digits_for(xray.expected, xray.found) : kDigits;
   const std::string came =
       is_answered ? shown(xray.found, xray.unit, digits) + " found" : "no answer came";
@@ -142,7 +151,14 @@ LastCall& last_call() {
   return call;
 }
 
-std::string xray_of_last_call() {
+namespace {
+
+std::deque<LastCall>& earlier_calls() {
+  static std::deque<LastCall> calls;
+  return calls;
+}
+
+std::string described_last_call() {
   const LastCall& call = last_call();
   const auto found = xrays().find(call.function);
   if (found == xrays().end()) return "";
@@ -153,6 +169,30 @@ std::string xray_of_last_call() {
   } catch (const modules::WireError&) {
     return "";  // the arguments were too long to keep
   }
+}
+
+}  // namespace
+
+void begin_call_to_show() {
+  constexpr std::size_t kKept = 16;
+  std::deque<LastCall>& earlier = earlier_calls();
+  if (!last_call().function.empty()) earlier.push_back(std::move(last_call()));
+  if (earlier.size() > kKept) earlier.pop_front();
+  last_call() = {};
+}
+
+std::string xray_of_last_call() {
+  const LastCall last = last_call();
+  std::string words = described_last_call();
+  if (last.answer.empty()) return words;
+  for (const LastCall& call : earlier_calls()) {
+    if (!words.empty()) break;
+    if (call.function != last.function || call.answer.empty()) continue;
+    last_call() = call;  // a description asks it for what was asked
+    words = described_last_call();
+  }
+  last_call() = last;
+  return words;
 }
 
 }  // namespace tumble::grading

@@ -31,6 +31,9 @@ struct XrayTerm {
   // what the submission has here, where the judge sees it (a part of the answer, a stage); empty:
   // inside the function, where nobody sees it
   VectorXd found = {};
+  // what it asked a function argument: where that is wrong the call is, also with an answer that is
+  // right for what it was told there
+  bool is_asked = false;
 };
 
 /// The answer that comes out where one term is written otherwise.
@@ -48,13 +51,19 @@ struct Xray {
   std::vector<XrayVariant> variants;
 };
 
-/// Whether a call was answered as its equation says, to round-off: then another call is the wrong
-/// one, and there is nothing to show.
+/// Whether a call was answered, and asked, as its equation says, to round-off: then another call is
+/// the wrong one, and there is nothing to show.
 bool is_answered_rightly(const Xray& xray);
 
 /// Lines of a story. Empty where the call was answered rightly.
 /// @param is_answered  false: `found` is of no call
 std::string xray_in_words(const Xray& xray, bool is_answered = true);
+
+/// Whether both are the same to round-off.
+bool is_near(const VectorXd& a, const VectorXd& b);
+
+/// "(0.25, 46.159)", "3 m/s": six digits.
+std::string shown(const VectorXd& v, const std::string& unit, int digits = 6);
 
 /// A number or vector as a vector.
 VectorXd numbers(double x);
@@ -97,9 +106,13 @@ struct LastCall {
   std::vector<std::pair<modules::Bytes, modules::Bytes>> asked = {};
 };
 LastCall& last_call();
+/// A call begins: the last one is kept among a few.
+void begin_call_to_show();
 
-/// The x-ray of the last call; empty where its function has none, or it was answered rightly. A
-/// call without an answer shows what its terms are.
+/// The x-ray of the last call; empty where its function has none, or it was answered rightly. Where
+/// it was, a test may have asked more of the function to find out what is wrong: then it is that of
+/// the first of the few kept calls which was not. A call without an answer shows what its terms
+/// are.
 std::string xray_of_last_call();
 
 }  // namespace tumble::grading

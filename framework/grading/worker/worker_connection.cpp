@@ -202,9 +202,9 @@ void WorkerConnection::note_arguments(const char* function, const std::vector<st
 void WorkerConnection::note_call(const char* function, const modules::Bytes& call) {
   constexpr std::size_t kLongest = 1u << 14, kNumber = sizeof(std::uint32_t);
   if (calls_.size() > 1) return;
-  LastCall& last = last_call();
-  last = {};
+  begin_call_to_show();
   if (call.size() > kLongest) return;
+  LastCall& last = last_call();
   last.function = function;
   last.arguments.assign(call.begin() + kNumber, call.end());
 }
@@ -214,29 +214,31 @@ void WorkerConnection::note_answer(const modules::Bytes& answer) {
 }
 
 void WorkerConnection::note_callback(const modules::Bytes& question, const modules::Bytes& answer) {
-  constexpr std::size_t kMost = 8, kLongest = 1u << 12;  // the stages of a step
+  // the stages of a step, the first looks of a search
+  constexpr std::size_t kMost = 16, kLongest = 1u << 12;
   auto& asked = last_call().asked;
   if (calls_.size() == 1 && asked.size() < kMost && question.size() <= kLongest &&
       answer.size() <= kLongest)
     asked.emplace_back(question, answer);
 }
 
-void WorkerConnection::count_callback() {
+bool WorkerConnection::count_callback() {
   end_turn();
-  if (++callbacks_ > options_.callback_budget) {
-    const std::string function = calls_.back().function;
-    stop(0.0);
-    end(Verdict::kOutOfResources, function + " called its function arguments more than " +
-                                      std::to_string(options_.callback_budget) + " times");
-  }
+  if (++callbacks_ > options_.callback_budget) return false;
   // A worker that sends callbacks without pause is checked here.
-  Call& call = calls_.back();
-  if (const auto now = Channel::Clock::now();
-      now >= call.next_check && check_time(call.next_check) <= now) {
-    const std::string function = call.function;
-    stop(0.0);
-    end_out_of_time(function.c_str());
-  }
+  const Call& call = calls_.back();
+  const auto now = Channel::Clock::now();
+  return now < call.next_check || check_time(call.next_check) > now;
+}
+
+void WorkerConnection::end_at_budget(const char* function) {
+  const bool is_by_count = callbacks_ > options_.callback_budget;
+  stop(0.0);
+  if (is_by_count)
+    end(Verdict::kOutOfResources,
+        std::string(function) + " called its function arguments more than " +
+            std::to_string(options_.callback_budget) + " times" + asked_words(arguments_));
+  end_out_of_time(function);
 }
 
 void WorkerConnection::resume_call() { begin_turn(); }

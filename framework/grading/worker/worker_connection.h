@@ -68,7 +68,8 @@ class WorkerConnection : public modules::Connection {
   void note_call(const char* function, const modules::Bytes& call) override;
   void note_answer(const modules::Bytes& answer) override;
   void note_callback(const modules::Bytes& question, const modules::Bytes& answer) override;
-  void count_callback() override;
+  bool count_callback() override;
+  [[noreturn]] void end_at_budget(const char* function) override;
   void resume_call() override;
   modules::Channel::Clock::time_point deadline() const override { return calls_.back().next_check; }
   [[noreturn]] void fail(const char* function, std::exception_ptr transport_error) override;

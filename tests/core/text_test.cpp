@@ -1,0 +1,46 @@
+// Sentences and numbers as a reader has them.
+#include <gtest/gtest.h>
+
+#include "framework/core/text.h"
+
+namespace tumble {
+namespace {
+
+TEST(Sentence, HasACapitalLetterAndAFullStop) {
+  EXPECT_EQ(sentence("both impulses act at the same point: round-off only"),
+            "Both impulses act at the same point: round-off only.");
+  EXPECT_EQ(sentence("a ball never enters another."), "A ball never enters another.");
+  EXPECT_EQ(sentence("Is it so?"), "Is it so?");
+  EXPECT_EQ(sentence("statics, by hand"), "Statics, by hand.");
+  EXPECT_EQ(sentence("round-off of one impulse"), "Round-off of one impulse.");
+  EXPECT_EQ(sentence("body's own"), "Body's own.");
+  EXPECT_EQ(sentence(""), "");
+}
+
+TEST(Sentence, LeavesSymbolsAndNamesAsTheyAre) {
+  EXPECT_EQ(sentence("e = 1, and rods do no work"), "Here e = 1, and rods do no work.");
+  EXPECT_EQ(sentence("a t^2 / 2: a parabola"), "Here a t^2 / 2: a parabola.");
+  EXPECT_EQ(sentence("a = g"), "Here a = g.");
+  EXPECT_EQ(sentence("mu = tan 25 deg"), "Here mu = tan 25 deg.");
+  EXPECT_EQ(sentence("t/R is small"), "Here t/R is small.");
+  EXPECT_EQ(sentence("w' is 0"), "Here w' is 0.");
+  EXPECT_EQ(sentence("rk4_step is called"), "Here rk4_step is called.");
+  EXPECT_EQ(sentence("1e-5 J/kg is a speed of 4 mm/s"), "1e-5 J/kg is a speed of 4 mm/s.");
+}
+
+TEST(Sentence, TwoHaveABlankBetweenThem) {
+  EXPECT_EQ(sentences("at t = 0.933 s", "round-off only"), "At t = 0.933 s. Round-off only.");
+  EXPECT_EQ(sentences("", "round-off only"), "Round-off only.");
+  EXPECT_EQ(sentences("at t = 1 s", ""), "At t = 1 s.");
+}
+
+TEST(ThreeDigits, HaveNoZerosThatSayNothing) {
+  EXPECT_EQ(three_digits(0.3234), "0.323");
+  EXPECT_EQ(three_digits(1e-9), "1e-9");
+  EXPECT_EQ(three_digits(-2.5e-10), "-2.5e-10");
+  EXPECT_EQ(three_digits(3e8), "3e8");
+  EXPECT_EQ(three_digits(-0.0), "0");
+}
+
+}  // namespace
+}  // namespace tumble
