@@ -19,6 +19,7 @@ namespace {
 struct Dome {
   double radius = 1.0, ball = 0.05, friction = 0.0;
   double start_cosine = 0.99862953475457387;  // 3 degrees off the top
+  Vector3d velocity = Vector3d::Zero();       // of both [m/s]
 };
 
 Trajectory run_dome(const Dome& dome, double step_s, const std::string& engine) {
@@ -31,6 +32,8 @@ Trajectory run_dome(const Dome& dome, double step_s, const std::string& engine) 
   scene::BodySpec rider =
       ball("ball", dome.ball, 1.0, R * Vector3d(sine, 0, dome.start_cosine), Vector3d::Zero());
   rider.restitution = 0.0;
+  if (!dome.velocity.isZero(0.0)) below.motion = scene::PrescribedMotion{dome.velocity, {}, 0.0};
+  rider.velocity_m_s = dome.velocity;
   below.friction = rider.friction = dome.friction;
   scene::Scene scene = scene_of(
       {below, rider}, 1.45 * std::sqrt(R / 1.05) * (dome.friction > 0 ? 1.2 : 1.0), kEarth);
@@ -111,6 +114,48 @@ TEST(Dome, SizesDoNotMatter) {
       EXPECT_EQ(collisions_of(run), 0) << size << ", " << part;
       EXPECT_NEAR(cosine_where_it_leaves(run), 2.0 / 3.0 * 0.99862953475457387, 0.02)
           << size << ", " << part;
+    }
+}
+
+TEST(Dome, ThatMovesSteadilyShowsTheSame) {
+  for (const std::string engine : {"rd", "tw"}) {
+    const Trajectory here = run_dome({}, 1.0 / 60, engine);
+    for (const Vector3d& V : {Vector3d(3, 0, 0), Vector3d(-1, 2, 0), Vector3d(0, 0, 2)}) {
+      const Trajectory there = run_dome({.velocity = V}, 1.0 / 60, engine);
+      ASSERT_EQ(there.frames.size(), here.frames.size());
+      for (std::size_t i = 0; i < here.frames.size(); ++i)
+        ASSERT_LT((there.frames[i].poses[1].com_world - here.frames[i].time * V -
+                   here.frames[i].poses[1].com_world)
+                      .norm(),
+                  1e-11)
+            << engine << " V " << V.transpose() << " at " << here.frames[i].time;
+    }
+  }
+}
+
+// A ball that slides off a table turns about its edge, as on a dome of no radius: with v^2 = v0^2 +
+// 2 g r (1 - c) it leaves at c = 2/3 + v0^2 / (3 g r).
+TEST(Edge, ABallThatSlidesOverItLeavesWhereTheForceEnds) {
+  static const Laws laws = reference_laws();
+  const double r = 0.1, v0 = 0.3, truth = 2.0 / 3.0 + v0 * v0 / (3 * 9.81 * r);
+  scene::BodySpec table = box("table", {1, 1, 0.5}, 1.0, {-1, 0, -0.5}, Vector3d::Zero());
+  table.mass_kg.reset();
+  table.immovable = true;
+  scene::BodySpec rider = ball("ball", r, 1.0, {-0.1, 0, r}, {v0, 0, 0});
+  rider.restitution = 0.0;
+  scene::Scene scene = scene_of({table, rider}, 0.8, kEarth);
+  scene.contact = scene::ContactSpec{};
+  for (const std::string engine : {"rd", "ordered", "ca", "tw"})
+    for (const double step : {1.0 / 60, 1.0 / 240, 1.0 / 960}) {
+      scene.step_s = step;
+      engines::RunOptions options;
+      options.engine = engine;
+      options.frame_rate_hz = 240.0;
+      const Trajectory run = run_as_told(std::move(options), scene, laws);
+      EXPECT_EQ(collisions_of(run), 0) << engine << " at " << step;
+      // two steps late: the angle goes by v h / r = 8 rad/s h
+      EXPECT_NEAR(cosine_where_it_leaves(run), truth, 12 * step) << engine << " at " << step;
+      EXPECT_LT(energy_change(run), step * step) << engine << " at " << step;
     }
 }
 

@@ -251,6 +251,30 @@ TEST(DrivenFloors, SmallBallsStayOnAFloorThatShakesGently) {
   }
 }
 
+// On a floor that is shaken up and down with up to g, what does not bounce lies still on it: the
+// floor's way bends from what its velocities at a step's ends say, and the ball goes along, strikes
+// nothing and stays at the margin.
+TEST(DrivenFloors, WhatLiesOnThemFollowsTheirWay) {
+  const double frequency = 4 * M_PI;
+  for (const double part : {0.9, 1.0})
+    for (const double step : {1.0 / 60, 1.0 / 120}) {
+      const double amplitude = part * kG / (frequency * frequency);
+      scene::Scene scene =
+          with_contact({driven_plane("floor", Vector3d::Zero(), {0, 0, amplitude}, frequency),
+                        ball("ball", 0.1, 1.0, {0, 0, 0.1}, {0, 0, amplitude * frequency})},
+                       1.0, 0.0, 0.0);
+      scene.step_s = step;
+      for (const std::string& engine : kEngines) {
+        const Trajectory run = run_in(engine, scene);
+        EXPECT_TRUE(collision_times(run).empty()) << engine << ' ' << part << ' ' << step;
+        for (const Frame& frame : run.frames)
+          ASSERT_NEAR(frame.poses[1].com_world.z(),
+                      0.1 + amplitude * std::sin(frequency * frame.time), 1e-10)
+              << engine << ' ' << part << ' ' << step << " at " << frame.time;
+      }
+    }
+}
+
 // Boxes on floors that rise and shake. Engines part by what a step leaves; timewarp is the ordered
 // reference to the last bit.
 TEST(DrivenBodies, AllEnginesMeetAsStepsGoToZero) {

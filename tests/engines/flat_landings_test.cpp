@@ -144,5 +144,42 @@ TEST(SpinningDown, OnASmoothFloorKeepsTheSpinAboutTheVertical) {
   }
 }
 
+// A box that rebounds flat goes on flat: pushed beside the line through its centre of mass by what
+// rounding leaves, it was turned thirty times as far by each bounce, and tumbled after six.
+TEST(FlatRebounds, DoNotTurn) {
+  scene::Scene falls = lands({0.15, 0.1, 0.05}, 0.9, 0.0, Vector3d::Zero(), 6.0);
+  falls.bodies[0].world_from_body = Eigen::AngleAxisd(0.3, Vector3d::UnitZ());
+  scene::Scene falls_on_box = falls;
+  falls_on_box.bodies[1] = box("floor", {2, 2, 0.5}, 1.0, {0.1, 0.2, -0.5}, Vector3d::Zero());
+  falls_on_box.bodies[1].immovable = true;
+  falls_on_box.bodies[1].mass_kg.reset();
+  falls_on_box.bodies[1].restitution = 0.9;
+  scene::Scene between = scene_of({plane("left", {-0.5, 0, 0}, Vector3d::UnitX()),
+                                   plane("right", {0.5, 0, 0}, -Vector3d::UnitX()),
+                                   box("box", {0.1, 0.1, 0.1}, 1.0, Vector3d::Zero(), {3, 0, 0})},
+                                  6.0);
+  for (const scene::Scene& scene : {falls, falls_on_box, between})
+    for (const char* engine : {"rd", "ca", "tw"}) {
+      SCOPED_TRACE(fmt::format("{} bodies, {}", scene.bodies.size(), engine));
+      const Trajectory run = run_on(engine, scene);
+      EXPECT_EQ(run.stopped_by, "");
+      for (const Frame& frame : run.frames)
+        for (const BodyPose& pose : frame.poses)
+          ASSERT_LT(pose.omega_world.norm(), 1e-11) << frame.time << ": rounding";
+    }
+}
+
+// A box 100 times as heavy drives a light one against a wall: they collide 31 times, as the digits
+// of pi say (G. Galperin, Playing pool with pi, 2003).
+TEST(FlatRebounds, OfALightBoxBetweenAWallAndAHeavyOneCountPi) {
+  const scene::Scene scene =
+      scene_of({plane("wall", Vector3d::Zero(), Vector3d::UnitX()),
+                box("light", {0.1, 0.1, 0.1}, 1.0, {1, 0, 0}, Vector3d::Zero()),
+                box("heavy", {0.1, 0.1, 0.1}, 100.0, {2, 0, 0}, {-1, 0, 0})},
+               4.0);
+  for (const char* engine : {"rd", "ca", "tw"})
+    EXPECT_EQ(collision_times(run_on(engine, scene)).size(), 31u) << engine;
+}
+
 }  // namespace
 }  // namespace tumble::testing::flat_landings_test

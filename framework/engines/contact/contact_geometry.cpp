@@ -97,6 +97,15 @@ bool ContactGeometry::are_balls(Pair pair) const {
   return moving_.shape(pair.first).is_ball() && moving_.shape(pair.second).is_ball();
 }
 
+bool ContactGeometry::is_ball_on_edges(Pair pair) const {
+  const auto has_edges = [&](int body) {
+    const collision::CollisionShape& shape = moving_.shape(body);
+    return !shape.is_ball() && !shape.is_half_space() && shape.ellipsoid() == nullptr;
+  };
+  return (moving_.shape(pair.first).is_ball() && has_edges(pair.second)) ||
+         (moving_.shape(pair.second).is_ball() && has_edges(pair.first));
+}
+
 // A ball has one point on another, however far it has gone from where it was.
 double ContactGeometry::same_within(Pair pair) const {
   return are_balls(pair) ? std::numeric_limits<double>::infinity()

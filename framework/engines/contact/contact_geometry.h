@@ -29,6 +29,8 @@ class ContactGeometry {
   /// Whether the two do not bounce (perfectly inelastic).
   bool is_inelastic(Pair pair) const;
   bool are_balls(Pair pair) const;
+  /// Whether one is a ball and the other has edges: about these the ball turns as about a ball.
+  bool is_ball_on_edges(Pair pair) const;
   /// Radius about the smaller one. [m]
   double size_of(Pair pair) const;
   /// How far apart contacts are kept. [m]

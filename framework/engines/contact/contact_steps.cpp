@@ -39,6 +39,7 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island, const Step
 void PersistentContacts::find_ends(const ContactIsland& island, const ContactProblem& problem,
                                    const ContactSolution& solution, double h, bool activation,
                                    bool inertia_at_ends) {
+  correction_.place_driven(ends_, moving_.target());
   // the problem's first bodies are the island's
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
     const int body = island.bodies[k];
@@ -75,21 +76,23 @@ double PersistentContacts::largest_turn(const ContactIsland& island,
   return turn;
 }
 
-// The angle that the normal between two balls turns most in the step: the one that slides or rolls
-// on the other follows its curve.
+// The angle that the normal between two balls, or of a ball on an edge, turns most in the step: what
+// slides or rolls there follows a curve.
 double PersistentContacts::turn_of_normals(const ContactIsland& island,
                                            const std::vector<RigidBodyState>& ends) const {
   double turn = 0.0;
   for (const Pair& pair : island.pairs) {
-    if (!geometry_.are_balls(pair) || points_.find(pair)->empty()) continue;
-    const auto end = [&](int body) -> Vector3d {
-      return moving_.world().bodies[body].immovable()
-                 ? prescribed_position(moving_.world().bodies[body], moving_.target())
-                 : ends[body].com_world;
-    };
-    const Vector3d start =
-                       moving_.state(pair.first).com_world - moving_.state(pair.second).com_world,
-                   stop = end(pair.first) - end(pair.second);
+    if (points_.find(pair)->empty()) continue;
+    Vector3d start, stop;
+    if (geometry_.are_balls(pair)) {
+      start = moving_.state(pair.first).com_world - moving_.state(pair.second).com_world;
+      stop = ends[pair.first].com_world - ends[pair.second].com_world;
+    } else if (geometry_.is_ball_on_edges(pair)) {
+      start = geometry_.gap_of(pair, moving_.states()).normal_b_to_a_world;
+      stop = geometry_.gap_of(pair, ends).normal_b_to_a_world;
+    } else {
+      continue;
+    }
     turn = std::max(turn, std::atan2(start.cross(stop).norm(), start.dot(stop)));
   }
   return turn;
@@ -109,6 +112,8 @@ StepContacts PersistentContacts::contacts_midway(const ContactIsland& island,
     middle[body].world_from_body =
         starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
   }
+  for (const int body : moving_.driven_bodies())
+    middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
   const auto slip = [&](Pair pair, const std::vector<RigidBodyState>& at,
                         const collision::ManifoldPoint& p) -> Vector3d {
     const Vector3d point = geometry_.point_of(pair, p);
@@ -170,12 +175,17 @@ bool PersistentContacts::set_paths(const ContactIsland& island, const StepContac
                                    double h, bool activation) {
   const bool is_midway = &contacts_at == &midway_;
   find_ends(island, problem, solution, h, activation, is_midway);
-  std::vector<ActiveContact> active;  // where nothing turns, points stay as near as they are
-  if (is_midway && !activation && contacts.size() <= kContact.many_contacts)
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (contacts[i].start_gap < kContact.far_at_start * geometry_.margin(contacts[i].pair) &&
+  // Where nothing turns, points stay as near as they are; but what is driven goes another way than
+  // its velocities at the ends say.
+  std::vector<ActiveContact> active;
+  if (!activation && contacts.size() <= kContact.many_contacts)
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Pair& pair = contacts[i].pair;
+      if ((is_midway || moving_.is_driven(pair.first) || moving_.is_driven(pair.second)) &&
+          contacts[i].start_gap < kContact.far_at_start * geometry_.margin(pair) &&
           solution.impulses_world[i].squaredNorm() > 0.0)
-        active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
+        active.push_back({pair, contacts[i].point, &contacts_at});
+    }
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart =
       correction_.correct_positions(island, island.pairs, ends_, moving_.target(), active);

@@ -17,6 +17,11 @@ struct Earliest {
   std::size_t pair;  // place in the list of pairs that was asked about
 };
 
+/// How readily an impulse moves two bodies: their inverse masses, 0 of one that stands. [1/kg]
+struct Moved {
+  double a, b;
+};
+
 /// The middle of where two solids touch, then the corners of that region if it is more than a
 /// point. World frame. [m]
 /// @param rounding  what rounding leaves of the places there [m]
@@ -24,7 +29,7 @@ std::vector<Vector3d> touching_points(const collision::CollisionShape& a,
                                       const collision::Pose& pose_a,
                                       const collision::CollisionShape& b,
                                       const collision::Pose& pose_b, const collision::Gap& gap,
-                                      double rounding);
+                                      const Moved& moved, double rounding);
 
 class ImpactDetection {
  public:

@@ -230,8 +230,9 @@ void PersistentContacts::note_near_pairs(const std::vector<Pair>& candidates) {
 bool PersistentContacts::is_curved(const ContactIsland& island) const {
   return std::any_of(island.bodies.begin(), island.bodies.end(),
                      [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
-         std::any_of(island.pairs.begin(), island.pairs.end(),
-                     [&](const Pair& pair) { return geometry_.are_balls(pair); });
+         std::any_of(island.pairs.begin(), island.pairs.end(), [&](const Pair& pair) {
+           return geometry_.are_balls(pair) || geometry_.is_ball_on_edges(pair);
+         });
 }
 
 // One island's step.
@@ -385,12 +386,13 @@ void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs,
   counters_ = before;
 }
 
-// A ball has been carried by another to where nothing presses them together: no force in the step,
-// and along the normal
-//   a_n = n . (g_a - g_b) + v_t^2 / R > 0,
+// A ball has been carried by another, or about an edge, to where nothing presses them together: no
+// force in the step, and along the normal
+//   a_n = n . (g_a - g_b) + v_t . dn/dt > 0,  on a ball  v_t . dn/dt = v_t^2 / R,
 //       R the distance of their centres, v_t their velocity along the surface.
 bool PersistentContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
-  if (!geometry_.are_balls(pair)) return false;
+  const bool balls = geometry_.are_balls(pair);
+  if (!balls && !geometry_.is_ball_on_edges(pair)) return false;
   const auto pushes = [&](const ContactPoint& point) {
     return point.body_a == pair.first && point.body_b == pair.second;
   };
@@ -405,11 +407,26 @@ bool PersistentContacts::flies_off(Pair pair, const std::vector<RigidBodyState>&
     if (!b.immovable() && moving_.world().gravity_world)
       gravity += sign * *moving_.world().gravity_world;
   }
-  const Vector3d between = states[pair.first].com_world - states[pair.second].com_world,
-                 n = between.normalized();
+  const collision::Gap gap = geometry_.gap_of(pair, states);
+  const Vector3d n = gap.normal_b_to_a_world;
   const double normal_speed = n.dot(velocity);
-  return normal_speed > 0 &&
-         n.dot(gravity) + (velocity - normal_speed * n).squaredNorm() / between.norm() > 0;
+  const Vector3d along = velocity - normal_speed * n;
+  double leaves = n.dot(gravity);  // [m/s^2]
+  if (balls) {
+    leaves +=
+        along.squaredNorm() / (states[pair.first].com_world - states[pair.second].com_world).norm();
+  } else if (const double speed = along.norm(); speed > 0) {
+    // the ball a little farther on
+    const bool is_first = moving_.shape(pair.first).is_ball();
+    const double way = kSixDigits * geometry_.size_of(pair);
+    collision::Pose first = geometry_.pose(pair.first, states),
+                    second = geometry_.pose(pair.second, states);
+    (is_first ? first : second).com_world += (is_first ? way : -way) / speed * along;
+    const collision::Gap later = collision::compute_gap(moving_.shape(pair.first), first,
+                                                        moving_.shape(pair.second), second);
+    leaves += speed / way * along.dot(later.normal_b_to_a_world - n);
+  }
+  return normal_speed > 0 && leaves > 0;
 }
 
 // Nearer than this the two are in contact; what comes back need not begin anew. [m]

@@ -58,7 +58,6 @@ void PositionCorrection::place_for_correction(const ContactIsland& island, Pair 
   contact.target = margin - point.gap;
 }
 
-// What is driven goes where its law has it by then.
 void PositionCorrection::place_driven(std::vector<RigidBodyState>& states, double t) const {
   for (const int body : moving_.driven_bodies())
     states[body].com_world = prescribed_position(moving_.world().bodies[body], t);

@@ -39,6 +39,8 @@ class PositionCorrection {
         restitution_threshold_(restitution_threshold),
         counters_(counters) {}
 
+  /// What is driven goes where its law has it at that time.
+  void place_driven(std::vector<RigidBodyState>& states, double t) const;
   /// Takes back the overlaps of these pairs, in places of the time `t`.
   /// @return whether none is left
   bool correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs,
@@ -76,7 +78,6 @@ class PositionCorrection {
                           ContactProblem& problem);
   bool keeps_margin(const Pair& pair, double t) const;
   bool give_up_margins(const std::vector<Pair>& pairs, double t);
-  void place_driven(std::vector<RigidBodyState>& states, double t) const;
   double way_of(int body, const Velocity& correction) const;
   ContactProblem corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs,
                                 const std::vector<RigidBodyState>& states, double t,

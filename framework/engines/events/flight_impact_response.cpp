@@ -202,6 +202,8 @@ Discontinuity FlightImpactResponse::resolve_impact(const EventStamp& key, const 
   work.gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
   work.points_world =
       touching_points(shape_a, pose_a, shape_b, pose_b, work.gap,
+                      {world_.world().bodies[a].inertia.inverse_mass,
+                       world_.world().bodies[b].inertia.inverse_mass},
                       kRoundOff * collision::gap_scale(shape_a, pose_a, shape_b, pose_b));
   collide(work);
   const bool rests = settle(work, a, b) || settle(work, b, a);

@@ -56,6 +56,8 @@ bool TiedImpacts::approach(int a, int b, double t, const FlightOf& before) const
       collision::compute_gap(world_.shape(a), pose_a, world_.shape(b), pose_b);
   const std::vector<Vector3d> points = touching_points(
       world_.shape(a), pose_a, world_.shape(b), pose_b, gap,
+      {world_.world().bodies[a].inertia.inverse_mass,
+       world_.world().bodies[b].inertia.inverse_mass},
       kRoundOff * collision::gap_scale(world_.shape(a), pose_a, world_.shape(b), pose_b));
   return fastest_approach(laws_, {gap.normal_b_to_a_world, points}, one, two,
                           rules_.restitution_threshold)
