@@ -76,8 +76,8 @@ double PersistentContacts::largest_turn(const ContactIsland& island,
   return turn;
 }
 
-// The angle that the normal between two balls, or of a ball on an edge, turns most in the step: what
-// slides or rolls there follows a curve.
+// The angle that the normal between two balls, or of a ball on an edge, turns most in the step:
+// what slides or rolls there follows a curve.
 double PersistentContacts::turn_of_normals(const ContactIsland& island,
                                            const std::vector<RigidBodyState>& ends) const {
   double turn = 0.0;
