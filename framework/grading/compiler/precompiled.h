@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
 #include <functional>
 #include <optional>
 #include <string>
@@ -147,6 +148,12 @@ template struct Vectors<Eigen::Vector3d>;
 #endif
 #ifndef TUMBLE_SPECTRA
 #define TUMBLE_SPECTRA extern template
+#endif
+#ifdef TUMBLE_SPARSE
+#define TUMBLE_SPARSE_COMPILED_ONCE(...) __VA_ARGS__
+#else
+#define TUMBLE_SPARSE_COMPILED_ONCE(...) ;
+#define TUMBLE_SPARSE extern template
 #endif
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wignored-attributes"  // of a packet of two doubles
@@ -295,11 +302,50 @@ TUMBLE_SPECTRA SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd
     const EigenBase<MatrixXd>&, int);
 TUMBLE_SPECTRA void SVDBase<JacobiSVD<MatrixXd>>::_solve_impl(const VectorXd&, VectorXd&) const;
 
+// Sparse factors, with the ordering that each has where nothing is said.
+using TumbleSparse = SparseMatrix<double>;
+using TumbleEntries = std::vector<Triplet<double>>::iterator;
+TUMBLE_SPARSE class SparseMatrix<double>;
+TUMBLE_SPARSE class SparseMatrix<double, RowMajor>;
+TUMBLE_SPARSE void TumbleSparse::setFromTriplets(const TumbleEntries&, const TumbleEntries&);
+#define TUMBLE_FACTORISES(Factors, is_ldlt)                                                 \
+  TUMBLE_SPARSE void SimplicialCholeskyBase<Factors>::ordering(                             \
+      const TumbleSparse&, const TumbleSparse*&, TumbleSparse&);                            \
+  TUMBLE_SPARSE void SimplicialCholeskyBase<Factors>::analyzePattern_preordered(            \
+      const TumbleSparse&, bool);                                                           \
+  TUMBLE_SPARSE void SimplicialCholeskyBase<Factors>::factorize_preordered<is_ldlt>(        \
+      const TumbleSparse&);                                                                 \
+  template <>                                                                               \
+  template <>                                                                               \
+  void SimplicialCholeskyBase<Factors>::factorize<is_ldlt>(const TumbleSparse& matrix)      \
+      TUMBLE_SPARSE_COMPILED_ONCE({                                                         \
+        TumbleSparse permuted(matrix.cols(), matrix.cols());                                \
+        permuted.selfadjointView<Upper>() = matrix.selfadjointView<Lower>().twistedBy(m_P); \
+        factorize_preordered<is_ldlt>(permuted);                                            \
+      }) template <>                                                                        \
+      template <>                                                                           \
+      void SimplicialCholeskyBase<Factors>::_solve_impl(const MatrixBase<VectorXd>& b,      \
+                                                        MatrixBase<VectorXd>& x)            \
+          const TUMBLE_SPARSE_COMPILED_ONCE({                                               \
+            if (m_info != Success) return;                                                  \
+            VectorXd& solved = x.derived();                                                 \
+            solved = m_P.size() > 0 ? VectorXd(m_P * b.derived()) : VectorXd(b.derived());  \
+            if (m_matrix.nonZeros() > 0) derived().matrixL().solveInPlace(solved);          \
+            if (m_diag.size() > 0) solved = m_diag.asDiagonal().inverse() * solved;         \
+            if (m_matrix.nonZeros() > 0) derived().matrixU().solveInPlace(solved);          \
+            if (m_P.size() > 0) solved = VectorXd(m_Pinv * solved);                         \
+          })
+TUMBLE_FACTORISES(SimplicialLDLT<TumbleSparse>, true)
+TUMBLE_FACTORISES(SimplicialLLT<TumbleSparse>, false)
+#undef TUMBLE_FACTORISES
+
 }  // namespace Eigen
 #pragma GCC diagnostic pop
 #undef TUMBLE_PRODUCTS
 #undef TUMBLE_FACTORS
 #undef TUMBLE_ORTHOGONAL
 #undef TUMBLE_SPECTRA
+#undef TUMBLE_SPARSE
 #undef TUMBLE_COMPILED_ONCE
+#undef TUMBLE_SPARSE_COMPILED_ONCE
 #endif
