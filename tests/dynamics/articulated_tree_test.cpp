@@ -350,10 +350,11 @@ TEST(ArticulatedTree, StandsAfterItsBeginningAsIfItCameFromElsewhere) {
     tree.stand_at(y, moved);
     for (const TreeLink& link : all.links)
       if (tree.link_of(0) >= 0 && &link == &all.links[static_cast<std::size_t>(tree.link_of(0))] &&
-          std::max(link.a, link.b) == static_cast<int>(all.bodies.size()) + 1)
+          std::max(link.a, link.b) == static_cast<int>(all.bodies.size()) + 1) {
         EXPECT_NEAR((tree.state(0, 0.0).com_world - all.states[0].com_world).norm(),
                     Vector3d(1.0, 2.0, 3.0).norm(), kRounding)
             << seed;
+      }
   }
 }
 

@@ -32,7 +32,7 @@ Trajectory run_dome(const Dome& dome, double step_s, const std::string& engine) 
   scene::BodySpec rider =
       ball("ball", dome.ball, 1.0, R * Vector3d(sine, 0, dome.start_cosine), Vector3d::Zero());
   rider.restitution = 0.0;
-  if (!dome.velocity.isZero(0.0)) below.motion = scene::PrescribedMotion{dome.velocity, {}, 0.0};
+  if (!dome.velocity.isZero(0.0)) below.motion = scene::PrescribedMotion{dome.velocity};
   rider.velocity_m_s = dome.velocity;
   below.friction = rider.friction = dome.friction;
   scene::Scene scene = scene_of(

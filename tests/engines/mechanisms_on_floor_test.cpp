@@ -204,7 +204,8 @@ scene::Scene arm_with_friction(std::size_t bars, double omega, double friction, 
   };
   std::vector<Vector3d> corners;
   for (std::size_t k = 0; k <= bars; ++k)
-    corners.emplace_back(0.4 * static_cast<double>(k), 0, kHalfHigh);
+    corners.emplace_back(0.4 * static_cast<double>(k) * std::cos(heading),
+                         0.4 * static_cast<double>(k) * std::sin(heading), kHalfHigh);
   scene::Scene scene = bars_between(corners, false, 0.0, omega, random);
   for (std::size_t k = 1; k < bars; ++k) join(scene, kind_of(k), k - 1, k, corners[k]);
   scene.effects.of<effects::JointSpec>().push_back(

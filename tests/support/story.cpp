@@ -100,7 +100,8 @@ Mistake slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected
   const bool shows_in_size =
       !story.iterates && error > kFloatEps / 256 * scale && tolerance < kFloatEps / 4096 * scale;
   if (shows_in_bits) return shown(kFloat);
-  return shows_in_size ? std::string("one way to get such an answer: ") + kFloat : "";
+  if (!shows_in_size) return "";
+  return std::string("one way to get such an answer: ") + kFloat;
 }
 
 namespace {
