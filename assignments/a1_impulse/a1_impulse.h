@@ -66,12 +66,12 @@ Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_
 Vector3d linear_acceleration(const Body& body, const Vector3d& force_world);
 
 /// Time derivative of a body's angular velocity: Newton-Euler, with the gyroscopic term.
-///   I w' = tau - w x (I w)      in the body frame, where I is constant                      (A1.4)
-///   w_body = R^T w_world,   tau_body = R^T tau_world,   w'_world = R w'_body
+///   I alpha = tau - w x (I w)   in the body frame, where I is constant                      (A1.4)
+///   w_body = R^T w_world,   tau_body = R^T tau_world,   alpha_world = R alpha_body
 /// @param body          I: inertia_body (3,3), about the centre of mass [kg m^2]; R:
 ///                      world_from_body; w: omega_world [rad/s]
 /// @param torque_world  tau, (3), world, about the centre of mass [N m]
-/// @return w', (3), world [rad/s^2]; exactly zero for infinite mass; not zero for a free body that
+/// @return alpha, (3), world [rad/s^2]; exactly zero for infinite mass; not zero for a free body that
 ///         tumbles
 /// Source: Baraff I, sections 2.9 and 2.10; Goldstein, Classical Mechanics, section 5.5.
 /// Tests: AngularAcceleration.*   Hints: handouts/a1_impulse.md#hint-angular

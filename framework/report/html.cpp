@@ -43,6 +43,7 @@ h1 { font-size: 1.75rem; margin: 0 0 .2rem; }
 header p { margin: 0 0 .8rem; color: var(--soft); overflow-wrap: anywhere; }
 h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line); }
 h3 { font-size: 1.02rem; margin: 1.5rem 0 .4rem; }
+h4 { font-size: .93rem; margin: .9rem 0 .25rem; } .story h4:first-child { margin-top: .1rem; }
 p { max-width: 52rem; } a { color: var(--link); } nav { margin: .8rem 0 1.1rem; }
 nav a { margin-right: 1.2rem; }
 .wide { overflow-x: auto; margin: .8rem 0 1.2rem; }
@@ -84,6 +85,8 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
 .story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
 .story td.bad { min-width: 13rem; }
 .story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
+.story td:nth-child(2) { white-space: pre-wrap; font-family: "DejaVu Sans Mono", Menlo, Consolas,
+  monospace; font-size: .92em; }
 .story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
@@ -106,7 +109,13 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
   .plot-figure svg { min-width: 35rem; } .plot-figure.small svg { min-width: 0; }
-  .story table, .story tbody, .story tr, .story td { display: block; }
+  .story table, .story tbody, .story tr, .story td,
+  .blocks, .blocks tbody, .blocks tr, .blocks td { display: block; }
+  .blocks thead { display: none; } .blocks tr { padding: .35rem 0; }
+  .blocks td { border: 0; padding: .1rem .4rem; overflow-wrap: anywhere; }
+  .blocks td.number { text-align: left; }
+  .blocks td[data-name]::before { content: attr(data-name) ": "; color: var(--soft);
+    font-weight: 400; }
   .story tr { padding: .2rem 0; }
   .story td { padding: 0; border: 0; } .story td:first-child { color: var(--soft); }
   .story { padding: .5rem .6rem; } .fields { gap: .15rem .6rem; font-size: .93rem; }
@@ -162,6 +171,21 @@ std::string class_attribute(Look look, bool is_number = false) {
   return classes.empty() ? "" : " class=\"" + classes + '"';
 }
 
+// A table of sentences does not fit a phone: there each row is a block, and each cell stands below
+// its column's name.
+bool becomes_blocks(const Table& table) {
+  constexpr std::size_t kSentence = 36;  // characters
+  if (table.columns.size() < 3 || table.columns.back().name.empty()) return false;
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const auto& row) {
+    return std::any_of(row.begin(), row.end(),
+                       [](const Cell& cell) { return cell.text.size() > kSentence; });
+  });
+}
+
+std::string name_for_blocks(const std::string& column, bool is_blocks) {
+  return is_blocks && !column.empty() ? " data-name=\"" + html_escape(column) + '"' : "";
+}
+
 std::string figure_html(const Figure& figure) {
   std::string html = "<figure>";
   if (!figure.label.empty()) html += "<p class=\"label\">" + html_escape(figure.label) + "</p>";
@@ -198,7 +222,7 @@ Page::Page(std::string title, std::string subtitle)
     : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 void Page::heading(std::string_view text, int level, std::string_view id) {
-  require(level == 2 || level == 3, "report: a heading's level is 2 or 3");
+  require(level >= 2 && level <= 4, "report: a heading's level is 2, 3 or 4");
   const std::string tag = "h" + std::to_string(level);
   body_ += '<' + tag + (id.empty() ? "" : " id=\"" + html_escape(id) + '"') + '>' +
            html_escape(text) + "</" + tag + ">\n";
@@ -263,9 +287,11 @@ void Page::fold(std::string_view summary, std::string_view text, bool open) {
 }
 
 void Page::table(const Table& table) {
-  body_ += table.columns.size() > kManyColumns
-               ? "<div class=\"wide\" tabindex=\"0\"><table class=\"many\">"
-               : "<div class=\"wide\" tabindex=\"0\"><table>";
+  const bool is_blocks = becomes_blocks(table);
+  std::string classes = table.columns.size() > kManyColumns ? "many" : "";
+  if (is_blocks) classes += classes.empty() ? "blocks" : " blocks";
+  body_ += "<div class=\"wide\" tabindex=\"0\"><table" +
+           (classes.empty() ? "" : " class=\"" + classes + '"') + '>';
   if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
   const bool has_head = std::any_of(table.columns.begin(), table.columns.end(),
                                     [](const Column& column) { return !column.name.empty(); });
@@ -277,10 +303,12 @@ void Page::table(const Table& table) {
   for (const auto& row : table.rows) {
     require(row.size() == table.columns.size(),
             "report: a table's row must have one cell for each column");
-    body_ += "<tr>";
+    const std::string id = row.empty() ? "" : row.front().id;
+    body_ += id.empty() ? "<tr>" : "<tr id=\"" + html_escape(id) + "\">";
     for (std::size_t i = 0; i < row.size(); ++i)
-      body_ += "<td" + class_attribute(row[i].look, table.columns[i].is_number) + '>' +
-               linked(row[i]) + "</td>";
+      body_ += "<td" + name_for_blocks(table.columns[i].name, is_blocks) +
+               class_attribute(row[i].look, table.columns[i].is_number) + '>' + linked(row[i]) +
+               "</td>";
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";

@@ -32,6 +32,7 @@ struct Cell {
   std::string text;
   std::string link = {};  // result of link_to, or "#id"; empty: none
   Look look = Look::kPlain;
+  std::string id = {};  // in a table: anchor of its row, where its first cell has one
 };
 
 struct Column {
@@ -89,7 +90,7 @@ class Page {
   /// @param subtitle  second line of the head; may be empty
   explicit Page(std::string title, std::string subtitle = "");
 
-  /// @param level  2 (section) or 3
+  /// @param level  2 (section), 3, or 4
   /// @param id     anchor for links "#id": letters, digits, - and _ only; may be empty
   void heading(std::string_view text, int level = 2, std::string_view id = "");
   void paragraph(std::string_view text, Look look = Look::kPlain);

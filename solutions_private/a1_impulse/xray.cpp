@@ -36,9 +36,10 @@ Shown point_force(const Wrench& found, const Vector3d& force, const Vector3d& po
              {"r x F", numbers(torque), "N m", numbers(found.torque_world)}};
   x.expected = numbers(force, torque);
   x.found = numbers(found.force_world, found.torque_world);
-  x.variants = {{1, "r = p, the arm from the world's origin", numbers(force, point.cross(force))},
-                {1, "F x r", numbers(force, force.cross(r))},
-                {1, "r = x - p", numbers(force, Vector3d(-r).cross(force))}};
+  x.variants = {
+      {1, "with r = p, the arm from the world's origin", numbers(force, point.cross(force))},
+      {1, "with F x r for r x F", numbers(force, force.cross(r))},
+      {1, "with r = x - p", numbers(force, Vector3d(-r).cross(force))}};
   return x;
 }
 
@@ -48,8 +49,8 @@ Shown acceleration(const Vector3d& found, const Body& body, const Vector3d& forc
   x.terms = {{"F", numbers(force), "N"}, {"1/m", numbers(body.inertia.inverse_mass), "1/kg"}};
   x.expected = numbers(Vector3d(force * body.inertia.inverse_mass));
   x.found = numbers(found);
-  x.variants = {{1, "m", numbers(Vector3d(force * body.inertia.mass))},
-                {1, "no mass at all", numbers(force)}};
+  x.variants = {{1, "with m for 1/m", numbers(Vector3d(force * body.inertia.mass))},
+                {1, "without any mass", numbers(force)}};
   return x;
 }
 
@@ -71,17 +72,19 @@ Shown turning(const Vector3d& found, const Body& body, const Vector3d& torque) {
       {"R^T tau", numbers(tau), "N m"},
       {"w = R^T omega", numbers(w), "rad/s"},
       {"w x (I w)", numbers(gyroscopic), "N m"},
-      {"I^-1 (tau - w x (I w))", numbers(Vector3d(inverse * (tau - gyroscopic))), "rad/s^2"}};
+      {"I^-1 (R^T tau - w x (I w))", numbers(Vector3d(inverse * (tau - gyroscopic))), "rad/s^2"}};
   x.expected = numbers(Vector3d(r * (inverse * (tau - gyroscopic))));
   x.found = numbers(found);
-  x.variants = {
-      {0, "tau in the world frame", numbers(Vector3d(r * (inverse * (torque - gyroscopic))))},
-      {2, "nothing", numbers(Vector3d(r * (inverse * tau)))},
-      {2, "the other sign", numbers(Vector3d(r * (inverse * (tau + gyroscopic))))},
-      {3, "I^-1 of the body with tau of the world, and nothing from w x (I w)",
-       numbers(Vector3d(inverse * torque))},
-      {3, "I for I^-1", numbers(Vector3d(r * (inertia * (tau - gyroscopic))))},
-      {3, "no rotation back to the world", numbers(Vector3d(inverse * (tau - gyroscopic)))}};
+  x.variants = {{0, "with tau of the world frame for R^T tau",
+                 numbers(Vector3d(r * (inverse * (torque - gyroscopic))))},
+                {2, "without w x (I w)", numbers(Vector3d(r * (inverse * tau)))},
+                {2, "with the other sign of w x (I w)",
+                 numbers(Vector3d(r * (inverse * (tau + gyroscopic))))},
+                {3, "as I^-1 of the body frame times tau of the world frame, without w x (I w)",
+                 numbers(Vector3d(inverse * torque))},
+                {3, "with I for I^-1", numbers(Vector3d(r * (inertia * (tau - gyroscopic))))},
+                {3, "without R, the rotation back to the world",
+                 numbers(Vector3d(inverse * (tau - gyroscopic)))}};
   return x;
 }
 
@@ -101,16 +104,16 @@ Shown approach(const double& found, const Contact& contact, const Body& a, const
   const auto with = [&](const Vector3d& of_a, const Vector3d& of_b) {
     return numbers(n.dot(of_a - of_b));
   };
-  x.variants = {
-      {3, "u_b - u_a", with(u_b, u_a)},
-      {3, "v alone, without omega x r", with(a.velocity_world, b.velocity_world)},
-      {3, "r x omega",
-       with(a.velocity_world - a.omega_world.cross(r_a),
-            b.velocity_world - b.omega_world.cross(r_b))},
-      {1, "r = p, the arm from the world's origin", with(velocity_at(a, p), velocity_at(b, p))},
-      {2, "r_a, the arm of A, for B", with(u_a, velocity_at(b, r_a))},
-      {4, "v alone for B", with(u_a, b.velocity_world)},
-      {4, "nothing for B", with(u_a, Vector3d::Zero())}};
+  x.variants = {{3, "with u_b - u_a for u_a - u_b", with(u_b, u_a)},
+                {3, "with v alone, without omega x r", with(a.velocity_world, b.velocity_world)},
+                {3, "with r x omega for omega x r",
+                 with(a.velocity_world - a.omega_world.cross(r_a),
+                      b.velocity_world - b.omega_world.cross(r_b))},
+                {1, "with r = p, the arm from the world's origin",
+                 with(velocity_at(a, p), velocity_at(b, p))},
+                {2, "with r_a, the arm of A, for B", with(u_a, velocity_at(b, r_a))},
+                {4, "with v alone for B, without omega x r", with(u_a, b.velocity_world)},
+                {4, "without u_b", with(u_a, Vector3d::Zero())}};
   return x;
 }
 
@@ -122,12 +125,13 @@ Xray quotient(const std::string& equation, double found, double u, double k, dou
   x.expected = numbers(hits ? -(1.0 + e) * u / k : 0.0);
   x.found = numbers(found);
   if (k <= 0.0) return x;
-  x.variants = {{0, "-u_n", numbers((1.0 + e) * u / k)},
-                {1, "e", numbers(-e * u / k)},
-                {1, "1", numbers(-u / k)},
-                {1, "1 + e^2", numbers(-(1.0 + e * e) * u / k)}};
+  x.variants = {{0, "with -u_n for u_n", numbers((1.0 + e) * u / k)},
+                {1, "with e for 1 + e", numbers(-e * u / k)},
+                {1, "with 1 for 1 + e", numbers(-u / k)},
+                {1, "with 1 + e^2 for 1 + e", numbers(-(1.0 + e * e) * u / k)}};
   if (!hits)
-    x.variants = {{0, "the same equation for bodies that part", numbers(-(1.0 + e) * u / k)}};
+    x.variants = {{0, "by the same equation, though the bodies do not approach (u_n >= 0)",
+                   numbers(-(1.0 + e) * u / k)}};
   return x;
 }
 
@@ -140,9 +144,9 @@ Shown impulse_of_points(const double& found, const Contact& contact, const Body&
   x.terms.push_back({"1/m_a + 1/m_b", numbers(k), "1/kg"});
   const auto with = [&](double other) { return numbers(-(1.0 + e) * u / other); };
   if (u < 0.0 && k > 0.0) {
-    x.variants.push_back({2, "1/m_a alone", with(m_a)});
-    x.variants.push_back({2, "1/m_b alone", with(m_b)});
-    x.variants.push_back({2, "1/(m_a + m_b)", with(1.0 / (a.inertia.mass + b.inertia.mass))});
+    x.variants.push_back({2, "with 1/m_a alone", with(m_a)});
+    x.variants.push_back({2, "with 1/m_b alone", with(m_b)});
+    x.variants.push_back({2, "with 1/(m_a + m_b)", with(1.0 / (a.inertia.mass + b.inertia.mass))});
   }
   return x;
 }
@@ -175,16 +179,17 @@ Shown impulse_of_bodies(const double& found, const Contact& contact, const Body&
   const double body_a = yielding(a.inertia.inverse_inertia_body, r_a, n),
                body_b = yielding(b.inertia.inverse_inertia_body, r_b, n);
   const double still = n.dot(a.velocity_world - b.velocity_world);
+  x.variants.push_back({0, "with n . (v_a - v_b), without omega x r",
+                        numbers(-(1.0 + e) * still / (m + k_a + k_b))});
+  x.variants.push_back({2, "with the masses alone, without k_a and k_b", with(m)});
   x.variants.push_back(
-      {0, "n . (v_a - v_b), without omega x r", numbers(-(1.0 + e) * still / (m + k_a + k_b))});
-  x.variants.push_back({2, "the masses alone, without k_a and k_b", with(m)});
-  x.variants.push_back({2, "A alone", with(a.inertia.inverse_mass + k_a)});
-  x.variants.push_back({4, "I^-1 of the body frame with world vectors", with(m + body_a + body_b)});
-  x.variants.push_back({4, "I^-1 of the body frame for A", with(m + body_a + k_b)});
-  x.variants.push_back({6, "I^-1 of the body frame for B", with(m + k_a + body_b)});
-  x.variants.push_back({6, "nothing for B", with(m + k_a)});
-  x.variants.push_back(
-      {6, "r_a, the arm of A, for B", with(m + k_a + yielding(inverse_inertia_world(b), r_a, n))});
+      {2, "with the share of A alone, without 1/m_b and k_b", with(a.inertia.inverse_mass + k_a)});
+  x.variants.push_back({4, "with I^-1 of the body frame for A and B", with(m + body_a + body_b)});
+  x.variants.push_back({4, "with I^-1 of the body frame for A", with(m + body_a + k_b)});
+  x.variants.push_back({6, "with I^-1 of the body frame for B", with(m + k_a + body_b)});
+  x.variants.push_back({6, "without k_b", with(m + k_a)});
+  x.variants.push_back({6, "with r_a, the arm of A, for B",
+                        with(m + k_a + yielding(inverse_inertia_world(b), r_a, n))});
   return x;
 }
 
@@ -215,13 +220,14 @@ Shown applied(const Velocity& found, const Body& body, const Vector3d& impulse,
   x.found = numbers(found.linear_world, found.angular_world);
   const Vector3d body_spin = body.inertia.inverse_inertia_body * spin;
   x.variants = {
-      {2, "nothing: the impulse replaces v",
+      {2, "without v: the impulse replaces it",
        numbers(Vector3d(impulse * body.inertia.inverse_mass), Vector3d(w + inverse * spin))},
-      {5, "J x r", numbers(linear, Vector3d(w - inverse * spin))},
-      {1, "r = p, the arm from the world's origin",
+      {5, "with J x r for r x J", numbers(linear, Vector3d(w - inverse * spin))},
+      {1, "with r = p, the arm from the world's origin",
        numbers(linear, Vector3d(w + inverse * point.cross(impulse)))},
-      {6, "I^-1 of the body frame with a world vector", numbers(linear, Vector3d(w + body_spin))},
-      {6, "nothing: omega stays", numbers(linear, w)}};
+      {6, "with I^-1 of the body frame, and r x J of the world frame",
+       numbers(linear, Vector3d(w + body_spin))},
+      {6, "without this line: omega stays as it was", numbers(linear, w)}};
   return x;
 }
 
@@ -233,12 +239,15 @@ Vector2d beside(const Vector2d& from, const Vector2d& to, const Vector2d& a) {
 
 Xray normal(const std::string& equation, const Vector2d& found, const Vector2d& n,
             const Vector2d& unscaled) {
-  Xray x{equation, {{"before it is made unit", numbers(unscaled), "m"}}, "n", "", {}, {}, {}};
+  Xray x{equation, {{"before the division by its length", numbers(unscaled), "m"}}, "n", "", {}, {},
+         {}};
   x.expected = numbers(n);
   x.found = numbers(found);
-  x.variants = {{0, "this itself: it is not made unit", numbers(unscaled)},
-                {0, "the other side: from A to B", numbers(Vector2d(-n))},
-                {0, "the other side, and not made unit", numbers(Vector2d(-unscaled))}};
+  x.variants = {
+      {0, "as this line itself: the division by its length is missing", numbers(unscaled)},
+      {0, "with the other sign: it points from A to B", numbers(Vector2d(-n))},
+      {0, "with the other sign, and without the division by its length",
+       numbers(Vector2d(-unscaled))}};
   return x;
 }
 
@@ -259,26 +268,38 @@ Shown vertex_vertex(const Vector2d& found, const Vector2d& com_a, const Vector2d
   return normal("n = (x_a - x_b) / |x_a - x_b|   (A1.7)", found, line.normalized(), line);
 }
 
-// (A1.1): for rays that meet the plane.
+std::string words_of_hit(const VectorXd& answer) {
+  if (!(answer[0] > 0.0)) return "no hit";
+  return "hit at t = " + grading::shown(numbers(answer[1]), "") + ", weights " +
+         grading::shown(answer.tail(3), "");
+}
+
+// (A1.1): for rays that meet the plane. Whether a ray is a hit is not said where rounding alone
+// decides it (t or a weight is almost 0): both answers are right then.
 Shown ray(const std::optional<RayHit>& found, const Ray& ray, const Triangle& triangle) {
   const Vector3d ab = triangle.b_world - triangle.a_world, ac = triangle.c_world - triangle.a_world,
-                 normal = ab.cross(ac), from = ray.origin_world - triangle.a_world;
-  const double slope = normal.dot(ray.direction_world);
-  if (slope == 0.0) return std::nullopt;
+                 normal = ab.cross(ac), from = ray.origin_world - triangle.a_world,
+                 &d = ray.direction_world;
+  const double slope = normal.dot(d);
+  constexpr double kRoundOff = 1e-9;  // relative
+  if (!(std::abs(slope) > kRoundOff * normal.norm() * d.norm())) return std::nullopt;
   const double t = -normal.dot(from) / slope;
-  const Vector3d q = ray.direction_world.cross(from);
+  const Vector3d q = d.cross(from);
   const double w_b = ac.dot(q) / slope, w_c = -ab.dot(q) / slope;
   const Vector3d weights(1.0 - w_b - w_c, w_b, w_c);
   Xray x{"o + t d = w_a a + w_b b + w_c c;  a hit has t >= 0 and no weight below 0   (A1.1)",
          {},
-         "hit; t; weights",
+         "answer",
          "",
          {},
          {},
-         {}};
-  x.terms = {{t >= 0.0 ? "t" : "t < 0: it points away", numbers(t), ""},
-             {"w_a, w_b, w_c", numbers(weights), ""}};
-  const bool is_hit = t >= 0.0 && weights.minCoeff() >= 0.0;
+         {},
+         words_of_hit};
+  x.terms = {{"t", numbers(t), ""}, {"w_a, w_b, w_c", numbers(weights), ""}};
+  const bool is_behind = t < 0.0, is_inside = weights.minCoeff() >= 0.0;
+  const bool is_border = std::abs(t) <= kRoundOff * from.norm() / d.norm() ||
+                         weights.cwiseAbs().minCoeff() <= kRoundOff * weights.cwiseAbs().maxCoeff();
+  const bool is_hit = is_border ? found.has_value() : !is_behind && is_inside;
   const auto of = [](bool hit, double time, const Vector3d& w) {
     VectorXd all = VectorXd::Zero(5);
     if (hit) all << 1.0, time, w;
@@ -286,11 +307,18 @@ Shown ray(const std::optional<RayHit>& found, const Ray& ray, const Triangle& tr
   };
   x.expected = of(is_hit, t, weights);
   x.found = found ? of(true, found->t, found->barycentric) : of(false, 0.0, weights);
-  x.variants = {{0, "no look at its sign: the ray points away", of(true, t, weights)},
-                {0, "t in metres", of(is_hit, t * ray.direction_world.norm(), weights)},
-                {1, "another order of the weights",
-                 of(is_hit, t, Vector3d(weights[1], weights[2], weights[0]))},
-                {1, "no hit", of(false, t, weights)}};
+  x.variants = {{0, "with t in metres", of(is_hit, t * d.norm(), weights)},
+                {1, "with the weights in another order",
+                 of(is_hit, t, Vector3d(weights[1], weights[2], weights[0]))}};
+  if (is_border) return x;
+  if (is_hit) {
+    x.variants.push_back({1, "as no hit, though no weight is below 0", of(false, t, weights)});
+  } else if (is_inside) {
+    x.variants.push_back(
+        {0, "as a hit, though t < 0: it lies behind the origin of the ray", of(true, t, weights)});
+  } else {
+    x.variants.push_back({1, "as a hit, though a weight is below 0", of(true, t, weights)});
+  }
   return x;
 }
 

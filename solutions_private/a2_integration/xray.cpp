@@ -122,21 +122,23 @@ Shown runge_kutta(const VectorXd& found, const Function&, const double& t, const
     x.terms.push_back({kName[i], right_stage(i, y), "", numbers(numbers(k[i].time), k[i].y), true});
     // what f has answered: it is seen
     x.terms.push_back(
-        {'k' + std::to_string(i + 1) + (i < wrong ? " = f there" : " = f where asked"), k[i].slope,
-         "", k[i].slope});
+        {'k' + std::to_string(i + 1) + (i < wrong ? " = f there" : " = f at your place"),
+         k[i].slope, "", k[i].slope});
   }
   x.expected = right_sum(y);
   constexpr std::size_t kSlope1 = 1, kSlope2 = 3;  // among the terms
   x.variants = {
-      {kSlope1, "the weights 1/4, 1/4, 1/4, 1/4", sum(y, 0.25, 0.25, 0.25, 0.25)},
-      {kSlope1, "the weights 1/6, 1/6, 1/6, 1/6", sum(y, 1.0 / 6, 1.0 / 6, 1.0 / 6, 1.0 / 6)},
-      {kSlope1, "k1 alone: Euler's step", sum(y, 1, 0, 0, 0)},
-      {kSlope2, "k2 alone: the midpoint's step", sum(y, 0, 1, 0, 0)},
-      {kSlope1, "a division by 4", sum(y, 0.25, 0.5, 0.5, 0.25)}};
+      {kSlope1, "with the weights 1/4, 1/4, 1/4, 1/4", sum(y, 0.25, 0.25, 0.25, 0.25)},
+      {kSlope1, "with the weights 1/6, 1/6, 1/6, 1/6", sum(y, 1.0 / 6, 1.0 / 6, 1.0 / 6, 1.0 / 6)},
+      {kSlope1, "with k1 alone: Euler's step", sum(y, 1, 0, 0, 0)},
+      {kSlope2, "with k2 alone: the step of the midpoint method", sum(y, 0, 1, 0, 0)},
+      {kSlope1, "with h/4 for h/6", sum(y, 0.25, 0.5, 0.5, 0.25)}};
   if (wrong < 4) {  // the answer is what this stage has made of it
     const std::string place = grading::shown(numbers(numbers(k[wrong].time), k[wrong].y), "");
-    x.variants.insert(x.variants.begin(),
-                      {2 * wrong, from.empty() ? place : place + ", that is " + from + ",", found});
+    x.variants.insert(
+        x.variants.begin(),
+        {2 * wrong, "with " + (from.empty() ? place : place + ", which is " + from + ", here"),
+         found});
     if (y.size() != whole_y.size()) x.variants.front().answer = x.found;
   }
   return x;
@@ -151,8 +153,8 @@ Shown euler(const VectorXd& found, const Function&, const double&, const VectorX
   x.terms = {{"where f is taken", y, "", k[0].y, true}, {"f(t, y)", k[0].slope}};
   x.expected = y + h * k[0].slope;
   x.found = found;
-  x.variants = {{0, "nothing: y is left out", VectorXd(h * k[0].slope)},
-                {1, "f without h", VectorXd(y + k[0].slope)}};
+  x.variants = {{0, "without y", VectorXd(h * k[0].slope)},
+                {1, "with f for h f", VectorXd(y + k[0].slope)}};
   return x;
 }
 
@@ -195,11 +197,12 @@ Shown derivative(const VectorXd& found, const RigidBodyState& s, const Inertia& 
   const Vector3d body = inertia.inverse_inertia_body * s.angular_momentum_world,
                  in_body =
                      inertia.inverse_inertia_body * (r.transpose() * s.angular_momentum_world);
-  x.variants = {{0, "I^-1 of the body frame with the world's L", with(spin(body))},
-                {0, "omega in the body frame", with(spin(in_body))},
-                {2, "no factor 1/2",
+  x.variants = {{0, "with omega = I^-1 L: I^-1 of the body frame, and L of the world frame",
+                 with(spin(body))},
+                {0, "with omega in the body frame", with(spin(in_body))},
+                {2, "without the factor 1/2",
                  with(Quaterniond(2 * rate.w(), 2 * rate.x(), 2 * rate.y(), 2 * rate.z()))},
-                {2, "q on the left",
+                {2, "with q on the left: q (0, omega)",
                  with(q * Quaterniond(0, 0.5 * omega.x(), 0.5 * omega.y(), 0.5 * omega.z()))}};
   return x;
 }
@@ -214,9 +217,9 @@ Shown world_tensor(const Matrix3d& found, const Matrix3d& inertia, const Quatern
   x.terms = {{"R", all(r)}, {"I in the body", all(inertia), "kg m^2"}};
   x.expected = all(r * inertia * r.transpose());
   x.found = all(found);
-  x.variants = {{0, "R^T: R^T I R", all(r.transpose() * inertia * r)},
-                {0, "nothing: I as it is", all(inertia)},
-                {0, "R on one side alone", all(r * inertia)}};
+  x.variants = {{0, "with R^T for R: R^T I R", all(r.transpose() * inertia * r)},
+                {0, "as I itself, without R", all(inertia)},
+                {0, "as R I: R on one side alone", all(r * inertia)}};
   return x;
 }
 
@@ -239,19 +242,20 @@ Shown newton(const RootResult&, const Function& gap, const Function&, const doub
       const bool is_inside = next > a && next < b;
       Xray x{"t - g(t) / g'(t) where that lies inside the bracket, else its middle   (A2.12)",
              {},
-             "the next look",
+             "the next time",
              "s",
              numbers(is_inside ? next : middle),
              numbers(time),
              {}};
-      x.terms = {{"t, the last look", numbers(*from), "s"},
+      x.terms = {{"t, the last time", numbers(*from), "s"},
                  {"g(t)", numbers(gaps[*from]), "m"},
                  {"g'(t)", numbers(rates[*from]), "m/s"},
                  {"t - g / g'", numbers(next), "s"},
                  {"the bracket", numbers(numbers(a), numbers(b)), "s"},
                  {"its middle", numbers(middle), "s"}};
-      x.variants = {{3, "t + g / g'", numbers(*from + gaps[*from] / rates[*from])}};
-      if (!is_inside) x.variants.push_back({4, "none", numbers(next)});
+      x.variants = {{3, "with t + g / g'", numbers(*from + gaps[*from] / rates[*from])}};
+      if (!is_inside)
+        x.variants.push_back({4, "without the bracket: the step may leave it", numbers(next)});
       return x;
     }
     (is_gap ? gaps : rates)[time] = value;
@@ -290,11 +294,11 @@ Shown gram_schmidt(const Matrix3d& found, const Matrix3d& drifted) {
              {"x . c", numbers(x_axis.dot(c))},
              {"y . c", numbers(y_axis.dot(c))},
              {"z", numbers(Vector3d(right.col(2))), "", VectorXd(found.col(2))}};
-  x.variants = {{1, "nothing", all(columns(0, 1, 1))},
-                {3, "nothing", all(columns(1, 0, 1))},
-                {4, "nothing", all(columns(1, 1, 0))},
-                {3, "nothing for it and for y . c", all(columns(1, 0, 0))},
-                {2, "y that is not made unit", all(columns(1, 1, 1, false))}};
+  x.variants = {{1, "without (x . b) x", all(columns(0, 1, 1))},
+                {3, "without (x . c) x", all(columns(1, 0, 1))},
+                {4, "without (y . c) y", all(columns(1, 1, 0))},
+                {3, "without (x . c) x and (y . c) y", all(columns(1, 0, 0))},
+                {2, "with a y that is not made unit", all(columns(1, 1, 1, false))}};
   return x;
 }
 

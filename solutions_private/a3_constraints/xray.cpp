@@ -17,10 +17,10 @@ Shown position(const Vector3d& found, const Body& body, const Vector3d& point) {
   x.terms = {{"x", numbers(x_com), "m"}, {"R p_body", numbers(r), "m"}};
   x.expected = numbers(Vector3d(x_com + r));
   x.found = numbers(found);
-  x.variants = {
-      {1, "p_body, without R", numbers(Vector3d(x_com + point))},
-      {1, "R^T p_body", numbers(Vector3d(x_com + body.world_from_body.conjugate() * point))},
-      {0, "nothing: x is left out", numbers(r)}};
+  x.variants = {{1, "with p_body for R p_body", numbers(Vector3d(x_com + point))},
+                {1, "with R^T p_body for R p_body",
+                 numbers(Vector3d(x_com + body.world_from_body.conjugate() * point))},
+                {0, "without x", numbers(r)}};
   return x;
 }
 
@@ -33,18 +33,18 @@ Shown velocity(const Vector3d& found, const Body& body, const Vector3d& point) {
              {"omega x r", numbers(Vector3d(w.cross(r))), "m/s"}};
   x.expected = numbers(Vector3d(v + w.cross(r)));
   x.found = numbers(found);
-  x.variants = {
-      {1, "p_body, without R", numbers(Vector3d(v + w.cross(point)))},
-      {1, "p, the arm from the world's origin", numbers(Vector3d(v + w.cross(body.com_world + r)))},
-      {2, "r x omega", numbers(Vector3d(v - w.cross(r)))},
-      {2, "nothing", numbers(v)}};
+  x.variants = {{1, "with p_body for R p_body", numbers(Vector3d(v + w.cross(point)))},
+                {1, "with r = p, the arm from the world's origin",
+                 numbers(Vector3d(v + w.cross(body.com_world + r)))},
+                {2, "with r x omega for omega x r", numbers(Vector3d(v - w.cross(r)))},
+                {2, "without omega x r", numbers(v)}};
   return x;
 }
 
 // (A3.3)
 Shown spring(const Vector3d& found, const Spring& s, const AnchorState& a, const AnchorState& b) {
   const Vector3d d = b.point_world - a.point_world, relative = b.velocity_world - a.velocity_world;
-  const double length = d.norm();
+  const double length = d.stableNorm();  // of very long and very short springs, too
   if (!(length > 0.0)) return std::nullopt;
   const Vector3d n = d / length;
   const double pull = s.stiffness * (length - s.rest_length), drag = s.damping * n.dot(relative);
@@ -62,15 +62,15 @@ Shown spring(const Vector3d& found, const Spring& s, const AnchorState& a, const
              {"c n . (v_b - v_a)", numbers(drag), "N"}};
   x.expected = numbers(Vector3d((pull + drag) * n));
   x.found = numbers(found);
-  x.variants = {
-      {0, "p_a - p_b: the force on B", numbers(Vector3d(-(pull + drag) * n))},
-      {1, "|d|, without L0", numbers(Vector3d((s.stiffness * length + drag) * n))},
-      {3, "0 where the spring is shorter than L0", numbers(Vector3d(drag * n))},
-      {4, "nothing: no damper", numbers(Vector3d(pull * n))},
-      {4, "the other sign", numbers(Vector3d((pull - drag) * n))},
-      {4, "c n . (-v_a), one end alone",
-       numbers(Vector3d((pull - s.damping * n.dot(a.velocity_world)) * n))},
-      {4, "c (v_b - v_a), in every direction", numbers(Vector3d(pull * n + s.damping * relative))}};
+  x.variants = {{0, "with d = p_a - p_b: the force on B", numbers(Vector3d(-(pull + drag) * n))},
+                {1, "with |d|, without L0", numbers(Vector3d((s.stiffness * length + drag) * n))},
+                {3, "without k (|d| - L0)", numbers(Vector3d(drag * n))},
+                {4, "without the damper", numbers(Vector3d(pull * n))},
+                {4, "with the other sign of this line", numbers(Vector3d((pull - drag) * n))},
+                {4, "with c n . (-v_a), the velocity of one end alone",
+                 numbers(Vector3d((pull - s.damping * n.dot(a.velocity_world)) * n))},
+                {4, "with c (v_b - v_a), in every direction",
+                 numbers(Vector3d(pull * n + s.damping * relative))}};
   return x;
 }
 
@@ -79,14 +79,15 @@ Shown rod(const ConstraintRow& found, const Body& a, const Vector3d& point_a, co
           const Vector3d& point_b, const double& length) {
   const Vector3d r_a = a.world_from_body * point_a, r_b = b.world_from_body * point_b,
                  d = (a.com_world - b.com_world) + (r_a - r_b);
-  if (!(d.norm() > 0.0)) return std::nullopt;
-  const Vector3d n = d.normalized(),
+  const double distance = d.stableNorm();
+  if (!(distance > 0.0)) return std::nullopt;
+  const Vector3d n = d / distance,
                  rate = a.velocity_world + a.omega_world.cross(r_a) - b.velocity_world -
                         b.omega_world.cross(r_b),
                  across = rate - n.dot(rate) * n;
   const double centripetal = n.dot(a.omega_world.cross(a.omega_world.cross(r_a)) -
                                    b.omega_world.cross(b.omega_world.cross(r_b))),
-               turning = across.squaredNorm() / d.norm();
+               turning = across.squaredNorm() / distance;
   Vector6d j_a, j_b;
   j_a << n, r_a.cross(n);
   j_b << -n, -r_b.cross(n);
@@ -102,7 +103,7 @@ Shown rod(const ConstraintRow& found, const Body& a, const Vector3d& point_a, co
   x.terms = {{"n = d / |d|", numbers(n)},
              {"r_a", numbers(r_a), "m"},
              {"r_b", numbers(r_b), "m"},
-             {"C", numbers(d.norm() - length), "m", numbers(found.value)},
+             {"C", numbers(distance - length), "m", numbers(found.value)},
              {"C' = n . d'", numbers(n.dot(rate)), "m/s", numbers(found.rate)},
              {"J_a", numbers(j_a), "", numbers(found.jacobian_a)},
              {"J_b", numbers(j_b), "", numbers(found.jacobian_b)},
@@ -117,17 +118,17 @@ Shown rod(const ConstraintRow& found, const Body& a, const Vector3d& point_a, co
     return v;
   };
   const auto with = [&](double product) {
-    return all(d.norm() - length, n.dot(rate), j_a, j_b, product);
+    return all(distance - length, n.dot(rate), j_a, j_b, product);
   };
   x.expected = with(centripetal + turning);
   x.found =
       all(found.value, found.rate, found.jacobian_a, found.jacobian_b, found.velocity_product);
-  x.variants = {
-      {7, "nothing", with(turning)},
-      {8, "nothing", with(centripetal)},
-      {9, "0", with(0.0)},
-      {9, "the other sign", with(-centripetal - turning)},
-      {3, "the other sign", all(length - d.norm(), n.dot(rate), j_a, j_b, centripetal + turning)}};
+  x.variants = {{7, "without this line", with(turning)},
+                {8, "without this line", with(centripetal)},
+                {9, "with 0 for both", with(0.0)},
+                {9, "with the other sign of this line", with(-centripetal - turning)},
+                {3, "with the other sign of this line",
+                 all(length - distance, n.dot(rate), j_a, j_b, centripetal + turning)}};
   return x;
 }
 
@@ -141,9 +142,9 @@ Shown baumgarte(const double& found, const double& value, const double& rate, co
              {"-C/T^2", numbers(stiffness), "m/s^2"}};
   x.expected = numbers(damping + stiffness);
   x.found = numbers(found);
-  x.variants = {{2, "-C'/T, without the 2", numbers(0.5 * damping + stiffness)},
-                {3, "-C/T, T not squared", numbers(damping - value / time)},
-                {3, "the other sign, and so for C'", numbers(-damping - stiffness)}};
+  x.variants = {{2, "with -C'/T: the 2 is missing", numbers(0.5 * damping + stiffness)},
+                {3, "with -C/T: T is not squared", numbers(damping - value / time)},
+                {3, "with the other sign of both lines", numbers(-damping - stiffness)}};
   return x;
 }
 

@@ -191,8 +191,9 @@ TEST(CollisionImpulse, TurnedBlockNeedsItsInertiaInTheWorldFrame) {
   // About the world's y the block now has the moment of its own x, 1 kg m^2: denominator 1/2 + 1.
   expect_near(
       found, 4.0, kImpulseRoundoff * 4.0, "N s",
-      {.scene = "the same fall, the block turned by 120 degrees about (1, 1, 1): moments 4, 1, 2 "
-                "about world x, y, z",
+      {.scene =
+           "a 2 kg block falls at 4 m/s and lands 1 m off centre on a floor, e = 0.5; it is turned "
+           "by 120 degrees about (1, 1, 1): moments 4, 1, 2 kg m^2 about world x, y, z",
        .slip = likely(found,
                       {{6.0, "body inertia where world inertia belongs: I^-1 = R I_body^-1 R^T"},
                        {8.0, "R and R^T swapped: I^-1 = R I_body^-1 R^T"},

@@ -19,7 +19,7 @@ TEST(PointForce, ArmStartsAtTheCentreOfMass) {
   const Wrench found = student().wrench_of_point_force({0, 0, 5}, {1, 2, 3}, {1, 0, 0});
   expect_near(
       found.torque_world, Vector3d(10, 0, 0), kRoundoff * 10, "N m",
-      {.scene = "the same force on a body centred at (1, 0, 0) m",
+      {.scene = "5 N along z at (1, 2, 3) m on a body centred at (1, 0, 0) m",
        .slip = likely<3>(
            found.torque_world,
            {{{10, -5, 0}, "the arm starts at the world's origin: r = p - x"},

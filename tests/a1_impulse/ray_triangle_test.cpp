@@ -51,7 +51,8 @@ TEST(RayTriangle, HitsInsideWithTheWeightsOfTheCorners) {
 TEST(RayTriangle, CountsInLengthsOfTheDirection) {
   const auto found = student().intersect_ray_triangle({{0.5, 0.75, 2}, {0, 0, -4}}, kRightAngled);
   expect_hit(found, 0.5, {0.5, 0.125, 0.375},
-             {.scene = "the same triangle 2 m below, direction (0, 0, -4): half a length of d",
+             {.scene = "triangle a (0,0,0), b (4,0,0), c (0,2,0); ray from (0.5, 0.75, 2) along "
+                       "(0, 0, -4): half a length of d",
               .slip = "t counts in lengths of d as it was given",
               .handout = kHandout},
              {{2.0, "the direction was normalised: t must count in lengths of d as it was given"}});

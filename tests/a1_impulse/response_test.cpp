@@ -47,8 +47,9 @@ TEST(ApplyImpulse, TurnedBlockNeedsItsInertiaInTheWorldFrame) {
   const Velocity found = student().apply_impulse(body, {0, 0, 6}, {6, 3, 0});
   expect_near(
       found.angular_world, Vector3d(0, -6, 0), kRoundoff * 6, "rad/s",
-      {.scene = "the same blow on the block turned by 120 degrees, at rest: its moment about world "
-                "y is now 1 kg m^2",
+      {.scene =
+           "6 N s along z at (6, 3, 0) m on a block at rest, centred at (5, 3, 1) m and turned by "
+           "120 degrees: its moment about world y is now 1 kg m^2",
        .slip = likely<3>(
            found.angular_world,
            {{{0, -3, 0}, "body inertia where world inertia belongs: I^-1 = R I_body^-1 R^T"},

@@ -110,7 +110,7 @@ TEST(ImpactTimeNewton, SurvivesSlopeZero) {
                 "no safeguard: slope 0 at the start of a fall divides by zero; bisect instead", 12);
   Looks flat_looks;
   Approach flat = ball;
-  flat.scene = "the same fall, and a rate that answers 0 at all times";
+  flat.scene = ball.scene + ", and a rate that answers 0 at all times";
   flat.gap_rate = [](double) { return 0.0; };
   expect_impact(newton(flat, kTolerance, flat_looks), flat, flat_looks, kTolerance, kRoundOffTime,
                 "no safeguard: slope 0 divides by zero; bisect instead", 12);
@@ -174,9 +174,10 @@ TEST(ImpactTimeNewton, StopsABulletBeforeAThinWall) {
   Looks unsigned_looks;
   const RootResult unseen = a2_module().impact_time_newton(
       noting(unsigned_looks, distance_to_wall), [](double) { return -1000.0; }, 0.01, 0.02, 1e-12);
-  expect_no_impact(unseen, unsigned_looks,
-                   "the same step, asked for the distance to the wall, which is open at both ends",
-                   "an impact is reported where both ends are open");
+  expect_no_impact(
+      unseen, unsigned_looks,
+      bullet.scene + "; asked for the distance to the wall, which is open at both ends",
+      "an impact is reported where both ends are open");
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ TEST(OnGroupCheck, OnlyTheFirstOpeningCounts) {
            "after the first opening everything moves otherwise: the later ones may never happen",
        .handout = equation(5)});
   expect_near(found.next.safe_time, 1.125, 0.0, "s (safe time)",
-              {.scene = "the same row",
+              {.scene = "a row A, B, C, D is looked at in [1, 1.5] s: B-C opens first, at 1.125 s",
                .slip = "the earliest of all, not the first in the list",
                .handout = equation(5)});
 }

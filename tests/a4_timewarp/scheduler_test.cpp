@@ -66,7 +66,7 @@ TEST(Scheduler, DoesNotDisturbWhoIsFarAway) {
         run.virtual_times.processes[static_cast<std::size_t>(move.process)] == "lone")
       return expect_true(false, "the lone ball is never rolled back",
                          "it goes back from " + show(move.from_s) + " to " + show(move.to_s) + " s",
-                         {.scene = "the same",
+                         {.scene = "A and B meet near a wall; 30 m away a lone ball goes its way",
                           .slip = "rollback of everyone: that is what retroactive detection does",
                           .handout = equation(8)});
 }
@@ -81,7 +81,8 @@ TEST(Scheduler, SplitsAHeapWhereItsContactsOpen) {
     return event.kind == EventKind::kBreak;
   });
   expect_true(opened >= 2, "contacts that open", std::to_string(opened),
-              {.scene = "the same",
+              {.scene = "a ball drops between two that touch on a floor; they slide apart, "
+                        "and another one falls on them",
                .slip = "contact_groups or on_group_check: the heap did not come apart",
                .handout = equation(5)});
 }

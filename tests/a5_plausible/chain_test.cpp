@@ -61,14 +61,15 @@ TEST(LogAcceptance, HoldsDetailedBalanceOnFivePlaces) {
       const double most = std::min(weights[i] * Q(i, j), weights[j] * Q(j, i)) / weights.sum();
       expect_answer(
           forth, most, 1e-12, "(probability of the step)",
-          {.scene = "the same places: the flow is the smaller of pi_i Q_ij and pi_j Q_ji",
+          {.scene = "five places of weights 1, 4, 0.25, 9, 2.5: the flow is the smaller of pi_i "
+                    "Q_ij and pi_j Q_ji",
            .slip = acceptance_slip("balance alone is not enough: of two ways one is always "
                                    "accepted, min(0, ...)"),
            .handout = equation(5)});
       flows = flows || forth > 0;
     }
   expect_true(flows, "a step that is accepted", "none",
-              {.scene = "the same places",
+              {.scene = "five places of weights 1, 4, 0.25, 9, 2.5, and an asymmetric proposal",
                .slip = "nothing is ever accepted: such a chain is balanced, and stands still",
                .handout = equation(5)});
 }

@@ -41,7 +41,7 @@ TEST(Autocorrelation, KnowsNoOriginAndNoUnit) {
        .no_number = "the mean of the squares minus the square of the mean loses all digits: take "
                     "off the mean first"});
   expect_answer(student().autocorrelation(-0.001 * chain, 4), plain, 100 * kRoundoff, "",
-                {.scene = "the same chain times -0.001",
+                {.scene = "the chain 1, 3, 2, 5, 4, 4, 6, 2, times -0.001",
                  .slip = "a correlation has no unit: c_t is divided by c_0",
                  .handout = equation(7)});
 }
@@ -187,7 +187,7 @@ TEST(EffectiveSampleSize, SeesChainsThatDisagree) {
                .slip = "independent samples count almost fully",
                .handout = equation(8)});
   expect_true(found < 12, "less than 12: four chains, whose halves agree", show(found),
-              {.scene = "the same chains, the last one moved by 8 deviations",
+              {.scene = "4 chains of 500 independent samples, the last one moved by 8 deviations",
                .slip = "the variance between the means belongs in var_plus: each chain alone looks "
                        "independent",
                .handout = equation(8)});

@@ -83,7 +83,7 @@ TEST(Propose, LeavesNumbersOfSize0) {
                  .handout = equation(3)});
   const VectorXd again = student().propose(proposal, x, draws_with(vector({3, 3, 3}), 0.1, 0.77));
   expect_answer(again, found, 0, "",
-                {.scene = "the same with another `uniform`",
+                {.scene = "x = (0.1, -7, 2), sizes (0, 0, 1), once more with another `uniform`",
                  .slip = "`uniform` belongs to the acceptance: the proposal does not look at it",
                  .handout = equation(3)});
 }
@@ -188,12 +188,12 @@ TEST(LogProposal, MixesTheTwoProposals) {
   // Only one of the two.
   expect_answer(student().log_proposal({{add(1)}, 0.0, 10.0}, vector({1}), vector({5})), usual,
                 kRoundoff * 10, "",
-                {.scene = "the same with share 0",
+                {.scene = "from 1 to 5 by addition, size 1, and 10 with share 0",
                  .slip = "ln 0 = -infinity must not become NaN",
                  .handout = equation(4)});
   expect_answer(student().log_proposal({{add(1)}, 1.0, 10.0}, vector({1}), vector({5})), wide,
                 kRoundoff * 10, "",
-                {.scene = "the same with share 1",
+                {.scene = "from 1 to 5 by addition, size 1, and 10 with share 1",
                  .slip = "ln 0 = -infinity must not become NaN",
                  .handout = equation(4)});
 }

@@ -59,7 +59,26 @@ std::set<std::string> faults_in(const std::string& text) {
   return faults;
 }
 
+// @return every link within a page that has no target there
+std::set<std::string> links_to_nowhere(const std::string& html) {
+  const auto all = [&](const std::string& begin) {
+    std::set<std::string> names;
+    for (std::size_t at = html.find(begin); at != html.npos; at = html.find(begin, at + 1)) {
+      const std::size_t from = at + begin.size();
+      names.insert(html.substr(from, html.find('"', from) - from));
+    }
+    return names;
+  };
+  std::set<std::string> nowhere;
+  const std::set<std::string> ids = all(" id=\"");
+  for (const std::string& link : all("href=\"#"))
+    if (!ids.contains(link)) nowhere.insert("a link to nowhere: #" + link);
+  return nowhere;
+}
+
 TEST(FlawedStories, TheRulesSeeWhatWasFound) {
+  EXPECT_EQ(links_to_nowhere("<a href=\"#a\"><a href=\"#b\"><p id=\"b\">"),
+            std::set<std::string>{"a link to nowhere: #a"});
   EXPECT_EQ(faults_in("at t = 0.933 s. both impulses act at the same point").size(), 1u);
   EXPECT_EQ(faults_in("0.323 <= 1e-09").size(), 1u);
   EXPECT_EQ(faults_in("it has ended:.").size(), 1u);
@@ -83,12 +102,14 @@ TEST_F(Grading, PagesAndStoriesOfTheFlawedSubmissionsAreSentences) {
       faults.merge(faults_in(result.value("output", std::string())));
     for (const char* page : {"flawed/index.html", "flawed/student.html", "index.html"})
       faults.merge(faults_in(read_off(text_of(root / id / page))));
+    for (const char* page : {"flawed/index.html", "flawed/student.html"})
+      faults.merge(links_to_nowhere(text_of(root / id / page)));
     for (const std::string& fault : faults) ADD_FAILURE() << id << ": " << fault;
     // the equation of a2's dearest cause
     if (id != "a2") continue;
     const std::string page = read_off(text_of(root / id / "flawed/index.html"));
-    for (const char* words : {"k3: t + h/2; y + h/2 k2", "that is y + h/2 k1, in its place",
-                              "as these terms give", "gap = a function, t_low = "})
+    for (const char* words : {"k3: t + h/2; y + h/2 k2", "which is y + h/2 k1, here",
+                              "as these lines give", "gap = a function, t_low = "})
       EXPECT_NE(page.find(words), std::string::npos) << words;
   }
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 
 #include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/grade_pages.h"
@@ -60,18 +61,23 @@ TEST_F(MendFirst, StandsBeforeTheTestsWithPointsEvidenceAndPlace) {
   EXPECT_LT(box, html.find("id=\"tests\""));
   EXPECT_NE(html.find("1. Likely mistake in hit: the factor is missing (9 points)"),
             std::string::npos);
-  EXPECT_NE(html.find("A file with this mistake fails 2 of the 2 tests that this file fails, and "
-                      "gives in all of them the same wrong answer as this file."),
+  EXPECT_NE(html.find("This mistake alone explains 2 of the 2 failed tests, with the same wrong "
+                      "answers."),
             std::string::npos);
-  EXPECT_NE(html.find("Look at hit, a9_things.cpp:7."), std::string::npos);
+  EXPECT_NE(html.find("2 tests failed (wrong, crashed, or out of time or memory)."),
+            std::string::npos);
+  EXPECT_NE(html.find("hit begins in line 7 of a9_things.cpp."), std::string::npos);
 }
 
 TEST_F(MendFirst, ACauseWithoutANumberThatAgreesIsOnlyPossible) {
   grade.causes[0].same_numbers = 0;
   const std::string html = page(grade);
-  EXPECT_EQ(html.find("Likely"), std::string::npos);
-  EXPECT_NE(html.find("Possible mistake in hit"), std::string::npos);
-  EXPECT_NE(html.find("though with other answers"), std::string::npos);
+  EXPECT_EQ(html.find("Likely mistake"), std::string::npos);
+  EXPECT_NE(html.find("1. hit gives wrong answers (the mistake is not certain)"),
+            std::string::npos);
+  EXPECT_NE(html.find("One way to fail 2 of the 2 failed tests: the factor is missing. But it "
+                      "gives other numbers than yours"),
+            std::string::npos);
 }
 
 TEST_F(MendFirst, SaysWhatFollowsAndWhatWasNotRunWithoutNamesOfHiddenTests) {
@@ -86,6 +92,124 @@ TEST_F(MendFirst, SaysWhatFollowsAndWhatWasNotRunWithoutNamesOfHiddenTests) {
   const std::string not_run = page(for_student(grade));
   EXPECT_NE(not_run.find("One more test was not run"), std::string::npos) << not_run;
   EXPECT_EQ(not_run.find("Secret"), std::string::npos);
+}
+
+std::set<std::string> targets_in(const std::string& html, const std::string& before) {
+  std::set<std::string> names;
+  for (std::size_t at = html.find(before); at != html.npos; at = html.find(before, at + 1)) {
+    const std::size_t begin = at + before.size();
+    names.insert(html.substr(begin, html.find('"', begin) - begin));
+  }
+  return names;
+}
+
+// Of tests with a story, without one, hidden and not attempted; of scenes, in both kinds of page.
+TEST_F(MendFirst, EveryLinkWithinThePageLeadsSomewhere) {
+  grade.tests.push_back(scored("Open.New", "a new one", 1, Verdict::kNotAttempted, false,
+                               "hit: not implemented yet"));
+  grade.tests.push_back(scored("Open.Late", "a late one", 1, Verdict::kOutOfResources, false,
+                               "not run: the tests before used up the time"));
+  grade.tests.back().result.not_run = true;
+  grade.causes[0].tests.push_back("Open.New");
+  grade.causes[0].not_run = {"Open.Late"};
+  SceneMedia scene;
+  scene.scene = "two_boxes";
+  scene.title = "Two boxes";
+  scene.story = "SIGSEGV";
+  scene.functions = {"hit"};
+  grade.media = {scene};
+  for (const Grade& shown : {grade, for_student(grade)}) {
+    const std::string html = page(shown);
+    const auto ids = targets_in(html, " id=\""), links = targets_in(html, "href=\"#");
+    for (const std::string& link : links) EXPECT_TRUE(ids.contains(link)) << link;
+    EXPECT_TRUE(links.contains("r-Open-New"));
+    EXPECT_TRUE(links.contains("s-two-boxes"));
+    EXPECT_TRUE(links.contains(shown.tests[1].item.test == "Secret.Seam" ? "t-Secret-Seam"
+                                                                         : "r-Hidden-Test1"));
+    EXPECT_NE(html.find("All 4 tests of this cause</summary>"), std::string::npos);
+  }
+}
+
+// A run in which two mistakes act may show the other one's.
+TEST_F(MendFirst, APictureStandsBesideTheOneCauseThatActsInItsScene) {
+  SceneMedia scene;
+  scene.scene = scene.title = "boxes";
+  scene.story = "SIGSEGV";
+  scene.picture = "boxes.png";
+  scene.functions = {"hit", "turn"};
+  grade.media = {scene};
+  const auto box = [&] {
+    const std::string html = page(grade);
+    return html.substr(0, html.find("id=\"tests\""));
+  };
+  EXPECT_NE(box().find("media/boxes.png"), std::string::npos);
+  Cause other;
+  other.kind = Cause::Kind::kUnknown;
+  other.says = "turn gives wrong answers";
+  other.functions = {"turn"};
+  other.tests = {"Secret.Seam"};
+  grade.causes.push_back(other);
+  EXPECT_EQ(box().find("media/boxes.png"), std::string::npos);
+  EXPECT_NE(box().find("boxes</a> (cause 2 may act in it, too)"), std::string::npos) << box();
+}
+
+// A cause that is no known slip gives something to act on, too.
+TEST_F(MendFirst, EveryCauseSaysWhatItShouldBeAndWhereToRead) {
+  FunctionInHeader told;
+  told.purpose = "How hard it hits.\nj = 2 u   (A9.2)";
+  told.formula = "j = 2 u   (A9.2)";
+  told.returns = "j, not below 0";
+  told.equations = {"handouts/a9_things.md#eq-a9-2"};
+  told.hints = "handouts/a9_things.md#hint-hit";
+  for (const auto kind : {Cause::Kind::kUnknown, Cause::Kind::kOutOfResources, Cause::Kind::kCrash,
+                          Cause::Kind::kNotWritten, Cause::Kind::kSlip}) {
+    grade.causes[0].kind = kind;
+    grade.causes[0].told = {told};
+    grade.causes[0].tests = {"Secret.Seam"};
+    const std::string html = page(for_student(grade), {"../handout.html", "a9_things"});
+    const bool is_new = kind == Cause::Kind::kNotWritten;
+    EXPECT_NE(html.find(is_new ? "<dt>to write</dt><dd>How hard it hits.\nj = 2 u"
+                               : "<dt>it should be</dt><dd>j = 2 u   (A9.2)</dd>"),
+              std::string::npos)
+        << html;
+    EXPECT_EQ(html.find("<dt>it returns</dt><dd>j, not below 0") != std::string::npos, is_new);
+    EXPECT_NE(html.find("../handout.html#eq-a9-2\">equation (A9.2) of the handout"),
+              std::string::npos);
+    EXPECT_NE(html.find("../handout.html#hint-hit"), std::string::npos);
+    EXPECT_EQ(html.find("Seen by hidden tests only") != std::string::npos, !is_new);
+  }
+}
+
+TEST_F(MendFirst, CausesThatBelongTogetherSaySo) {
+  Cause other = grade.causes[0];
+  other.says = "the sign is wrong";
+  grade.causes.push_back(other);
+  grade.causes[0].also_needed = {{1, 1}};
+  const std::string html = page(grade);
+  EXPECT_NE(html.find("1 of its tests also needs cause 2 mended."), std::string::npos) << html;
+  EXPECT_NE(html.find("Cause 2 is about the same function"), std::string::npos);
+  EXPECT_NE(html.find("Cause 1 is about the same function"), std::string::npos);
+}
+
+// A smaller step mends no wrong law.
+TEST_F(MendFirst, AFaultOfARunIsNoRemedyOfAStepWhereALawIsWrong) {
+  SceneMedia scene;
+  scene.scene = scene.title = "boxes";
+  engines::CheckResult flips;
+  flips.kind = "flips";
+  flips.passed = false;
+  flips.value = 22;
+  flips.threshold = 0;
+  flips.why = "what rises is made by the step. Likely remedy: a step of at most 0.004 s";
+  flips.detail = "25 flips, expected 3";
+  scene.checks = {flips};
+  grade.media = {scene};
+  const std::string html = page(grade);
+  EXPECT_EQ(html.find("0.004"), std::string::npos);
+  EXPECT_NE(html.find("Mend first what stands at the head of this page."), std::string::npos);
+  EXPECT_NE(html.find("off by 22, allowed 0"), std::string::npos);
+  grade.causes.clear();
+  EXPECT_NE(page(grade).find("Likely remedy: a step of at most 0.004 s."), std::string::npos);
 }
 
 TEST_F(MendFirst, WhatIsRightIsFolded) {

@@ -281,6 +281,27 @@ TEST(Causes, TwoMistakesOfOneLineAreSaidInOneCause) {
   EXPECT_EQ(causes[0].alone[1], kCount);
 }
 
+// The first answer is that of the first mistake; with that mended the second fails the test.
+TEST(Causes, ATestThatAnotherCauseFailsTooNeedsBoth) {
+  std::vector<AuditedSlip> known = {
+      {"one",
+       "one thing",
+       "",
+       {{"T.Both", Verdict::kWrong, "1 m", "f"}, {"T.One", Verdict::kWrong, "2 m", "f"}}},
+      {"two",
+       "another thing",
+       "",
+       {{"T.Both", Verdict::kWrong, "5 m", "g"}, {"T.Two", Verdict::kWrong, "6 m", "g"}}}};
+  const std::vector<ScoredTest> tests = {scored("T.Both", 4, Verdict::kWrong, "f", "found: 1 m"),
+                                         scored("T.One", 4, Verdict::kWrong, "f", "found: 2 m"),
+                                         scored("T.Two", 1, Verdict::kWrong, "g", "found: 6 m")};
+  const auto causes = causes_of(tests, known, "a1.cpp", "");
+  ASSERT_EQ(causes.size(), 2u);
+  EXPECT_EQ(causes[0].tests, (std::vector<std::string>{"T.Both", "T.One"}));
+  EXPECT_EQ(causes[0].also_needed, (std::vector<std::pair<std::size_t, std::size_t>>{{1, 1}}));
+  EXPECT_TRUE(causes[1].also_needed.empty());
+}
+
 TEST(Causes, TestsThatWereNotRunBelongToWhatUsedTheTimeWhichIsFirst) {
   std::vector<ScoredTest> tests = {
       scored("Force.Torque", 1, Verdict::kOutOfResources, "linear_acceleration", "no answer"),

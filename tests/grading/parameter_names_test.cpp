@@ -97,6 +97,46 @@ TEST_F(ParameterNames, AndHintsAreInTheCommentOfTheFunctionItself) {
             "\n  read:     handouts/a1_impulse.md#hint-normals");
 }
 
+TEST(InHeader, FormulaPurposeAndPlacesAreReadOffTheComment) {
+  const std::string header =
+      "/// Of another.\n///   y = 1                 (A9.1)\n/// Hints: handouts/x.md#one\n"
+      "double f(double x);\n\n"
+      "/// Twice a number, as (A9.1) has it.\n"
+      "///   y = 2 x,\n"
+      "///       where x is any                                        (A9.2b)\n"
+      "/// @param x  a number\n"
+      "/// @return y, above 0\n"
+      "///         where x is\n"
+      "/// Source: none.   Hints: handouts/x.md#two\n"
+      "double g(double x);\n"
+      "double h(double x);\n";
+  const FunctionInHeader told = told_in_declaration(header, "g");
+  EXPECT_EQ(told.purpose, "Twice a number, as (A9.1) has it.\ny = 2 x,\nwhere x is any   (A9.2b)");
+  EXPECT_EQ(told.formula, "y = 2 x,\nwhere x is any   (A9.2b)");
+  EXPECT_EQ(told.returns, "y, above 0 where x is");
+  EXPECT_EQ(told.equations, std::vector<std::string>{"handouts/x.md#eq-a9-2"});
+  EXPECT_EQ(told.hints, "handouts/x.md#two");
+  EXPECT_EQ(told_in_declaration(header, "h").purpose, "");
+  EXPECT_EQ(told_in_declaration(header, "k").purpose, "");
+}
+
+// Every function of every assignment has something to act on.
+TEST(InHeader, EveryFunctionHasAnEquationAndHints) {
+  for (const auto& [id, function] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"a1", "resolve_collision"},
+           {"a1", "contact_normal_vertex_edge"},
+           {"a2", "euler_angles_from_rotation"},
+           {"a2", "impact_time_bisection"},
+           {"a3", "rod_row"},
+           {"a4", "global_virtual_time"},
+           {"a5", "log_target"}}) {
+    const FunctionInHeader told = told_of_function(id, function);
+    EXPECT_FALSE(told.equations.empty()) << function;
+    EXPECT_FALSE(told.hints.empty()) << function;
+    EXPECT_FALSE(told.returns.empty()) << function;
+  }
+}
+
 TEST(WithNames, ValuesStandAloneWhereNamesDoNotFit) {
   EXPECT_EQ(with_names({"(0, 0, 5)", "\"a, b\""}, {"x", "what"}), "x = (0, 0, 5), what = \"a, b\"");
   EXPECT_EQ(with_names({"1", "{a: 2, b: 3}"}, {"x"}), "1, {a: 2, b: 3}");

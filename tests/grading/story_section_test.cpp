@@ -14,10 +14,11 @@ constexpr const char* kStory = R"(
   read:     handouts/a1_impulse.md#eq-a1-9
   x-ray:    j = -(1 + e) u_n / k   (A1.9)
             r_a                       (1, 0, -1) m
-            k_a                       1 1/kg   <- what was found comes out with I^-1 of the body
+            k_a                       1 1/kg   <- your answer comes out with I^-1 of the body
             r_b                       (6, 3, 0) m
             n                         (0, 0, 1)
-            j                         4 N s expected, 6 N s found)";
+            j, expected               4 N s
+            j, found                  6 N s)";
 
 TEST(Story, IsTakenApart) {
   const StoryParts parts = parts_of_story(kStory);
@@ -26,10 +27,11 @@ TEST(Story, IsTakenApart) {
   EXPECT_EQ(parts.fields[2].name, "found");
   EXPECT_EQ(parts.fields[2].text, "6 N s");
   EXPECT_EQ(parts.equation, "j = -(1 + e) u_n / k   (A1.9)");
-  ASSERT_EQ(parts.terms.size(), 5u);
+  ASSERT_EQ(parts.terms.size(), 6u);
   EXPECT_EQ(parts.terms[1].value, "1 1/kg");
-  EXPECT_EQ(parts.terms[1].mark, "what was found comes out with I^-1 of the body");
-  EXPECT_EQ(parts.terms[4].value, "4 N s expected, 6 N s found");
+  EXPECT_EQ(parts.terms[1].mark, "your answer comes out with I^-1 of the body");
+  EXPECT_EQ(parts.terms[5].name, "j, found");
+  EXPECT_EQ(parts.terms[5].value, "6 N s");
 }
 
 TEST(Story, KeepsLinesWithoutAName) {
@@ -48,6 +50,30 @@ TEST(Story, ItsArmsAreDrawn) {
   EXPECT_EQ(arms->arms[1].arm_world, Eigen::Vector3d(6, 3, 0));
   EXPECT_FALSE(arms_of({{"r_a", "(1, 0, inf) m", ""}, {"n", "(0, 0, 1)", ""}}));
   EXPECT_FALSE(arms_of({{"r_a", "(1, 0, 0) m", ""}}));  // no direction
+  // a product of r is no arm: the function has one body
+  const auto one = arms_of({{"r = p - x", "(1, 0, 0) m", ""},
+                            {"J", "(0, 0, 1) N s", ""},
+                            {"r x J", "(0, -1, 0) N m s", ""}});
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->arms.size(), 1u);
+}
+
+// A story of three failures: each by itself, and the x-ray with the first, which it is of.
+TEST(Story, EachSceneStandsByItself) {
+  report::Page page("T");
+  add_story(page,
+            "  scene:    one\n  look at:  the sign\n  scene:    two\n  likely:   the factor\n"
+            "  x-ray:    y = x\n            x                         1 m",
+            {});
+  const std::string html = page.html();
+  const auto first = html.find("<h4>Case 1 of 2</h4>"), second = html.find("<h4>Case 2 of 2</h4>"),
+             xray = html.find("<dt>x-ray</dt>");
+  ASSERT_NE(first, std::string::npos) << html;
+  EXPECT_LT(first, xray);
+  EXPECT_LT(xray, second);
+  // what is only to be looked at is no mistake that was seen
+  EXPECT_NE(html.find("<dt>to check</dt><dd>the sign"), std::string::npos);
+  EXPECT_NE(html.find("<dt>likely mistake</dt><dd>the factor"), std::string::npos);
 }
 
 TEST(Story, IsTextInAPage) {

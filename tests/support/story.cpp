@@ -81,7 +81,9 @@ std::string show_scale(double x) {
 }
 
 std::string show(const Numbers& m) {
-  static const Eigen::IOFormat format(12, Eigen::DontAlignCols, ", ", "; ", "", "", "(", ")");
+  // a vector as scenes and x-rays have it, (1, 2, 3); rows of a matrix have a semicolon between them
+  const char* between_rows = m.columns == 1 ? ", " : "; ";
+  const Eigen::IOFormat format(12, Eigen::DontAlignCols, ", ", between_rows, "", "", "(", ")");
   std::ostringstream text;
   const MatrixXd without_signs = values_of(m).unaryExpr(
       [](double x) { return std::isnan(x) ? std::numeric_limits<double>::quiet_NaN() : x; });

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "framework/grading/verdicts/parameter_names.h"
 
 namespace tumble::grading {
 
@@ -26,6 +29,16 @@ struct Cause {
   std::string and_also = {};
   std::size_t by_both = 0;  // of same_numbers, where neither of the two alone gives that answer
   std::size_t alone[2] = {0, 0};  // of the tests, how many either of the two fails alone
+  // by function: what the module's header says of it; empty: nobody has looked
+  std::vector<FunctionInHeader> told = {};
+  // other causes, by their places, and how many of the tests they fail, too: these need both mended
+  std::vector<std::pair<std::size_t, std::size_t>> also_needed = {};
+
+  /// Whether the code of a function is that around the line of a crash, which has an arrow.
+  bool is_marked(std::size_t function) const {
+    return function < code.size() &&
+           (code[function].starts_with("->") || code[function].find("\n->") != std::string::npos);
+  }
 };
 
 }  // namespace tumble::grading

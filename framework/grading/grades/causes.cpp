@@ -73,7 +73,7 @@ Cause cause_without_slip(Verdict verdict, const std::string& function) {
       break;
     default:
       cause.kind = Cause::Kind::kUnknown;
-      cause.says = name + " gives a wrong answer, by a mistake that is not among the known slips";
+      cause.says = name + " gives wrong answers, and no known mistake explains them";
   }
   return cause;
 }
@@ -161,6 +161,39 @@ std::string place_of_crash(const Cause& cause, const std::string& function,
   return "";
 }
 
+// A known slip, or two, that a cause was recognised by; none where no number agreed.
+std::vector<const AuditedSlip*> slips_of(const Cause& cause,
+                                         const std::vector<AuditedSlip>& known) {
+  std::vector<const AuditedSlip*> slips;
+  if (cause.kind != Cause::Kind::kSlip || cause.same_numbers == 0) return slips;
+  for (const AuditedSlip& slip : known)
+    if (slip.says == cause.says || (!cause.and_also.empty() && slip.says == cause.and_also))
+      slips.push_back(&slip);
+  return slips;
+}
+
+// Whether a slip fails this test, in one of the functions that the cause names.
+bool fails_also(const AuditedSlip& slip, const Cause& cause, const std::string& test) {
+  return std::any_of(slip.fails.begin(), slip.fails.end(), [&](const Failure& failure) {
+    return failure.test == test && std::find(cause.functions.begin(), cause.functions.end(),
+                                             failure.function) != cause.functions.end();
+  });
+}
+
+void add_also_needed(std::vector<Cause>& causes, const std::vector<AuditedSlip>& known) {
+  for (std::size_t other = 0; other < causes.size(); ++other)
+    for (const auto slips = slips_of(causes[other], known); Cause & cause : causes) {
+      if (&cause == &causes[other]) continue;
+      const auto n =
+          std::count_if(cause.tests.begin(), cause.tests.end(), [&](const std::string& test) {
+            return std::any_of(slips.begin(), slips.end(), [&](const AuditedSlip* slip) {
+              return fails_also(*slip, causes[other], test);
+            });
+          });
+      if (n > 0) cause.also_needed.emplace_back(other, static_cast<std::size_t>(n));
+    }
+}
+
 }  // namespace
 
 std::string lines_of_function(const std::string& source, int line) {
@@ -225,6 +258,7 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
     if (a.not_run.empty() != b.not_run.empty()) return b.not_run.empty();
     return points_lost(a, tests) > points_lost(b, tests);
   });
+  add_also_needed(causes, known);
   return causes;
 }
 

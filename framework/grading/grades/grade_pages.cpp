@@ -32,10 +32,6 @@ Look look_of(Verdict verdict) {
   }
 }
 
-bool has_story(const ScoredTest& test) {
-  return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted;
-}
-
 std::size_t cut_off(const Grade& grade) {
   return static_cast<std::size_t>(
       std::count_if(grade.tests.begin(), grade.tests.end(),
@@ -69,11 +65,11 @@ report::Table table_of_tests(const Grade& grade, const std::vector<const ScoredT
   for (const ScoredTest* test : tests) {
     const Verdict verdict = test->result.verdict;
     const bool is_judged = grade.state == GradeState::kJudged && !is_cut_off(test->result);
-    const std::string link = has_story(*test) && is_judged && !test->result.story.empty()
+    const std::string link = has_story_in_page(*test) && grade.state == GradeState::kJudged
                                  ? "#" + anchor_of_story(test->item.test)
                                  : "";
     table.rows.push_back(
-        {{test->item.title, link},
+        {{test->item.title, link, Look::kPlain, anchor_of_row(test->item.test)},
          {is_judged ? words(verdict) : "not run", "", is_judged ? look_of(verdict) : Look::kMuted},
          {points_text(test->score)},
          {points_text(test->item.points), "", Look::kMuted},
@@ -126,8 +122,12 @@ void add_changes(report::Page& page, const Grade& grade) {
 std::string numbers_of(const engines::CheckResult& c) {
   const std::string unit = c.unit.empty() ? "" : ' ' + c.unit,
                     reached = std::isfinite(c.value) ? three_digits(c.value) + unit : "no number";
-  return fmt::format("{}, allowed at {} {}{}", reached, c.at_least ? "least" : "most",
-                     three_digits(c.threshold), unit);
+  static const std::set<std::string> of_expected = {
+      "flips",          "event_count",        "impact_times", "final_position", "final_velocity",
+      "centre_of_mass", "distance_travelled", "angle_at",     "link_force",     "reaction"};
+  const std::string threshold = three_digits(c.threshold) + unit;
+  if (of_expected.contains(c.kind)) return fmt::format("off by {}, allowed {}", reached, threshold);
+  return fmt::format("{}, allowed at {} {}", reached, c.at_least ? "least" : "most", threshold);
 }
 
 std::string title_of_check(std::string kind) {
@@ -136,8 +136,16 @@ std::string title_of_check(std::string kind) {
   return kind;
 }
 
+// The remedy of a fault is that of a scene which somebody writes: a smaller step, another method.
+// Where a law is wrong, it is the law that is to be mended.
+std::string reason_of(const engines::CheckResult& c, bool has_causes) {
+  const std::size_t remedy = has_causes ? c.why.find(". Likely remedy: ") : c.why.npos;
+  if (remedy == c.why.npos) return c.why;
+  return c.why.substr(0, remedy) + ". Mend first what stands at the head of this page";
+}
+
 // The right ones are folded.
-void add_checks(report::Page& page, const SceneMedia& scene, bool passed) {
+void add_checks(report::Page& page, const SceneMedia& scene, bool passed, bool has_causes) {
   report::Table table;
   table.columns = {{"Judged by"},
                    {"Of"},
@@ -151,7 +159,8 @@ void add_checks(report::Page& page, const SceneMedia& scene, bool passed) {
            {c.subject},
            {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad},
            {numbers_of(c)},
-           {c.passed ? sentence(c.why) : sentences(c.detail, c.why), "", Look::kMuted}});
+           {c.passed ? sentence(c.why) : sentences(c.detail, reason_of(c, has_causes)), "",
+            Look::kMuted}});
   if (table.rows.empty()) return;
   if (!passed) return page.table(table);
   page.begin(report::Part::kFold, counted(table.rows.size(), "number") + " right");
@@ -180,7 +189,7 @@ void add_stories(report::Page& page, const Grade& grade, const PageView& view) {
   for (const ScoredTest& test : grade.tests) {
     if (test.result.verdict == Verdict::kNotAttempted)
       missing[test.result.story] += "\n    " + test.item.title;
-    if (!has_story(test) || test.result.story.empty()) continue;
+    if (!has_story_in_page(test)) continue;
     page.heading(
         fmt::format("{}: {}", is_cut_off(test.result) ? "not run" : words(test.result.verdict),
                     test.item.title),
@@ -207,8 +216,9 @@ bool is_right(const SceneMedia& scene) {
                                             [](const auto& c) { return c.passed; });
 }
 
-void add_scene(report::Page& page, const SceneMedia& scene, const std::filesystem::path& folder) {
-  page.heading(scene.title, 3, "s-" + anchor_of_story(scene.scene));
+void add_scene(report::Page& page, const SceneMedia& scene, const std::filesystem::path& folder,
+               bool has_causes) {
+  page.heading(scene.title, 3, anchor_of_scene(scene.scene));
   const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(),
                                    [](const auto& c) { return !c.passed; });
   if (!scene.story.empty()) {
@@ -239,22 +249,22 @@ void add_scene(report::Page& page, const SceneMedia& scene, const std::filesyste
     page.links(
         {{"Play the run: rotate it, step through it, see its curves and the first difference",
           report::link_to(folder / scene.page)}});
-  add_checks(page, scene, false);
-  add_checks(page, scene, true);
+  add_checks(page, scene, false, has_causes);
+  add_checks(page, scene, true, has_causes);
 }
 
 void add_media(report::Page& page, const std::vector<SceneMedia>& media,
-               const std::filesystem::path& folder) {
+               const std::filesystem::path& folder, bool has_causes) {
   const auto right = std::count_if(media.begin(), media.end(), is_right);
   // What is right is folded where something else is to be looked at.
   const bool folds = right > 0 && right < static_cast<std::ptrdiff_t>(media.size());
   for (const SceneMedia& scene : media)
-    if (!folds || !is_right(scene)) add_scene(page, scene, folder);
+    if (!folds || !is_right(scene)) add_scene(page, scene, folder, has_causes);
   if (!folds) return;
   page.begin(report::Part::kFold,
              right == 1 ? "1 scene is right" : fmt::format("{} scenes are right", right));
   for (const SceneMedia& scene : media)
-    if (is_right(scene)) add_scene(page, scene, folder);
+    if (is_right(scene)) add_scene(page, scene, folder, has_causes);
   page.end();
 }
 
@@ -335,9 +345,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
   add_own_tests(page, grade.own_tests);
   page.heading("Stories", 2, "stories");
-  if (const auto stories = std::count_if(
-          grade.tests.begin(), grade.tests.end(),
-          [](const ScoredTest& test) { return !test.result.story.empty() && has_story(test); });
+  if (const auto stories = std::count_if(grade.tests.begin(), grade.tests.end(), has_story_in_page);
       grade.state == GradeState::kJudged && grade.count(Verdict::kRight) < grade.tests.size()) {
     page.begin(report::Part::kFold,
                fmt::format("Of all tests that are not right: {} to read", stories));
@@ -351,7 +359,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   add_cost(page, grade.cost);
   page.heading("Scenes", 2, "scenes");
   if (grade.media.empty()) page.paragraph("No scene was run.", Look::kMuted);
-  add_media(page, grade.media, "media");
+  add_media(page, grade.media, "media", !grade.causes.empty());
   page.record(record);
   return page;
 }

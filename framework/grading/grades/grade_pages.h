@@ -25,9 +25,10 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
 
 /// Parts of a page, for other reports.
 void add_stories(report::Page& page, const Grade& grade, const PageView& view = {});
-/// @param folder  of the media, relative to the page
+/// @param folder      of the media, relative to the page
+/// @param has_causes  the page names what to mend: that, and not a smaller step, is the remedy
 void add_media(report::Page& page, const std::vector<SceneMedia>& media,
-               const std::filesystem::path& folder);
+               const std::filesystem::path& folder, bool has_causes = false);
 
 /// Adds nothing if nothing was measured.
 void add_cost(report::Page& page, const CostSection& cost);

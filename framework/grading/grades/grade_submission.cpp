@@ -106,6 +106,9 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   run_stage(grade, "what to mend first", [&] {
     grade.causes = causes_of(grade.tests, audited_slips_of(course, id),
                              submission.source.filename().string(), text_of(submission.source));
+    for (Cause& cause : grade.causes)
+      for (const std::string& function : cause.functions)
+        cause.told.push_back(told_of_function(id, function));
   });
   if (options.draws(submission.name)) {
     const fs::path media = folder / "media";

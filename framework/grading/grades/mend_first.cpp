@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -25,15 +24,41 @@ std::size_t failing(const Grade& grade) {
       }));
 }
 
+std::string anchor(std::string id, const std::string& name) {
+  for (const char c : name) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return id;
+}
+
+// What the tiles above say, in the words of the causes, and in what order these stand.
+std::string how_to_read(const Grade& grade) {
+  std::string text;
+  if (const std::size_t n = failing(grade); n > 0)
+    text =
+        fmt::format("{} failed (wrong, crashed, or out of time or memory). ", counted(n, "test"));
+  text += "Each part below is one cause of lost points; the one that costs the most stands first. ";
+  if (std::any_of(grade.causes.begin(), grade.causes.end(),
+                  [](const Cause& cause) { return !cause.not_run.empty(); }))
+    text += "Only a cause that kept other tests from running stands before it. ";
+  return text +
+         "A likely mistake is one whose wrong answers are the same as those of this file: a hint, "
+         "not a proof.";
+}
+
+// "the 40 failed tests": wrong, crashed, or out of time or memory.
+std::string failed_tests(std::size_t failing) {
+  return failing == 1 ? "the one failed test" : fmt::format("the {} failed tests", failing);
+}
+
 // How sure two mistakes are, and the share of each.
 std::string evidence_of_two(const Cause& cause, std::size_t failing) {
   const std::size_t n = cause.tests.size();
   return fmt::format(
-      "Together they explain {} of the {} that this file fails: in {} the answer that came is the "
-      "one that follows from both, and in {} neither alone gives it. Alone, the first fails {} of "
-      "these tests, the second {}. Both may stand in one line. Correct both before you run the "
-      "tests again: while one is left, some of these tests still fail.",
-      n, counted(failing, "test"),
+      "Together they explain {} of {}: in {} your answer is the one that follows from both, and in "
+      "{} neither alone gives it. Alone, the first fails {} of these tests, the second {}. Both "
+      "may "
+      "stand in one line. Correct both before you run the tests again: while one is left, some of "
+      "these tests still fail.",
+      n, failed_tests(failing),
       cause.same_numbers == n ? "all of them" : fmt::format("{} of them", cause.same_numbers),
       cause.by_both == cause.same_numbers ? "all these" : std::to_string(cause.by_both),
       cause.alone[0], cause.alone[1]);
@@ -42,37 +67,40 @@ std::string evidence_of_two(const Cause& cause, std::size_t failing) {
 // How sure it is, in a sentence.
 std::string evidence_of(const Cause& cause, std::size_t failing) {
   const std::size_t n = cause.tests.size();
+  const std::string of_them = fmt::format("{} of {}", n, failed_tests(failing));
   switch (cause.kind) {
-    case Cause::Kind::kSlip: {
+    case Cause::Kind::kSlip:
       if (!cause.and_also.empty()) return evidence_of_two(cause, failing);
-      const std::string fails =
-          fmt::format("A file with this mistake fails {} of the {} that this file fails", n,
-                      counted(failing, "test"));
-      if (cause.same_numbers == 0) return fails + ", though with other answers.";
-      return fmt::format("{}, and {} the same wrong answer as this file.", fails,
-                         n == 1 ? "gives there"
-                         : cause.same_numbers == n
-                             ? "gives in all of them"
-                             : fmt::format("gives in {} of them", cause.same_numbers));
-    }
+      if (cause.same_numbers == 0)
+        return fmt::format(
+            "One way to fail {}: {}. But it gives other numbers than yours, so your mistake may be "
+            "another one.",
+            of_them, cause.says);
+      if (cause.same_numbers == n)
+        return fmt::format("This mistake alone explains {}, with the same wrong {}.", of_them,
+                           n == 1 ? "answer" : "answers");
+      return fmt::format("This mistake alone would fail {}, and {} of them with the same wrong {}.",
+                         of_them, cause.same_numbers,
+                         cause.same_numbers == 1 ? "answer" : "answers");
     case Cause::Kind::kNotWritten:
-      return fmt::format("{} not attempted for it.",
-                         n == 1 ? "One test is" : counted(n, "test") + " are");
+      return fmt::format("{} not attempted, because this function is not written.",
+                         n == 1 ? "One test was" : counted(n, "test") + " were");
     case Cause::Kind::kUnknown:
-      return fmt::format("In {} of the {} that {} it was the last function called.", n,
-                         counted(failing, "test"), failing == 1 ? "fails" : "fail");
-    default:
-      return fmt::format("{} of the {} that {} {} in this way.", n, counted(failing, "test"),
-                         failing == 1 ? "fails" : "fail", n == 1 ? "ends" : "end");
+      return fmt::format("In {} it was the function called last.", of_them);
+    default: return fmt::format("{} {} in this way.", of_them, n == 1 ? "ends" : "end");
   }
 }
 
-// "Likely mistake in collision_impulse: e where (1 + e) belongs": whether the words are of the
-// mistake or of its remedy must be plain.
+// "Likely mistake in collision_impulse: e where (1 + e) belongs". Where no number agrees, the
+// mistake may be another one, and does not stand in the heading.
 std::string title_of(const Cause& cause) {
   if (cause.kind != Cause::Kind::kSlip) return cause.says;
   const bool is_likely = cause.same_numbers > 0 && 2 * cause.same_numbers >= cause.tests.size();
-  const std::string in_function = cause.functions.empty() ? "" : " in " + cause.functions.front();
+  const std::string function = cause.functions.empty() ? "" : cause.functions.front();
+  const std::string in_function = function.empty() ? "" : " in " + function;
+  if (cause.same_numbers == 0)
+    return (function.empty() ? "The submission" : function) +
+           " gives wrong answers (the mistake is not certain)";
   if (!cause.and_also.empty())
     return fmt::format("Two {} mistakes{}: {}, and {}", is_likely ? "likely" : "possible",
                        in_function, cause.says, cause.and_also);
@@ -84,11 +112,20 @@ std::string points_in_words(double points) {
   return points_text(points) + (points == 1.0 ? " point" : " points");
 }
 
+// Where a function is: "rk4_step begins in line 17 of a2_integration.cpp."
 std::string places_of(const Cause& cause) {
   std::string text;
   for (std::size_t i = 0; i < cause.functions.size(); ++i) {
     const std::string& place = i < cause.places.size() ? cause.places[i] : "";
-    text += (text.empty() ? "" : "; ") + cause.functions[i] + (place.empty() ? "" : ", " + place);
+    const std::size_t colon = place.rfind(':');
+    if (colon == place.npos) continue;
+    const std::string where =
+        fmt::format("line {} of {}.", place.substr(colon + 1), place.substr(0, colon));
+    text += text.empty() ? "" : " ";
+    text += cause.kind == Cause::Kind::kCrash && cause.is_marked(i)
+                ? cause.functions[i] + " crashed in " + where +
+                      " Look at the lines above it, too: what it uses was made there."
+                : cause.functions[i] + " begins in " + where;
   }
   return text;
 }
@@ -111,49 +148,141 @@ const ScoredTest* test_to_show(const Cause& cause, const Grade& grade) {
   return best;
 }
 
-// The scene to look at: the submission's run goes wrong in it, and calls a function of the cause;
-// no other cause has shown it.
-const SceneMedia* scene_to_show(const Cause& cause, const Grade& grade,
-                                std::set<std::string>& seen) {
-  for (const SceneMedia& scene : grade.media) {
-    const bool is_its = std::any_of(
-        cause.functions.begin(), cause.functions.end(), [&](const std::string& function) {
-          return std::find(scene.functions.begin(), scene.functions.end(), function) !=
-                 scene.functions.end();
-        });
-    if (!is_its || scene.picture.empty() || seen.contains(scene.picture)) continue;
-    const bool is_wrong =
-        !scene.story.empty() ||
-        std::any_of(scene.checks.begin(), scene.checks.end(),
-                    [](const engines::CheckResult& check) { return !check.passed; });
-    if (!is_wrong) continue;
-    seen.insert(scene.picture);
-    return &scene;
-  }
-  return nullptr;
+bool is_wrong(const SceneMedia& scene) {
+  return !scene.story.empty() ||
+         std::any_of(scene.checks.begin(), scene.checks.end(),
+                     [](const engines::CheckResult& check) { return !check.passed; });
 }
 
-void add_cause(report::Page& page, const Cause& cause, std::size_t number, const Grade& grade,
-               const PageView& view, std::set<std::string>& seen) {
+bool acts_in(const Cause& cause, const SceneMedia& scene) {
+  return std::any_of(cause.functions.begin(), cause.functions.end(),
+                     [&](const std::string& function) {
+                       return std::find(scene.functions.begin(), scene.functions.end(), function) !=
+                              scene.functions.end();
+                     });
+}
+
+// Causes whose functions a run called, by their places.
+std::vector<std::size_t> causes_in(const SceneMedia& scene, const Grade& grade) {
+  std::vector<std::size_t> causes;
+  for (std::size_t i = 0; i < grade.causes.size(); ++i)
+    if (acts_in(grade.causes[i], scene)) causes.push_back(i);
+  return causes;
+}
+
+// The scenes that go wrong and call a function of the cause. Its picture stands beside the cause
+// only where no other cause acts in it: else it may show the other's mistake.
+void add_scenes(report::Page& page, std::size_t index, const Grade& grade,
+                std::vector<report::Field>& fields) {
+  constexpr std::size_t kMost = 3;  // named; the part of scenes has all
+  bool has_picture = false;
+  std::string text;
+  std::vector<report::Cell> links;
+  for (const SceneMedia& scene : grade.media) {
+    if (!is_wrong(scene) || !acts_in(grade.causes[index], scene)) continue;
+    std::string others;
+    for (const std::size_t other : causes_in(scene, grade))
+      if (other != index) others += fmt::format("{}{}", others.empty() ? "" : ", ", other + 1);
+    if (others.empty() && !has_picture && !scene.picture.empty()) {
+      page.figures({{std::filesystem::path("media") / scene.picture,
+                     {},
+                     scene.title + ": submission left, reference right",
+                     ""}});
+      has_picture = true;
+    }
+    if (links.size() == kMost) continue;
+    const std::string title = plain_name(scene.title);
+    text += (text.empty() ? "" : "\n") + title;
+    if (!others.empty()) text += fmt::format(" (cause {} may act in it, too)", others);
+    links.push_back({title, "#" + anchor_of_scene(scene.scene)});
+  }
+  if (!text.empty()) fields.push_back({"scenes", text, links});
+}
+
+// What the header says of the functions, and where the handout has more.
+void add_help(const Cause& cause, const PageView& view, std::vector<report::Field>& fields) {
+  const bool is_new = cause.kind == Cause::Kind::kNotWritten;
+  std::string should_be, returns, places;
+  std::vector<std::string> seen;  // functions of one formula name it once
+  const auto add = [&](std::string& text, const std::string& more, const char* gap) {
+    if (more.empty() || std::find(seen.begin(), seen.end(), more) != seen.end()) return;
+    seen.push_back(more);
+    text += (text.empty() ? "" : gap) + more;
+  };
+  for (const FunctionInHeader& told : cause.told) {
+    add(should_be, is_new || told.formula.empty() ? told.purpose : told.formula, "\n");
+    if (is_new) add(returns, told.returns, "\n");
+    for (const std::string& equation : told.equations) add(places, equation, "; ");
+    add(places, told.hints, "; ");
+  }
+  if (!should_be.empty()) fields.push_back({is_new ? "to write" : "it should be", should_be});
+  if (!returns.empty()) fields.push_back({"it returns", returns});
+  if (!places.empty()) fields.push_back(reading(places, view));
+}
+
+// "3 of its tests also need cause 2 mended."
+std::string needs_of(const Cause& cause) {
+  std::string text;
+  for (const auto& [other, n] : cause.also_needed)
+    text += fmt::format("{}{} of its tests also {} cause {} mended.", text.empty() ? "" : " ", n,
+                        n == 1 ? "needs" : "need", other + 1);
+  return text;
+}
+
+// "Cause 7 is about the same function."
+std::string same_function(std::size_t index, const Grade& grade) {
+  std::vector<std::string> numbers;
+  const auto& functions = grade.causes[index].functions;
+  for (std::size_t i = 0; i < grade.causes.size(); ++i)
+    if (i != index && !functions.empty() && !grade.causes[i].functions.empty() &&
+        grade.causes[i].functions.front() == functions.front())
+      numbers.push_back(std::to_string(i + 1));
+  if (numbers.empty()) return "";
+  return fmt::format("{} {} {} about the same function: read them together.",
+                     numbers.size() == 1 ? "Cause" : "Causes", fmt::join(numbers, ", "),
+                     numbers.size() == 1 ? "is" : "are");
+}
+
+// All tests of a cause. Each leads to its story, and one without a story to its row in the table.
+void add_tests(report::Page& page, const Cause& cause, const Grade& grade) {
+  std::vector<report::Cell> tests;
+  for (const ScoredTest& test : grade.tests)
+    for (const auto* names : {&cause.tests, &cause.following, &cause.not_run})
+      if (std::find(names->begin(), names->end(), test.item.test) != names->end())
+        tests.push_back(
+            {test.item.title, "#" + (has_story_in_page(test) ? anchor_of_story(test.item.test)
+                                                             : anchor_of_row(test.item.test))});
+  if (tests.empty()) return;
+  page.begin(report::Part::kFold, tests.size() == 1
+                                      ? "The test of this cause"
+                                      : fmt::format("All {} tests of this cause", tests.size()));
+  page.list(tests);
+  page.end();
+}
+
+void add_cause(report::Page& page, std::size_t index, const Grade& grade, const PageView& view) {
+  const Cause& cause = grade.causes[index];
+  const std::size_t number = index + 1;
   page.begin(report::Part::kCard, "", fmt::format("cause-{}", number));
   page.heading(fmt::format("{}. {} ({})", number, plain_name(title_of(cause)),
                            points_in_words(points_lost(cause, grade.tests))),
                3);
-  if (const SceneMedia* scene = scene_to_show(cause, grade, seen))
-    page.figures({{std::filesystem::path("media") / scene->picture,
-                   {},
-                   scene->title + ": submission left, reference right",
-                   ""}});
+  std::vector<report::Field> fields;
+  add_help(cause, view, fields);
+  add_scenes(page, index, grade, fields);
   if (!cause.tests.empty()) page.paragraph(evidence_of(cause, failing(grade)));
   if (!cause.or_else.empty())
     page.paragraph(fmt::format("As well possible{}: {}.",
                                cause.and_also.empty() ? "" : " in place of the second",
                                fmt::join(cause.or_else, "; or ")));
+  for (const std::string& more : {needs_of(cause), same_function(index, grade)})
+    if (!more.empty()) page.paragraph(more);
+  if (!fields.empty()) page.fields(fields);
   if (const std::string places = places_of(cause); !places.empty())
-    page.paragraph("Look at " + plain_name(places) + ".");
+    page.paragraph(plain_name(places));
   for (std::size_t i = 0; i < cause.code.size(); ++i) {
     if (cause.code[i].empty()) continue;
-    const bool is_short = cause.kind == Cause::Kind::kCrash;  // the lines around it
+    const bool is_short = cause.is_marked(i);  // the lines around a crash
     if (!is_short)
       page.begin(report::Part::kFold, plain_name(cause.functions[i]) + " of this file");
     page.preformatted(plain_text(cause.code[i]));
@@ -171,47 +300,30 @@ void add_cause(report::Page& page, const Cause& cause, std::size_t number, const
   if (shown != nullptr && !shown->result.story.empty() && cause.kind != Cause::Kind::kNotWritten) {
     page.paragraph("For example, " + shown->item.title + ":", Look::kMuted);
     add_story(page, shown->result.story, view);
+  } else if (shown != nullptr && shown->item.hidden) {
+    page.paragraph("Seen by hidden tests only: they tell no numbers.", Look::kMuted);
   }
-  std::vector<report::Cell> others;
-  const auto is_of_cause = [&](const ScoredTest& test) {
-    const std::string& name = test.item.test;
-    return std::find(cause.tests.begin(), cause.tests.end(), name) != cause.tests.end() ||
-           std::find(cause.following.begin(), cause.following.end(), name) != cause.following.end();
-  };
-  for (const ScoredTest& test : grade.tests)
-    if (is_of_cause(test) && &test != shown)
-      others.push_back({test.item.title, test.result.story.empty()
-                                             ? "#tests"
-                                             : "#" + anchor_of_story(test.item.test)});
-  if (!others.empty()) {
-    page.begin(report::Part::kFold, counted(others.size(), "other test") + " of this cause");
-    page.list(others);
-    page.end();
-  }
+  add_tests(page, cause, grade);
   page.end();
 }
 
 }  // namespace
 
-std::string anchor_of_story(const std::string& test) {
-  std::string id = "t-";
-  for (const char c : test) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
-  return id;
+bool has_story_in_page(const ScoredTest& test) {
+  return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted &&
+         !test.result.story.empty();
 }
+
+std::string anchor_of_story(const std::string& test) { return anchor("t-", test); }
+std::string anchor_of_row(const std::string& test) { return anchor("r-", test); }
+std::string anchor_of_scene(const std::string& scene) { return anchor("s-", scene); }
 
 void add_mend_first(report::Page& page, const Grade& grade, const PageView& view) {
   if (grade.causes.empty()) return;
   page.begin(report::Part::kBox, "", "mend-first");
   page.heading("Mend first");
-  page.paragraph(
-      "What costs the most points stands first, before it only what kept tests from running. A "
-      "cause that is called likely was found by "
-      "comparing the tests that fail, and the answers that came, with known slips: read it as a "
-      "hint, not as a verdict.",
-      Look::kMuted);
-  std::set<std::string> seen;  // pictures
-  for (std::size_t i = 0; i < grade.causes.size(); ++i)
-    add_cause(page, grade.causes[i], i + 1, grade, view, seen);
+  page.paragraph(how_to_read(grade), Look::kMuted);
+  for (std::size_t i = 0; i < grade.causes.size(); ++i) add_cause(page, i, grade, view);
   page.end();
 }
 

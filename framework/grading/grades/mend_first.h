@@ -13,7 +13,12 @@ namespace tumble::grading {
 /// where all is right.
 void add_mend_first(report::Page& page, const Grade& grade, const PageView& view);
 
-/// The anchor of a test's story in the page, without the #.
+/// Anchors in the page, without the #: of a test's story, of its row in the tables, of a scene.
 std::string anchor_of_story(const std::string& test);
+std::string anchor_of_row(const std::string& test);
+std::string anchor_of_scene(const std::string& scene);
+
+/// Whether the page has a story with a heading for this test.
+bool has_story_in_page(const ScoredTest& test);
 
 }  // namespace tumble::grading

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "framework/core/math.h"
 #include "framework/grading/verdicts/plain_text.h"
 
@@ -106,6 +108,26 @@ std::vector<report::Cell> handout_links(std::string& text, const PageView& view)
   return links;
 }
 
+// A page has a story's names in its own words: what is only "look at" in a terminal may not be the
+// mistake that was made.
+std::string name_in_page(const std::string& name) {
+  if (name == "likely") return "likely mistake";
+  if (name == "look at") return "to check";
+  return name;
+}
+
+// Fields of one scene each: a test may tell of up to three.
+std::vector<std::vector<report::Field>> cases_of(const std::vector<report::Field>& fields) {
+  std::vector<std::vector<report::Field>> cases(1);
+  for (const report::Field& field : fields) {
+    const auto is_scene = [](const report::Field& other) { return other.name == "scene"; };
+    if (is_scene(field) && std::any_of(cases.back().begin(), cases.back().end(), is_scene))
+      cases.emplace_back();
+    cases.back().push_back({name_in_page(field.name), field.text, field.links});
+  }
+  return cases;
+}
+
 void add_xray(report::Page& page, const StoryParts& parts) {
   report::Table table{"", {{""}, {""}, {""}}, {}};
   for (const StoryTerm& term : parts.terms)
@@ -122,6 +144,12 @@ void add_xray(report::Page& page, const StoryParts& parts) {
 }
 
 }  // namespace
+
+report::Field reading(const std::string& places, const PageView& view) {
+  std::string text = places;
+  std::vector<report::Cell> links = handout_links(text, view);
+  return {"read", text, links};
+}
 
 StoryParts parts_of_story(const std::string& story) {
   StoryParts parts;
@@ -150,7 +178,7 @@ StoryParts parts_of_story(const std::string& story) {
 std::optional<report::Arms> arms_of(const std::vector<StoryTerm>& terms) {
   report::Arms arms;
   for (const StoryTerm& term : terms) {
-    const std::string name = term.name.substr(0, term.name.find(' '));
+    const std::string name = term.name.substr(0, term.name.find(" = "));
     const auto value = vector_in(term.value);
     if (!value) continue;
     if (name == "r_a" || name == "r_b" || name == "r")
@@ -174,8 +202,13 @@ void add_story(report::Page& page, const std::string& story, const PageView& vie
   for (report::Field& field : parts.fields) field.links = links;
   page.begin(report::Part::kStory);
   if (!parts.before.empty()) page.preformatted(parts.before, links);
-  if (!parts.fields.empty()) page.fields(parts.fields);
-  if (!parts.equation.empty()) add_xray(page, parts);
+  // the x-ray is of the first failure, and stands with it
+  const auto cases = cases_of(parts.fields);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (cases.size() > 1) page.heading(fmt::format("Case {} of {}", i + 1, cases.size()), 4);
+    if (!cases[i].empty()) page.fields(cases[i]);
+    if (i == 0 && !parts.equation.empty()) add_xray(page, parts);
+  }
   page.end();
 }
 

@@ -40,7 +40,10 @@ StoryParts parts_of_story(const std::string& story);
 /// The arms and directions among the terms: r, r_a, r_b; n, J, F. Nothing where none can be drawn.
 std::optional<report::Arms> arms_of(const std::vector<StoryTerm>& terms);
 
-/// Adds the story. Its handout is a link.
+/// "read", with places of the handout as links.
+report::Field reading(const std::string& places, const PageView& view);
+
+/// Adds the story, each of its scenes by itself. Its handout is a link.
 void add_story(report::Page& page, const std::string& story, const PageView& view);
 
 }  // namespace tumble::grading

@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "framework/core/code_text.h"
@@ -66,6 +67,39 @@ Declaration declaration_of(const std::string& code, const std::string& function)
   return {};
 }
 
+// The lines of the comment `///` that stands before a declaration, without their slashes.
+std::vector<std::string> comment_before(const std::string& header, std::size_t declaration) {
+  std::vector<std::string> lines;
+  std::istringstream in(header.substr(0, header.rfind('\n', declaration) + 1));
+  bool is_open = false;
+  for (std::string line; std::getline(in, line);) {
+    const bool is_comment = line.starts_with("///");
+    if (is_comment && !is_open) lines.clear();
+    if (is_comment) lines.push_back(line.substr(3));
+    if (!is_comment && (line.find(';') != line.npos || line.empty())) lines.clear();
+    is_open = is_comment;
+  }
+  return lines;
+}
+
+std::string without_ends(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \n"), end = text.find_last_not_of(" \n");
+  return begin == text.npos ? "" : text.substr(begin, end + 1 - begin);
+}
+
+// "(A1.7c)" at the end of a line becomes "eq-a1-7", and has three blanks before it.
+std::string equation_at_end(std::string& line) {
+  const std::size_t open = line.rfind("   (A");
+  if (open == line.npos || line.back() != ')') return "";
+  std::string number = line.substr(open + 4, line.size() - open - 5);  // "A1.7c"
+  line = without_ends(line.substr(0, open)) + "   (" + number + ")";
+  while (!number.empty() && std::isdigit(static_cast<unsigned char>(number.back())) == 0)
+    number.pop_back();
+  for (char& c : number)
+    c = c == '.' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return number.empty() ? "" : "eq-" + number;
+}
+
 }  // namespace
 
 std::vector<std::string> names_in_declaration(const std::string& header,
@@ -94,6 +128,42 @@ std::string hints_in_declaration(const std::string& header, const std::string& f
   if (at == comment.npos) return "";
   const std::size_t from = at + kMark.size();
   return comment.substr(from, comment.find_first_of(" \n", from) - from);
+}
+
+FunctionInHeader told_in_declaration(const std::string& header, const std::string& function) {
+  const Declaration found = declaration_of(code_of(header), function);
+  if (found.name == std::string::npos) return {};
+  FunctionInHeader told;
+  told.hints = hints_in_declaration(header, function);
+  const std::string file = told.hints.substr(0, told.hints.find('#'));
+  enum class In { kPurpose, kReturns, kOther } in = In::kPurpose;
+  for (std::string line : comment_before(header, found.name)) {
+    const std::string bare = without_ends(line);
+    if (bare.starts_with("@return"))
+      in = In::kReturns;
+    else if (bare.starts_with('@') || bare.starts_with("Source:") || bare.starts_with("Tests:") ||
+             bare.starts_with("Hints:"))
+      in = In::kOther;
+    const bool is_formula = line.starts_with("   ");
+    if (in == In::kPurpose) {
+      const std::string equation = equation_at_end(line);
+      if (!equation.empty() && !file.empty()) told.equations.push_back(file + '#' + equation);
+      told.purpose += (told.purpose.empty() ? "" : "\n") + without_ends(line);
+      if (is_formula) told.formula += (told.formula.empty() ? "" : "\n") + without_ends(line);
+    } else if (in == In::kReturns) {
+      const std::string words = bare.starts_with("@return") ? without_ends(bare.substr(7)) : bare;
+      told.returns += (told.returns.empty() ? "" : " ") + words;
+    }
+  }
+  return told;
+}
+
+FunctionInHeader told_of_function(const std::string& id, const std::string& function) {
+  try {
+    return told_in_declaration(text_of(header_of(id)), function);
+  } catch (const std::exception&) {  // a tree that cannot be found, or read
+    return {};
+  }
 }
 
 std::string hints_to_read(const std::string& id, const std::string& function) {

@@ -22,6 +22,22 @@ std::vector<std::string> parameter_names(const std::string& id, const std::strin
 /// @return empty where the header does not declare the function, or its comment has no hints
 std::string hints_in_declaration(const std::string& header, const std::string& function);
 
+/// What a header says of a function, for somebody who is to write or mend it.
+struct FunctionInHeader {
+  std::string purpose;                 // its first lines, to the first @ or Source
+  std::string formula;                 // of these, those of formulas; empty: they are sentences
+  std::string returns;                 // behind @return
+  std::string hints;                   // "handouts/a1_impulse.md#hint-ray"
+  std::vector<std::string> equations;  // "handouts/a1_impulse.md#eq-a1-9": of the numbers at the
+                                       // ends of its lines, where the hints have a file
+};
+
+/// @return empty where the header does not declare the function
+FunctionInHeader told_in_declaration(const std::string& header, const std::string& function);
+
+/// The same, from the header of an assignment of the course's tree; empty where there is none.
+FunctionInHeader told_of_function(const std::string& id, const std::string& function);
+
 /// "\n  read:     handouts/a1_impulse.md#hint-ray", for the end of a story.
 /// @param id  of the module, "a1"
 /// @return empty where there is no such header, or it says nothing

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <deque>
 #include <map>
+#include <utility>
 
 namespace tumble::grading {
 namespace {
@@ -41,17 +42,49 @@ std::string line_of(const std::string& name, const std::string& value) {
   return text + "  " + value;
 }
 
+// The answer in words where it has some ("no hit"), else in numbers.
+std::string words_of_answer(const Xray& xray, const VectorXd& answer, int digits = kDigits) {
+  const std::string words = xray.words ? xray.words(answer) : "";
+  return words.empty() ? shown(answer, xray.unit, digits) : words;
+}
+
+// Two vectors of as many numbers: each number below its own. Other texts stay as they are.
+std::pair<std::string, std::string> one_below_the_other(const std::string& a,
+                                                        const std::string& b) {
+  const auto numbers_in = [](const std::string& text) {
+    std::vector<std::string> parts;
+    const std::size_t end = text.find(')');
+    if (!text.starts_with('(') || end == text.npos) return parts;
+    for (std::size_t at = 1; at < end;) {
+      const std::size_t comma = std::min(text.find(", ", at), end);
+      parts.push_back(text.substr(at, comma - at));
+      at = comma + 2;
+    }
+    return parts;
+  };
+  const auto of_a = numbers_in(a), of_b = numbers_in(b);
+  if (of_a.empty() || of_a.size() != of_b.size()) return {a, b};
+  std::string first = "(", second = "(";
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    const std::size_t width = std::max(of_a[i].size(), of_b[i].size());
+    const std::string gap = i == 0 ? "" : ", ";
+    first += gap + std::string(width - of_a[i].size(), ' ') + of_a[i];
+    second += gap + std::string(width - of_b[i].size(), ' ') + of_b[i];
+  }
+  return {first + a.substr(a.find(')')), second + b.substr(b.find(')'))};
+}
+
 // Marks by terms. Different mistakes may give the same answer: each of them is named.
 std::map<std::size_t, std::string> variants_found(const Xray& xray) {
   std::map<std::size_t, std::string> marks;
   for (const XrayVariant& variant : xray.variants) {
     if (!is_near(variant.answer, xray.found)) continue;
     std::string& mark = marks[variant.term];
-    mark += (mark.empty() ? "" : ", or with ") + variant.says;
+    mark += (mark.empty() ? "" : ", or ") + variant.says;
   }
   bool is_first = true;
   for (auto& [term, mark] : marks) {
-    mark = (is_first ? "what was found comes out with " : "or with ") + mark + " in its place";
+    mark = (is_first ? "your answer comes out " : "or it comes out ") + mark;
     is_first = false;
   }
   return marks;
@@ -72,10 +105,10 @@ std::map<std::size_t, std::string> first_wrong(const Xray& xray) {
       continue;
     }
     const int digits = digits_for(term.value, term.found);
-    const std::string found = shown(term.found, term.unit, digits) + " found";
-    if (unseen.empty()) return {{i, "the first that is wrong: " + found}};
-    return {{i, "the first that is seen to be wrong: " + found +
-                    "; not seen, inside the function: " + unseen}};
+    const std::string yours = "yours is " + shown(term.found, term.unit, digits);
+    if (unseen.empty()) return {{i, "the first wrong line: " + yours}};
+    return {{i, "the first line that is seen to be wrong: " + yours +
+                    "; the mistake may stand before it, in what nobody sees: " + unseen}};
   }
   return {};
 }
@@ -87,10 +120,10 @@ std::string why_no_mark(const Xray& xray) {
   for (const XrayTerm& term : xray.terms)
     if (term.found.size() > 0) last_right = &term;
   if (last_right != nullptr)
-    return "right as far as it is seen, to " + last_right->name +
-           ": the mistake is in a term that is not seen, or in how they are put together";
-  return std::string("which term is wrong cannot be read from this answer") +
-         (xray.variants.empty() ? "" : ": no frequent mistake in one term alone gives it");
+    return "every line that is seen is right, to " + last_right->name +
+           ": the mistake is in a line that nobody sees, or in how they are put together";
+  return std::string("which line is wrong cannot be read from this answer") +
+         (xray.variants.empty() ? "" : ": no frequent mistake in one line alone gives it");
 }
 
 }  // namespace
@@ -133,11 +166,14 @@ std::string xray_in_words(const Xray& xray, bool is_answered) {
   }
   if (is_answered && is_near(xray.expected, xray.found))  // a term before it is wrong
     return text +
-           line_of(xray.answer, shown(xray.found, xray.unit) + " found, as these terms give");
+           line_of(xray.answer, words_of_answer(xray, xray.found) + " found, as these lines give");
   const int digits = is_answered ? digits_for(xray.expected, xray.found) : kDigits;
-  const std::string came =
-      is_answered ? shown(xray.found, xray.unit, digits) + " found" : "no answer came";
-  text += line_of(xray.answer, shown(xray.expected, xray.unit, digits) + " expected, " + came);
+  const auto [expected, found] =
+      is_answered
+          ? one_below_the_other(words_of_answer(xray, xray.expected, digits),
+                                words_of_answer(xray, xray.found, digits))
+          : std::pair(words_of_answer(xray, xray.expected, digits), std::string("no answer"));
+  text += line_of(xray.answer + ", expected", expected) + line_of(xray.answer + ", found", found);
   return is_answered && marks.empty() ? text + "   <- " + why_no_mark(xray) : text;
 }
 

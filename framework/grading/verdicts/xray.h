@@ -2,8 +2,9 @@
 ///
 ///   x-ray:    j = -(1 + e) (n . u) / k   (A1.9)
 ///             n . u                      -3 m/s
-///             1 + e                      1.5   <- what was found comes out with 1 in its place
-///             j                          9 N s expected, 6 N s found
+///             1 + e                      1.5   <- your answer comes out with 1 for 1 + e
+///             j, expected                9 N s
+///             j, found                   6 N s
 ///
 /// An assignment describes its equations where its hidden tests are (solutions_private): the terms
 /// are computed from the call's arguments, and the answer must be that of the terms. Wrong variants
@@ -36,10 +37,11 @@ struct XrayTerm {
   bool is_asked = false;
 };
 
-/// The answer that comes out where one term is written otherwise.
+/// The answer that comes out where one term is written otherwise. A variant whose words say more
+/// than that (that a ray points away) belongs to a call in which this is so.
 struct XrayVariant {
   std::size_t term;  // by its place
-  std::string says;  // what stands there instead
+  std::string says;  // behind "your answer comes out": "without this term", "with e for 1 + e"
   VectorXd answer;
 };
 
@@ -49,6 +51,8 @@ struct Xray {
   std::string answer, unit;  // name and unit of the answer
   VectorXd expected, found;
   std::vector<XrayVariant> variants;
+  // an answer in words, where numbers do not say it ("no hit"); empty: its numbers
+  std::function<std::string(const VectorXd&)> words = {};
 };
 
 /// Whether a call was answered, and asked, as its equation says, to round-off: then another call is
