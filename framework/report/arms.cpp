@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -48,6 +50,63 @@ Vector2d in_plane(const ArmsPlane& plane, const Vector3d& v) {
   return {v.dot(plane.across), -v.dot(plane.up)};  // y of the drawing points down
 }
 
+// Where names stand, and lines that they must not cover.
+class FreePlaces {
+ public:
+  void add_line(const Vector2d& from, const Vector2d& to) { lines_.emplace_back(from, to); }
+
+  /// The first of the wished places that covers neither a name nor a line; else the one that is
+  /// farthest from what it covers.
+  Vector2d take(const std::vector<Vector2d>& wished) {
+    Vector2d best = wished.front();
+    double most = -1.0;
+    for (const Vector2d& at : wished) {
+      const double room = room_at(at);
+      if (room <= most) continue;
+      best = at;
+      most = room;
+      if (most >= kEnough) break;
+    }
+    names_.push_back(best);
+    return best;
+  }
+
+ private:
+  static constexpr double kEnough = 11.0;  // half of a name, and a little
+
+  double room_at(const Vector2d& at) const {
+    double room = kEnough;
+    for (const Vector2d& name : names_) room = std::min(room, 0.5 * (at - name).norm());
+    for (const auto& [from, to] : lines_) {
+      const Vector2d along = to - from;
+      const double length2 = along.squaredNorm(),
+                   part =
+                       length2 > 0.0 ? std::clamp((at - from).dot(along) / length2, 0.0, 1.0) : 0.0;
+      room = std::min(room, (at - from - part * along).norm());
+    }
+    return room;
+  }
+
+  std::vector<Vector2d> names_;
+  std::vector<std::pair<Vector2d, Vector2d>> lines_;
+};
+
+// Places around one, nearest first.
+std::vector<Vector2d> around(const Vector2d& at, double distance) {
+  std::vector<Vector2d> places;
+  for (const double far : {1.0, 1.6})
+    for (const auto& [x, y] : {std::pair{0.0, 1.0},
+                               {0.0, -1.0},
+                               {-1.0, 0.0},
+                               {1.0, 0.0},
+                               {-0.8, 0.8},
+                               {0.8, 0.8},
+                               {-0.8, -0.8},
+                               {0.8, -0.8}})
+      places.push_back(at + far * distance * Vector2d(x, y));
+  return places;
+}
+
 std::string words_at(const Vector2d& at, const std::string& words, const char* colour) {
   return fmt::format(
       "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" class=\"halo\" "
@@ -70,14 +129,13 @@ std::string arrow_of(const Vector2d& from, const Vector2d& to, const char* colou
 }
 
 // A centre of mass: a circle of four quarters, as drawings have it.
-std::string centre_of(const Vector2d& at, const std::string& name, const char* colour) {
+std::string centre_of(const Vector2d& at, const char* colour) {
   constexpr double r = 6;
   return fmt::format(
-             "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"{2}\" fill=\"#fff\" stroke=\"{3}\"/>"
-             "<path d=\"M{0:.1f} {1:.1f}v-{2}a{2} {2} 0 0 1 {2} {2}zM{0:.1f} {1:.1f}v{2}a{2} {2} 0 "
-             "0 1 -{2} -{2}z\" fill=\"{3}\"/>\n",
-             at.x(), at.y(), r, colour) +
-         words_at(at + Vector2d(0, 16), name, colour);
+      "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"{2}\" fill=\"#fff\" stroke=\"{3}\"/>"
+      "<path d=\"M{0:.1f} {1:.1f}v-{2}a{2} {2} 0 0 1 {2} {2}zM{0:.1f} {1:.1f}v{2}a{2} {2} 0 "
+      "0 1 -{2} -{2}z\" fill=\"{3}\"/>\n",
+      at.x(), at.y(), r, colour);
 }
 
 }  // namespace
@@ -131,6 +189,13 @@ std::string svg_of(const Arms& arms) {
       "<line x1=\"8\" y1=\"{0:.1f}\" x2=\"{1}\" y2=\"{0:.1f}\" stroke=\"#5b6875\" "
       "stroke-dasharray=\"5 4\"/>\n",
       origin.y(), kArmsWidth - 8);
+  FreePlaces free;
+  free.add_line({8, origin.y()}, {kArmsWidth - 8, origin.y()});
+  for (const Vector2d& centre : centres) free.add_line(origin + scale * centre, origin);
+  for (const Arms::Direction& direction : arms.directions)
+    free.add_line(origin,
+                  origin + kArrowLength * in_plane(plane, direction.along_world.normalized()));
+  std::string names;  // above all lines
   for (std::size_t i = 0; i < arms.arms.size(); ++i) {
     const char* colour = kArmColours[i % std::size(kArmColours)];
     const Vector2d from = origin + scale * centres[i], middle = 0.5 * (from + origin),
@@ -139,18 +204,25 @@ std::string svg_of(const Arms& arms) {
     const Vector2d side = along.norm() > 1.0
                               ? Vector2d(Vector2d(-along.y(), along.x()).normalized() * 15.0)
                               : Vector2d(22.0, 0.0);
-    body += words_at(middle + side, arms.arms[i].name, colour);
-    body += centre_of(from, arms.arms[i].body.empty() ? "x" : arms.arms[i].body, colour);
+    body += centre_of(from, colour);
+    names += words_at(free.take(around(from, 16)),
+                      arms.arms[i].body.empty() ? "x" : arms.arms[i].body, colour);
+    std::vector<Vector2d> places = {middle + side, middle - side, middle + 1.5 * side,
+                                    middle - 1.5 * side};
+    for (const double part : {0.3, 0.7})
+      for (const double sign : {1.0, -1.0}) places.push_back(from + part * along + sign * side);
+    names += words_at(free.take(places), arms.arms[i].name, colour);
   }
   for (const Arms::Direction& direction : arms.directions) {
     const Vector2d along = in_plane(plane, direction.along_world.normalized());
-    body += arrow_of(origin, origin + kArrowLength * along, "#1c2733", 2.2) +
-            words_at(origin + (kArrowLength + 10.0) * along + Vector2d(9, 0), direction.name,
-                     "#1c2733");
+    const Vector2d end = origin + (kArrowLength + 10.0) * along;
+    body += arrow_of(origin, origin + kArrowLength * along, "#1c2733", 2.2);
+    names += words_at(free.take({end + Vector2d(9, 0), end - Vector2d(9, 0), end}), direction.name,
+                      "#1c2733");
   }
   body += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.4\" fill=\"#1c2733\"/>\n",
                       origin.x(), origin.y()) +
-          words_at(origin + Vector2d(11, 12), "p", "#1c2733");
+          names + words_at(free.take(around(origin, 15)), "p", "#1c2733");
   return fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"arms and direction "
       "of the blow\">\n{}</svg>\n",

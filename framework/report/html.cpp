@@ -61,6 +61,7 @@ tbody tr:nth-child(even) { background: var(--wash); }
 pre { background: var(--wash); border-left: 4px solid var(--line); padding: .7rem 1rem;
   overflow-x: auto; white-space: pre-wrap; overflow-wrap: anywhere;
   font: .84rem/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; }
+pre.code { white-space: pre; overflow-wrap: normal; }
 .box { border: 1px solid var(--line); border-top: 4px solid var(--bad); padding: .2rem 1.2rem 1rem;
   margin: 1.4rem 0; } .box h2 { border: 0; margin: .8rem 0 .2rem; }
 .card { border-top: 1px solid var(--line); margin-top: 1rem; overflow: hidden; }
@@ -85,7 +86,7 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
 .story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
 .story td.bad { min-width: 13rem; }
 .story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
-.story td:nth-child(2) { white-space: pre-wrap; font-family: "DejaVu Sans Mono", Menlo, Consolas,
+.story td:nth-child(2) { white-space: pre; font-family: "DejaVu Sans Mono", Menlo, Consolas,
   monospace; font-size: .92em; }
 .story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
@@ -104,11 +105,12 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   --soft: #a3b0bd; --line: #3a4652; --wash: #1f2831; --good: #5ecfae; --warn: #f0bd5a;
   --bad: #ff8a5c; --link: #7cc0f0; }
   /* lightness turned over, hues kept */
-  .plot-figure svg { filter: invert(1) hue-rotate(180deg); } }
+  .plot-figure svg { filter: invert(1) hue-rotate(180deg); }
+  svg.plot .halo { stroke: #dbe2e9; } .story svg.plot .halo { stroke: #ced7e0; }
+  svg.plot .grid { stroke: #a9b6c2; } }
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
-  .box { padding: .1rem .7rem .8rem; } .plot-figure { overflow-x: auto; }
-  .plot-figure svg { min-width: 35rem; } .plot-figure.small svg { min-width: 0; }
+  .box { padding: .1rem .7rem .8rem; }
   .story table, .story tbody, .story tr, .story td,
   .blocks, .blocks tbody, .blocks tr, .blocks td { display: block; }
   .blocks thead { display: none; } .blocks tr { padding: .35rem 0; }
@@ -117,11 +119,13 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   .blocks td[data-name]::before { content: attr(data-name) ": "; color: var(--soft);
     font-weight: 400; }
   .story tr { padding: .2rem 0; }
-  .story td { padding: 0; border: 0; } .story td:first-child { color: var(--soft); }
+  .story td { padding: 0; border: 0; }
+  .story td:nth-child(2) { white-space: pre-wrap; } .story td:first-child { color: var(--soft); }
   .story { padding: .5rem .6rem; } .fields { gap: .15rem .6rem; font-size: .93rem; }
   .story .plot-figure { float: none; margin: .4rem auto; }
   .thumbs { grid-template-columns: repeat(auto-fill, minmax(7rem, 1fr)); } }
-@media print { figure video { display: none; } figure .in-print { display: block; }
+@media print { pre.code { white-space: pre-wrap; }
+  figure video { display: none; } figure .in-print { display: block; }
   .wide { overflow: visible; } table { font-size: 9pt; }
   body { padding: 0; max-width: none; font-size: 11pt; }
   a { color: inherit; text-decoration: none; }
@@ -246,6 +250,10 @@ void Page::list(const std::vector<Cell>& items) {
 
 void Page::preformatted(std::string_view text) {
   body_ += "<pre>" + html_escape(text) + "</pre>\n";
+}
+
+void Page::code(std::string_view text) {
+  body_ += "<pre class=\"code\" tabindex=\"0\">" + html_escape(text) + "</pre>\n";
 }
 
 void Page::preformatted(std::string_view text, const std::vector<Cell>& links) {

@@ -51,6 +51,15 @@ std::string library(const fs::path& folder, const char* file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+// That file holds the page's scripts, too: without it none runs, and the page says why itself.
+std::string when_three_is_missing(const fs::path& three_file) {
+  return "document.documentElement.className='lost';const words="
+         "document.getElementById('complaint');words.hidden=false;words.textContent='" +
+         three_file.filename().string() +
+         " is missing, so that the motion cannot be drawn. Keep this page in its folder, and that "
+         "file where the grader wrote it. Plots and a table of the run are below.'";
+}
+
 std::string packed_three(const PlayerOptions& options) { return deflated(three_js(options.three)); }
 
 std::string script_text() {
@@ -199,7 +208,9 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
        {"about", html_escape(scene.about)},
        {"style", std::string(player_file("player.css"))},
        {"script", is_alone ? "<script>\n" + script_text() + "</script>"
-                           : "<script src=\"" + link_to(options.three_file) + "\"></script>"},
+                           : "<script src=\"" + link_to(options.three_file) + "\" onerror=\"" +
+                                 html_escape(when_three_is_missing(options.three_file)) +
+                                 "\"></script>"},
        {"data", about_element(json_text(head), is_alone) + data},
        {"still", player_still(runs, packed)},
        {"record", record_and_notices(runs)}});

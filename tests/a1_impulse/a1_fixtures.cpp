@@ -391,8 +391,9 @@ Slips<double> slips_of_relative_velocity(const Encounter& e) {
 
 Slips<double> slips_of_impulse(const Encounter& e, double restitution) {
   const double j = collision_impulse_by(e, restitution), plastic = j / (1.0 + restitution);
-  Slips<double> slips = {
-      {-j, "the sign of j: u_n is negative when bodies approach, so j needs the minus in front"}};
+  Slips<double> slips = {{-j,
+                          "the sign of j is wrong: u_n is negative when bodies approach, so j "
+                          "needs the minus in front"}};
   add_if_wrong(slips, plastic, j, "the (1 + e) is missing");
   add_if_wrong(slips, restitution * plastic, j, "e where (1 + e) belongs");
   add_if_wrong(slips, (1.0 + restitution * restitution) * plastic, j,
@@ -469,8 +470,9 @@ Slips<Vector3d> slips_of_angular_acceleration(const Body& body, const Vector3d& 
       right,
       {{R * (inverse * tau), "the gyroscopic term - w x (I w) is missing"},
        {R * (inverse * (tau + gyroscopic)),
-        "the sign of the gyroscopic term: it is subtracted (or a left-handed cross product)"},
-       {-right, "the sign"},
+        "the sign of the gyroscopic term is wrong: it is subtracted (or a left-handed cross "
+        "product)"},
+       {-right, "the sign is wrong"},
        {R * one_by_one.cwiseProduct(tau - w.cross(moments.cwiseProduct(w))), diagonal},
        {R * Vector3d(inverse.diagonal()).cwiseProduct(tau - w.cross(moments.cwiseProduct(w))),
         diagonal},

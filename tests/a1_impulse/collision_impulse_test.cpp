@@ -14,7 +14,7 @@ const std::string kOnlyE = "e where (1 + e) belongs";
 const std::string kSquaredE =
     "1 + e^2 where 1 + e belongs: e is a ratio of speeds, e^2 one of energies";
 const std::string kWrongSign =
-    "the sign of j: u_n is negative when bodies approach, so j needs the minus in front";
+    "the sign of j is wrong: u_n is negative when bodies approach, so j needs the minus in front";
 const std::string kCalledSeparating =
     "approaching bodies treated as separating: u_n = n . (u_a - u_b) with n from B to A is "
     "negative when they approach";

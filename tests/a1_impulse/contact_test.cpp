@@ -120,7 +120,7 @@ void expect_case(double normal_velocity, a1::RelativeMotion expected, const std:
 }
 
 TEST(RelativeMotionCases, SignTellsApproachingFromSeparating) {
-  const std::string slip = "the sign: the gap shrinks when u_n is negative";
+  const std::string slip = "the sign is wrong: the gap shrinks when u_n is negative";
   expect_case(-2.0, a1::RelativeMotion::kApproaching, slip);
   expect_case(2.0, a1::RelativeMotion::kSeparating, slip);
 }

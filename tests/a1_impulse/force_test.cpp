@@ -61,7 +61,7 @@ TEST(AngularAcceleration, FromRestIsTorqueOverInertia) {
   expect_near(found, Vector3d(1, 2, 0.5), kRoundoff * 2, "rad/s^2",
               {.scene = "torque (1, 4, 2) N m on a resting block with moments 1, 2, 4 kg m^2",
                .slip = likely<3>(found, {{{1, 8, 8}, "inertia where inverse inertia belongs"}},
-                                 "w' = I^-1 tau at rest"),
+                                 "alpha = I^-1 tau at rest"),
                .handout = equation("4")});
 }
 
@@ -88,10 +88,11 @@ TEST(AngularAcceleration, FreeBodyThatTumblesStillAccelerates) {
   expect_near(
       found, Vector3d(-2, 1.5, -0.25), kRoundoff * 2, "rad/s^2",
       {.scene = "no torque on a block with moments 1, 2, 4 kg m^2 that spins at (1, 1, 1) rad/s",
-       .slip = likely<3>(found,
-                         {{{0, 0, 0}, "the gyroscopic term - w x (I w) is missing"},
-                          {{2, -1.5, 0.25}, "the sign of the gyroscopic term: it is subtracted"}},
-                         "the gyroscopic term - w x (I w)"),
+       .slip = likely<3>(
+           found,
+           {{{0, 0, 0}, "the gyroscopic term - w x (I w) is missing"},
+            {{2, -1.5, 0.25}, "the sign of the gyroscopic term is wrong: it is subtracted"}},
+           "the gyroscopic term - w x (I w)"),
        .handout = equation("4")});
 }
 
@@ -104,14 +105,15 @@ TEST(AngularAcceleration, GyroscopicTermIsFormedInTheBodyFrame) {
   expect_near(
       found, Vector3d(-1.5, -6, 3), kRoundoff * 6, "rad/s^2",
       {.scene = "no torque on the block turned by 120 degrees that spins at (1, 2, 3) rad/s, world",
-       .slip = likely<3>(found,
-                         {{{0, 0, 0}, "the gyroscopic term - w x (I w) is missing"},
-                          {{-12, 4.5, -0.5},
-                           "body inertia multiplied with world components of w: bring w into the "
-                           "body frame first"},
-                          {{-6, 3, -1.5}, "the result left in the body frame"},
-                          {{1.5, 6, -3}, "the sign of the gyroscopic term: it is subtracted"}},
-                         "frames: w to the body frame, w' back to the world"),
+       .slip =
+           likely<3>(found,
+                     {{{0, 0, 0}, "the gyroscopic term - w x (I w) is missing"},
+                      {{-12, 4.5, -0.5},
+                       "body inertia multiplied with world components of w: bring w into the "
+                       "body frame first"},
+                      {{-6, 3, -1.5}, "the result left in the body frame"},
+                      {{1.5, 6, -3}, "the sign of the gyroscopic term is wrong: it is subtracted"}},
+                     "frames: w to the body frame, w' back to the world"),
        .handout = equation("4")});
 }
 

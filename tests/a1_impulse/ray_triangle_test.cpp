@@ -42,9 +42,10 @@ TEST(RayTriangle, HitsInsideWithTheWeightsOfTheCorners) {
            "triangle a (0,0,0), b (4,0,0), c (0,2,0); ray from (0.5, 0.75, 2) along (0, 0, -1)",
        .slip = "the system (A1.1) or the sign of t",
        .handout = kHandout},
-      {{-2.0, "the sign of t"}},
+      {{-2.0, "the sign of t is wrong"}},
       {{{0.125, 0.375, 0.5},
-        "the order of the weights: u and v of Moeller-Trumbore belong to b and c, 1 - u - v to a"},
+        "the order of the weights is wrong: u and v of Moeller-Trumbore belong to b and c, 1 - u - "
+        "v to a"},
        {{0.5, 0.375, 0.125}, "the weights of b and c are swapped"}});
 }
 

@@ -11,12 +11,13 @@ TEST(ApplyImpulse, ThroughTheCentreChangesTheVelocity) {
   expect_near(
       found.linear_world, Vector3d(1, 0, 3), kRoundoff * 3, "m/s",
       {.scene = "6 N s along z through the centre of a 2 kg block that moves at (1, 0, 0) m/s",
-       .slip = likely<3>(found.linear_world,
-                         {{{1, 0, 12}, "mass where inverse mass belongs"},
-                          {{0, 0, 3}, "the old velocity is lost: the impulse adds to it"},
-                          {{1, 0, 6}, "the inverse mass is missing"},
-                          {{1, 0, -3}, "the sign: the impulse is given as this body feels it"}},
-                         "v' = v + J / m"),
+       .slip = likely<3>(
+           found.linear_world,
+           {{{1, 0, 12}, "mass where inverse mass belongs"},
+            {{0, 0, 3}, "the old velocity is lost: the impulse adds to it"},
+            {{1, 0, 6}, "the inverse mass is missing"},
+            {{1, 0, -3}, "the sign is wrong: the impulse is given as this body feels it"}},
+           "v' = v + J / m"),
        .handout = equation("10")});
 }
 
@@ -115,7 +116,7 @@ struct BlockOnBall {
   BlockOnBall() { a.velocity_world = {0, 0, -4}; }
 };
 const std::string kSwapped = "signs swapped: A gets +j n, B gets -j n (action = reaction)",
-                  kSwappedA = "the sign of A's impulse: A got -j n and gets +j n",
+                  kSwappedA = "the sign of A's impulse is wrong: A got -j n and gets +j n",
                   kSwappedB =
                       "impulse direction the same on both bodies: B got +j n and gets -j n (action "
                       "= reaction)";

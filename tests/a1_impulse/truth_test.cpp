@@ -238,7 +238,7 @@ Slips<Vector3d> slips_of_velocity(const Impact& impact, const Body& body, const 
                                   const std::string& gets, const std::string& name) {
   const Vector3d before = body.velocity_world, change = after.linear_world - before;
   if (change.norm() <= kSameAnswer * before.norm()) return {};  // a wall
-  Slips<Vector3d> slips = {{before - change, "the sign: " + name + " gets " + gets},
+  Slips<Vector3d> slips = {{before - change, "the sign is wrong: " + name + " gets " + gets},
                            {before, "no impulse reached " + name}};
   for (const auto& [wrong, words] : slips_of_impulse(impact.encounter, impact.restitution))
     slips.push_back({before + wrong / impact.impulse * change, words + " (in j)"});
@@ -282,7 +282,7 @@ TEST(ResolveCollision, AgreesWithTheTruths) {
       const Vector3d opposite = 2 * body.velocity_world - right.linear_world;
       if ((after.linear_world - opposite).norm() <= kSameAnswer * opposite.norm())
         turning.insert(turning.begin(), {Vector3d(2 * body.omega_world - right.angular_world),
-                                         "the sign: " + name + " gets " + gets});
+                                         "the sign is wrong: " + name + " gets " + gets});
       story.slip = likely<3>(after.angular_world, turning, kElsewhere);
       expect_near(after.angular_world, right.angular_world, tolerance,
                   "rad/s (angular velocity of " + name + ")", story);

@@ -152,13 +152,13 @@ std::string words_of_rk4() {
     if (std::abs(of(1)[0] - 1) < 1e-5 && std::abs(of(2)[1] - 1) < 1e-5)
       return "whole steps where half steps belong: y + (h/2) k1, y + (h/2) k2";
     if (std::abs(of(2)[0] - 0.5) < 1e-5)
-      return "k1 used where k2 belongs: the third slope is taken at y + (h/2) k2";
+      return "k1 used where k2 belongs: the third slope should be taken at y + (h/2) k2";
     if (std::abs(of(3)[1] - 1) < 1e-5)
       return "k2 used for k3: the fourth slope is taken at y + h k3";
     if (std::abs(of(3)[0] - 1) < 1e-5)
       return "k1 used for k3: the fourth slope is taken at y + h k3";
     if (std::abs(of(3)[2] - 0.5) < 1e-5)
-      return "the fourth stage takes half a step: it is taken at y + h k3";
+      return "the fourth stage takes half a step: it should be taken at y + h k3";
     for (int i = 1; i < 4; ++i)
       if ((of(i) - stage.row(i)).norm() > 1e-5)
         return "stage " + std::to_string(i + 1) + " is taken at y + h times " + show(of(i)) +

@@ -17,7 +17,7 @@ TEST(EulerStep, GoesAlongTheTangent) {
                               Slips<VectorXd>{{vector({0.75, -1}),
                                                "the old y is missing: y + h f, not h f alone"},
                                               {vector({4, -2}), "the slope is not multiplied by h"},
-                                              {vector({0.25, 3}), "the sign of h f"}},
+                                              {vector({0.25, 3}), "the sign of h f is wrong"}},
                               "y + h f(t, y)"),
                .handout = kReadEuler});
 }

@@ -99,11 +99,11 @@ TEST(RigidBodyDerivative, TurnsTheQuaternion) {
            Slips<VectorXd>{
                {vector({-3, 1, 1, 1}), "the factor 1/2 of q' = 1/2 (0, w) q is forgotten"},
                {vector({0.5, 0.5, 0.5, -1.5}),
-                "the order of the quaternion: pack() puts w first, coeffs() puts it last"},
+                "the order of the quaternion is wrong: pack() puts w first, coeffs() puts it last"},
                {vector({-2.125, 0.125, 0.125, 1.875}), "body and world swapped: w = R I^-1 R^T L"},
                {vector({-2.5, 2, -1.5, 2}),
                 "the inertia of the body frame is used for the world: w = R I^-1 R^T L"},
-               {vector({1.5, -0.5, -0.5, -0.5}), "the sign of w"}},
+               {vector({1.5, -0.5, -0.5, -0.5}), "the sign of w is wrong"}},
            "q' = 1/2 (0, w) q with w = R I^-1 R^T L"),
        .handout = equation(4)});
 }
@@ -135,9 +135,9 @@ TEST(RigidBodyDerivative, KnowsInWhichFrameItTurns) {
            Slips<VectorXd>{
                {2 * expected, "the factor 1/2 of q' = 1/2 (0, w) q is forgotten"},
                {vector({0.75, 0.25, -0.25, -0.75}),
-                "the order of the quaternion: pack() puts w first, coeffs() puts it last"},
+                "the order of the quaternion is wrong: pack() puts w first, coeffs() puts it last"},
                {half_product({1, 2, 0}, false),
-                "the side of the product: w in the world frame stands left of q"},
+                "the side of the product is wrong: w in the world frame must stand left of q"},
                {half_product({2, 0, 1}, true),
                 "the body's angular velocity stands left of q: turn it into the world first"},
                {half_product({4, 1, 0}, true),

@@ -36,11 +36,11 @@ TEST(Rk4Step, BuildsEachStageOnTheSlopeBefore) {
     if (diary.states[i].size() == 1) found[static_cast<Eigen::Index>(i)] = diary.states[i][0];
   const Slips<VectorXd> slips = {
       {vector({10, 10.25, 10.25, 12.5}),
-       "k1 used where k2 belongs: the third slope is taken at y + (h/2) k2"},
+       "k1 used where k2 belongs: the third slope should be taken at y + (h/2) k2"},
       {vector({10, 10.25, 10.5, 11}), "k2 used for k3: the fourth slope is taken at y + h k3"},
       {vector({10, 10.25, 10.5, 10.5}), "k1 used for k3: the fourth slope is taken at y + h k3"},
       {vector({10, 10.25, 10.5, 11.25}),
-       "the fourth stage takes half a step: it is taken at y + h k3"},
+       "the fourth stage takes half a step: it should be taken at y + h k3"},
       {vector({10, 10.5, 11, 12.5}),
        "whole steps where half steps belong: y + (h/2) k1, y + (h/2) k2"},
       {vector({10, 11, 12, 15}), "the slopes are not multiplied by h"},

@@ -161,15 +161,16 @@ TEST(EulerAngles, EachTurnsItsOwnAxis) {
                                                     : name == "pitch" ? Vector3d::UnitY()
                                                                       : Vector3d::UnitX())
             .toRotationMatrix();
-    expect_near(found, expected, kRoundoff, "",
-                {.scene = name + " of 90 degrees alone",
-                 .slip = likely(
-                     found,
-                     Slips<Matrix3d>{{expected.transpose(),
-                                      "the sense of the turn: a positive angle turns right-handed"},
-                                     {in_degrees, "degrees taken for radians"}},
-                     "yaw turns about z, pitch about y, roll about x"),
-                 .handout = equation(8)});
+    expect_near(
+        found, expected, kRoundoff, "",
+        {.scene = name + " of 90 degrees alone",
+         .slip = likely(found,
+                        Slips<Matrix3d>{
+                            {expected.transpose(),
+                             "the sense of the turn is wrong: a positive angle turns right-handed"},
+                            {in_degrees, "degrees taken for radians"}},
+                        "yaw turns about z, pitch about y, roll about x"),
+         .handout = equation(8)});
   };
   check("yaw", a2_module().rotation_from_euler_angles(kRightAngle, 0, 0), yaw);
   check("pitch", a2_module().rotation_from_euler_angles(0, kRightAngle, 0), pitch);
@@ -185,12 +186,11 @@ TEST(EulerAngles, YawComesFirstAndCarriesTheOtherAxes) {
       found, expected, kRoundoff, "",
       {.scene =
            "yaw 90 degrees, then roll 90 degrees about the nose, which yaw has turned to world y",
-       .slip = likely(
-           found,
-           Slips<Matrix3d>{
-               {reversed,
-                "the order of the turns: R_z(yaw) R_y(pitch) R_x(roll), roll nearest to the body"}},
-           "R_z(yaw) R_y(pitch) R_x(roll)"),
+       .slip = likely(found,
+                      Slips<Matrix3d>{{reversed,
+                                       "the order of the turns is wrong: R_z(yaw) R_y(pitch) "
+                                       "R_x(roll), roll nearest to the body"}},
+                      "R_z(yaw) R_y(pitch) R_x(roll)"),
        .handout = equation(8)});
 }
 
@@ -208,7 +208,7 @@ TEST(EulerAngles, ComeBackFromTheMatrix) {
            Slips<VectorXd>{
                {vector({2.5 - M_PI, -0.7, -3.0 + M_PI}), "atan for atan2: the quadrant is lost"},
                {vector({-3.0, -0.7, 2.5}), "yaw and roll are swapped"},
-               {vector({2.5, 0.7, -3.0}), "the sign of pitch: R_20 = -sin(pitch)"}},
+               {vector({2.5, 0.7, -3.0}), "the sign of pitch is wrong: R_20 = -sin(pitch)"}},
            "atan2 of the entries named in the equation"),
        .handout = equation(9)});
 }

@@ -12,8 +12,9 @@ TEST(ContactForces, HoldABallOnTheFloor) {
        .slip = likely<VectorXd>(
            found,
            Slips<VectorXd>{
-               {vector({-2 * kGravity}), "the sign of the force: the floor pushes, f = -b / A"},
-               {vector({0}), "the sign of b: b < 0 is a contact that would be entered"}},
+               {vector({-2 * kGravity}),
+                "the sign of the force is wrong: the floor pushes, f = -b / A"},
+               {vector({0}), "the sign of b is wrong: b < 0 is a contact that would be entered"}},
            "A f + b = 0"),
        .handout = equation(9)});
 }

@@ -39,7 +39,7 @@ TEST(ConstraintCorrection, SharesTheWayByInverseMass) {
               {.scene = "1 kg (A) and 3 kg (B) on a rod along x, C = 0.4 m too long",
                .slip = likely<VectorXd>(
                    found,
-                   Slips<VectorXd>{{-expected, "the sign: J x = -error"},
+                   Slips<VectorXd>{{-expected, "the sign is wrong: J x = -error"},
                                    {halves, "the masses are forgotten: x = -M^-1 J^T lambda"},
                                    {by_mass, "mass for inverse mass: the heavier body moves less"}},
                    "x = -M^-1 J^T lambda, A lambda = error"),
@@ -55,7 +55,7 @@ TEST(ConstraintCorrection, RemovesEveryError) {
     expect_near(rows_times(rig, x), VectorXd(-error), 1e-10, "m (J x)",
                 {.scene = rig.scene + ", number " + std::to_string(i),
                  .slip = distance(rows_times(rig, x), error) < 1e-8
-                             ? "the sign: J x = -error"
+                             ? "the sign is wrong: J x = -error"
                              : "J x = -error in every row at once: A is not diagonal",
                  .handout = equation(8)});
   }

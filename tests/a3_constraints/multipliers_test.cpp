@@ -31,12 +31,12 @@ TEST(ConstraintMultipliers, RodCarriesAWeight) {
                   (weight_is_a ? "A" : "B"),
          .slip = likely<VectorXd>(
              found,
-             Slips<VectorXd>{
-                 {vector({weight}),
-                  "the sign of the right-hand side: C''_wanted minus what C'' is without the rods"},
-                 {vector({-kGravity / 2}), "mass for inverse mass: A = J M^-1 J^T"},
-                 {vector({kGravity / 2}), "mass for inverse mass: A = J M^-1 J^T"},
-                 {vector({0}), "the free acceleration is forgotten: J u'_free"}},
+             Slips<VectorXd>{{vector({weight}),
+                              "the sign of the right-hand side is wrong: C''_wanted minus what C'' "
+                              "is without the rods"},
+                             {vector({-kGravity / 2}), "mass for inverse mass: A = J M^-1 J^T"},
+                             {vector({kGravity / 2}), "mass for inverse mass: A = J M^-1 J^T"},
+                             {vector({0}), "the free acceleration is forgotten: J u'_free"}},
              "a hanging weight gives lambda = -m g"),
          .handout = equation(7)});
   }
@@ -50,10 +50,11 @@ TEST(ConstraintMultipliers, APendulumAddsWhatBendsItsPath) {
       {.scene = "2 kg swing through the lowest point at 3 m/s on 0.5 m: J' u = 18 m/s^2",
        .slip = likely<VectorXd>(
            found,
-           Slips<VectorXd>{{vector({-2 * kGravity}),
-                            "the velocity product is missing: C''_wanted - (J u'_free + J' u)"},
-                           {vector({-2 * (kGravity - 18)}), "the sign of the velocity product"},
-                           {vector({2 * (kGravity + 18)}), "the sign of the right-hand side"}},
+           Slips<VectorXd>{
+               {vector({-2 * kGravity}),
+                "the velocity product is missing: C''_wanted - (J u'_free + J' u)"},
+               {vector({-2 * (kGravity - 18)}), "the sign of the velocity product is wrong"},
+               {vector({2 * (kGravity + 18)}), "the sign of the right-hand side is wrong"}},
            "-m (g + v^2 / L)"),
        .handout = equation(7)});
 }
@@ -65,9 +66,10 @@ TEST(ConstraintMultipliers, GiveTheWantedAcceleration) {
       {.scene = "2 kg on a rod that is too long: C'' = -4 m/s^2 is wanted, that is upwards",
        .slip = likely<VectorXd>(
            found,
-           Slips<VectorXd>{{vector({-2 * kGravity}), "the wanted acceleration is not looked at"},
-                           {vector({-2 * (kGravity - 4)}), "the sign of the wanted acceleration"},
-                           {vector({2 * (kGravity + 4)}), "the sign of the right-hand side"}},
+           Slips<VectorXd>{
+               {vector({-2 * kGravity}), "the wanted acceleration is not looked at"},
+               {vector({-2 * (kGravity - 4)}), "the sign of the wanted acceleration is wrong"},
+               {vector({2 * (kGravity + 4)}), "the sign of the right-hand side is wrong"}},
            "-m (g + 4)"),
        .handout = equation(7)});
 }
@@ -84,11 +86,11 @@ TEST(ConstraintMultipliers, ADrivenCeilingLiftsWhatHangs) {
                   (weight_is_a ? "A" : "B"),
          .slip = likely<VectorXd>(
              found,
-             Slips<VectorXd>{
-                 {vector({-2 * kGravity}),
-                  "a driven ceiling taken to be at rest: J u'_free counts bodies of "
-                  "infinite mass, too"},
-                 {vector({-2 * (kGravity - 3)}), "the sign of one body's part of J u'_free"}},
+             Slips<VectorXd>{{vector({-2 * kGravity}),
+                              "a driven ceiling taken to be at rest: J u'_free counts bodies of "
+                              "infinite mass, too"},
+                             {vector({-2 * (kGravity - 3)}),
+                              "the sign of one body's part of J u'_free is wrong"}},
              "-m (g + 3)"),
          .handout = equation(7)});
   }

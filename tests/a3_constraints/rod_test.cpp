@@ -36,7 +36,7 @@ TEST(RodRow, MeasuresHowMuchTooLong) {
        .slip = likely(
            found,
            Slips<double>{
-               {-3, "the sign of C: |d| - length"},
+               {-3, "the sign of C is wrong: |d| - length"},
                {21, "the squares of the lengths: this C has another scale and another J"},
                {10.5, "half the squares of the lengths: this C has another scale and another J"},
                {5, "the length is forgotten"},
@@ -57,7 +57,9 @@ TEST(RodRow, JacobianPushesTheEndsApart) {
        .slip = likely<Vector6d>(
            row.jacobian_a,
            Slips<Vector6d>{
-               {-a, "the sign of J_a: n points from B to A, and C grows when A moves along it"},
+               {-a,
+                "the sign of J_a is wrong: n points from B to A, and C grows when A moves along "
+                "it"},
                {six(n, -kArmA.cross(n)), "n x r for r x n"},
                {six(n, kPointA.cross(n)), "a body point used as a world arm: r_a = R p_a"},
                {six(n, Vector3d::Zero()), "r x n is forgotten: turning A moves its end of the rod"},
@@ -73,9 +75,10 @@ TEST(RodRow, JacobianPushesTheEndsApart) {
        .slip = likely<Vector6d>(
            row.jacobian_b,
            Slips<Vector6d>{
-               {-b, "the sign of J_b: what pushes A one way pushes B the other"},
-               {six(-n, kPointB.cross(n)), "the sign of J_b's turning part: -(r_b x n)"},
-               {six(n, -kPointB.cross(n)), "the sign of J_b: its first three numbers are -n"},
+               {-b, "the sign of J_b is wrong: what pushes A one way pushes B the other"},
+               {six(-n, kPointB.cross(n)), "the sign of J_b's turning part is wrong: -(r_b x n)"},
+               {six(n, -kPointB.cross(n)),
+                "the sign of J_b is wrong: its first three numbers are -n"},
                {six(-n, Vector3d::Zero()),
                 "r x n is forgotten: turning B moves its end of the rod"},
                {5 * b, "d is not made a unit vector: n = d / |d|"}},
@@ -137,7 +140,8 @@ TEST(RodRow, DrivenBodiesMoveToo) {
             {across, "the anchors' centripetal accelerations w x (w x r) are missing"},
             {n.dot(centripetal), "what turning the rod adds is missing: (d'^2 - (n . d')^2) / |d|"},
             {across - n.dot(centripetal),
-             "the sign of the centripetal accelerations: + n . (w x (w x r)) of A, - of B"}},
+             "the sign of the centripetal accelerations is wrong: + n . (w x (w x r)) of A, - of "
+             "B"}},
         "J' u = n . (a_centripetal_a - a_centripetal_b) + what turning the rod adds");
     expect_near(row.velocity_product, velocity_product, kRodRoundoff * 300, "m/s^2 (J' u)",
                 of_product);
@@ -195,7 +199,7 @@ TEST(RodRow, AccelerationOfASwingingPoint) {
                  {0,
                   "the velocity product is missing: (|d'|^2 - (n . d')^2) / |d|, a straight flight "
                   "leaves the circle"},
-                 {-18, "the sign of the velocity product"},
+                 {-18, "the sign of the velocity product is wrong"},
                  {20, "|d'|^2 / |d|: only the motion across the rod counts, take (n . d')^2 off"},
                  {36, "the velocity product is divided by the length twice"},
                  {9, "the division by |d| is forgotten"}},
@@ -221,14 +225,15 @@ TEST(RodRow, AccelerationOfATurningBody) {
                 {.scene = std::string("a wheel turns at 2 rad/s, a rod from its rim leads away "
                                       "from the hub; the wheel is ") +
                           (wheel_is_a ? "A" : "B"),
-                 .slip = likely(found,
-                                Slips<double>{{0,
-                                               "the centripetal term is missing: n . (w x (w x "
-                                               "r)), the points of a turning body accelerate"},
-                                              {-2, wheel_is_a ? "the sign of the centripetal term"
-                                                              : "the sign of B's centripetal term"},
-                                              {1, "w x r for w x (w x r)"}},
-                                "n . ( w_a x (w_a x r_a) - w_b x (w_b x r_b) )"),
+                 .slip = likely(
+                     found,
+                     Slips<double>{{0,
+                                    "the centripetal term is missing: n . (w x (w x "
+                                    "r)), the points of a turning body accelerate"},
+                                   {-2, wheel_is_a ? "the sign of the centripetal term is wrong"
+                                                   : "the sign of B's centripetal term is wrong"},
+                                   {1, "w x r for w x (w x r)"}},
+                     "n . ( w_a x (w_a x r_a) - w_b x (w_b x r_b) )"),
                  .handout = equation(5)});
   }
 }
@@ -266,9 +271,9 @@ TEST(Baumgarte, PullsBack) {
          .slip = likely(
              found,
              Slips<double>{
-                 {-expected, "the sign: the acceleration must lead back"},
-                 {-20 * c.rate + 100 * c.value, "the sign of the second term: - C / T^2"},
-                 {20 * c.rate - 100 * c.value, "the sign of the first term: - (2 / T) C'"},
+                 {-expected, "the sign is wrong: the acceleration must lead back"},
+                 {-20 * c.rate + 100 * c.value, "the sign of the second term is wrong: - C / T^2"},
+                 {20 * c.rate - 100 * c.value, "the sign of the first term is wrong: - (2 / T) C'"},
                  {-10 * c.rate - 100 * c.value, "the 2 is forgotten: it swings over without"},
                  {-20 * c.rate - 10 * c.value, "T is not squared under C"},
                  {-0.2 * c.rate - 0.01 * c.value, "T is multiplied, not divided by"},

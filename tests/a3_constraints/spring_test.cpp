@@ -17,14 +17,14 @@ TEST(SpringForce, PullsTheEndsOfAStretchedSpringTogether) {
       {.scene = "k = 10 N/m, rest length 2 m, from A at (1, 1, 1) to B at (4, 5, 1): 5 m long",
        .slip = likely(
            found,
-           Slips<Vector3d>{
-               {-30 * n,
-                "the sign of the force: it acts on A, and a stretched spring pulls A towards B"},
-               {50 * n, "the rest length is forgotten"},
-               {-50 * n, "the rest length is forgotten, and the sign of the force"},
-               {150 * n, "d is not made a unit vector: n = d / |d|"},
-               {70 * n, "the rest length is added: |d| - L0"},
-               {230 * n, "the square of the length for the length"}},
+           Slips<Vector3d>{{-30 * n,
+                            "the sign of the force is wrong: it acts on A, and a stretched spring "
+                            "pulls A towards B"},
+                           {50 * n, "the rest length is forgotten"},
+                           {-50 * n, "the rest length is forgotten, and the sign of the force"},
+                           {150 * n, "d is not made a unit vector: n = d / |d|"},
+                           {70 * n, "the rest length is added: |d| - L0"},
+                           {230 * n, "the square of the length for the length"}},
            "(k (|d| - L0)) n, n from A to B"),
        .handout = equation(3)});
 }
@@ -35,13 +35,14 @@ TEST(SpringForce, PushesThemApartWhenCompressed) {
   expect_near(
       found, Vector3d(-18, -24, 0), kRoundoff * 50, "N",
       {.scene = "k = 10 N/m, rest length 8 m, from A at (1, 1, 1) to B at (4, 5, 1): 5 m long",
-       .slip = likely(
-           found,
-           Slips<Vector3d>{
-               {{0, 0, 0}, "a spring pushes, too: this is a rope"},
-               {{18, 24, 0}, "the sign of the force: a compressed spring pushes A away from B"},
-               {{30, 40, 0}, "the rest length is forgotten"}},
-           "k (|d| - L0) is negative here"),
+       .slip =
+           likely(found,
+                  Slips<Vector3d>{
+                      {{0, 0, 0}, "a spring pushes, too: this is a rope"},
+                      {{18, 24, 0},
+                       "the sign of the force is wrong: a compressed spring pushes A away from B"},
+                      {{30, 40, 0}, "the rest length is forgotten"}},
+                  "k (|d| - L0) is negative here"),
        .handout = equation(3)});
 }
 
@@ -59,20 +60,21 @@ TEST(SpringForce, DampsAlongTheSpringOnly) {
       found, 9 * n, kRoundoff * 50, "N",
       {.scene = "c = 3 N s/m, at rest length, B leaves A at 3 m/s along the spring and moves "
                 "across it at 5 and 7 m/s",
-       .slip = likely(found,
-                      Slips<Vector3d>{
-                          {3 * u, "damping acts along the spring only: project the velocity on n"},
-                          {-9 * n, "the sign of the damping: ends that part are pulled together"},
-                          {3 * n, "the velocity of one end only: the damper feels n . (v_b - v_a)"},
-                          {6 * n, "the velocity of one end only: the damper feels n . (v_b - v_a)"},
-                          {-3 * u, "damping acts along the spring only, and its sign"},
-                          {3 * u.norm() * n,
-                           "the speed in place of its part along the spring: damping acts along "
-                           "the spring only"},
-                          {45 * n, "d is not made a unit vector: n = d / |d|"},
-                          {225 * n, "d is not made a unit vector: n = d / |d|"},
-                          {{0, 0, 0}, "the damping is forgotten"}},
-                      "c n . (v_b - v_a) n"),
+       .slip = likely(
+           found,
+           Slips<Vector3d>{
+               {3 * u, "damping acts along the spring only: project the velocity on n"},
+               {-9 * n, "the sign of the damping is wrong: ends that part are pulled together"},
+               {3 * n, "the velocity of one end only: the damper feels n . (v_b - v_a)"},
+               {6 * n, "the velocity of one end only: the damper feels n . (v_b - v_a)"},
+               {-3 * u, "damping acts along the spring only, and its sign"},
+               {3 * u.norm() * n,
+                "the speed in place of its part along the spring: damping acts along "
+                "the spring only"},
+               {45 * n, "d is not made a unit vector: n = d / |d|"},
+               {225 * n, "d is not made a unit vector: n = d / |d|"},
+               {{0, 0, 0}, "the damping is forgotten"}},
+           "c n . (v_b - v_a) n"),
        .handout = equation(3)});
 }
 

@@ -96,9 +96,10 @@ TEST(LogAcceptance, KnowsImpossiblePlaces) {
       a(-kInfinity, -kInfinity, 0, 0),
       story("from one impossible place to another",
             "-infinity minus -infinity is NaN: the impossible proposal is asked for first"));
-  expect_impossible(a(-kInfinity, -1, 0, -kInfinity),
-                    story("from an impossible place, where no way leads back",
-                          "the order of the rules: where no way leads back nothing is accepted"));
+  expect_impossible(
+      a(-kInfinity, -1, 0, -kInfinity),
+      story("from an impossible place, where no way leads back",
+            "the order of the rules is wrong: where no way leads back nothing is accepted"));
 }
 
 TEST(LogAcceptance, DoesNotSeeAConstantInTheDensity) {

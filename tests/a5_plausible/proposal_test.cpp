@@ -22,13 +22,13 @@ TEST(Propose, AddsAndMultiplies) {
        .slip = first == 3.5   ? "the normal number is forgotten: s_i z_i is added"
                : first == 5   ? "the size is forgotten: s_i z_i is added"
                : first == 1   ? "the new number does not begin at the old one"
-               : first == 2   ? "the sign of the step"
+               : first == 2   ? "the sign of the step is wrong"
                : first == 1.5 ? "one normal number is used for all, or the wrong one"
                               : likely(second,
                                        {{-2.3, "added where it is to be multiplied: kMultiply"},
                                         {-1.7, "added where it is to be multiplied: kMultiply"},
                                         {-1.4, "x (1 + s z) is not x exp(s z): it may change sign"},
-                                        {-2 * std::exp(0.3), "the sign of the exponent"},
+                                        {-2 * std::exp(0.3), "the sign of the exponent is wrong"},
                                         {-2 * std::exp(0.2), "one normal number is used for all"}},
                                        "x_i + s_i z_i, or x_i exp(s_i z_i)"),
        .handout = equation(3)});
@@ -103,7 +103,7 @@ TEST(LogProposal, IsTheDensityOfTheStep) {
             {-2 - kLogRootTwoPi, "the size is forgotten in what normalises: ln q has - ln s"},
             {-2 - std::log(0.5), "ln sqrt(2 pi) is forgotten"},
             {-4 - std::log(0.5) - kLogRootTwoPi, "the factor 1/2 is forgotten"},
-            {-2 + std::log(0.5) - kLogRootTwoPi, "the sign of ln s"},
+            {-2 + std::log(0.5) - kLogRootTwoPi, "the sign of ln s is wrong"},
             {std::exp(exact), "the density itself is returned where its logarithm belongs"}},
            "-1/2 z^2 - ln s - ln sqrt(2 pi)"),
        .handout = equation(4)});

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <vector>
 
 #include "framework/report/arms.h"
 
@@ -44,6 +45,27 @@ TEST(Arms, ArmsAlongTheDirectionHaveAPlaneToo) {
   arms.arms[1].arm_world = {0, 0, 1};
   EXPECT_NE(svg_of(arms).find(">r_b</text>"), std::string::npos);
   EXPECT_EQ(svg_of(arms).find("nan"), std::string::npos);
+}
+
+// A short arm beside a long one, arms along the direction, arms across it: no name covers another.
+TEST(Arms, NamesStandApart) {
+  for (const Eigen::Vector3d& of_a :
+       {Eigen::Vector3d(0, 0, -2), {0.1, 0, 0}, {0.3, 0, -0.2}, {1, 0, -1}, {-1, 0, 0}})
+    for (const Eigen::Vector3d& of_b : {Eigen::Vector3d(-1, 0, 1), {6, 3, 0}, {0, 0, 1}}) {
+      Arms arms = blow();
+      arms.arms[0].arm_world = of_a;
+      arms.arms[1].arm_world = of_b;
+      const std::string svg = svg_of(arms);
+      std::vector<Eigen::Vector2d> names;
+      for (std::size_t at = svg.find("<text"); at != svg.npos; at = svg.find("<text", at + 1))
+        names.emplace_back(std::stod(svg.substr(svg.find("x=\"", at) + 3)),
+                           std::stod(svg.substr(svg.find("y=\"", at) + 3)));
+      ASSERT_EQ(names.size(), 6u);
+      for (std::size_t i = 0; i < names.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          EXPECT_GT((names[i] - names[j]).norm(), 9.0)
+              << i << ' ' << j << " of " << of_a.transpose() << ", " << of_b.transpose();
+    }
 }
 
 TEST(Arms, NamesAreText) {

@@ -55,6 +55,27 @@ TEST(Page, EveryPlaceForTextEscapesIt) {
   EXPECT_EQ(page.html().find("onerror=alert(1)>"), std::string::npos);
 }
 
+TEST(Page, TablesOfSentencesAreBlocksOnAPhone) {
+  Page page("t");
+  const std::string sentence = "a sentence that is longer than a phone's line";
+  page.table({"", {{"A"}, {"B"}, {"C"}}, {{{"x", "", Look::kPlain, "row-x"}, {"y"}, {sentence}}}});
+  const std::string html = page.html();
+  EXPECT_NE(html.find("<table class=\"blocks\">"), std::string::npos);
+  EXPECT_NE(html.find("<tr id=\"row-x\"><td data-name=\"A\">x</td>"), std::string::npos) << html;
+  EXPECT_NE(html.find(".blocks td { display: block; }"), std::string::npos);
+  Page numbers("t");
+  numbers.table({"", {{"A"}, {"B"}, {"C"}}, {{{"1"}, {"2"}, {"3"}}}});
+  EXPECT_EQ(numbers.html().find("class=\"blocks\""), std::string::npos);
+}
+
+TEST(Page, CodeKeepsItsIndents) {
+  Page page("t");
+  page.code("  if (a < b)");
+  EXPECT_NE(page.html().find("<pre class=\"code\" tabindex=\"0\">  if (a &lt; b)</pre>"),
+            std::string::npos);
+  EXPECT_NE(page.html().find("pre.code { white-space: pre;"), std::string::npos);
+}
+
 TEST(Page, ForbidsScriptsAndTheNetwork) {
   const std::string html = Page("t").html();
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);

@@ -182,7 +182,10 @@ TEST(PlayerPage, BesideAnotherFileHoldsNoScriptsAndTheSameMotionOnce) {
   beside.three_file = "three.js";
   const std::string alone = player_page(thrown_ball(), {{thrown_run(), ""}}),
                     small = player_page(thrown_ball(), {{thrown_run(), ""}}, beside);
-  EXPECT_NE(small.find("<script src=\"three.js\"></script>"), std::string::npos);
+  EXPECT_NE(small.find("three.js is missing, so that the motion cannot be drawn"),
+            std::string::npos)
+      << "no script runs that could say it";
+  EXPECT_NE(small.find("<script src=\"three.js\" onerror=\""), std::string::npos);
   EXPECT_EQ(small.find("class Run"), std::string::npos);
   EXPECT_NE(alone.find("class Run"), std::string::npos);
   EXPECT_NE(alone.find("\"runs\":["), std::string::npos);

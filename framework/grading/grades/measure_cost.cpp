@@ -198,7 +198,7 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
       "The slope is the order: halving the step divides the error of a method of order p by 2^p."));
   section.plots.push_back(plot_of(
       all, reference, {"derivatives asked for", "-", report::Scale::kLog},
-      "Error against force evaluations",
+      "Error against derivatives asked for",
       [](const CostResult& result) { return static_cast<double>(result.evaluations); },
       "The cost of accuracy in counts that are the same on any machine: left is cheaper, down is "
       "more accurate."));

@@ -209,8 +209,11 @@ void add_help(const Cause& cause, const PageView& view, std::vector<report::Fiel
     seen.push_back(more);
     text += (text.empty() ? "" : gap) + more;
   };
-  for (const FunctionInHeader& told : cause.told) {
-    add(should_be, is_new || told.formula.empty() ? told.purpose : told.formula, "\n");
+  for (std::size_t i = 0; i < cause.told.size(); ++i) {
+    const FunctionInHeader& told = cause.told[i];
+    const std::string& words = is_new || told.formula.empty() ? told.purpose : told.formula;
+    const bool is_one = cause.told.size() == 1 || words.empty();
+    add(should_be, (is_one ? "" : cause.functions[i] + ":\n") + words, "\n");
     if (is_new) add(returns, told.returns, "\n");
     for (const std::string& equation : told.equations) add(places, equation, "; ");
     add(places, told.hints, "; ");
@@ -285,7 +288,7 @@ void add_cause(report::Page& page, std::size_t index, const Grade& grade, const 
     const bool is_short = cause.is_marked(i);  // the lines around a crash
     if (!is_short)
       page.begin(report::Part::kFold, plain_name(cause.functions[i]) + " of this file");
-    page.preformatted(plain_text(cause.code[i]));
+    page.code(plain_text(cause.code[i]));
     if (!is_short) page.end();
   }
   if (const std::size_t n = cause.not_run.size(); n > 0)

@@ -128,6 +128,16 @@ std::vector<std::vector<report::Field>> cases_of(const std::vector<report::Field
   return cases;
 }
 
+// "j = -(1 + e) u_n / k   (A1.9)" with its number first: at the end it would stand alone in a line.
+std::string number_first(const std::string& equation) {
+  const std::size_t gap = equation.find("   (");
+  if (gap == equation.npos) return equation;
+  const std::size_t end = equation.find_last_of(')') + 1;
+  if (end <= gap) return equation;
+  return bare(equation.substr(gap, end - gap)) + "  " + equation.substr(0, gap) +
+         equation.substr(end);
+}
+
 void add_xray(report::Page& page, const StoryParts& parts) {
   report::Table table{"", {{""}, {""}, {""}}, {}};
   for (const StoryTerm& term : parts.terms)
@@ -139,7 +149,7 @@ void add_xray(report::Page& page, const StoryParts& parts) {
     for (auto& row : table.rows) row.pop_back();
   }
   if (const auto arms = arms_of(parts.terms)) page.plot(*arms);
-  page.fields({{std::string(kXray), parts.equation}});
+  page.fields({{std::string(kXray), number_first(parts.equation)}});
   if (!table.rows.empty()) page.table(table);
 }
 

@@ -193,12 +193,13 @@ class Bench {
   table(own, right) {
     this.numbers.textContent = '';
     if (own.facts.length === 0) return;
-    const table = $('table'), head = $('tr'), body = $('tbody');
+    const table = $('table', '', { class: 'blocks' }), head = $('tr'), body = $('tbody');
     for (const name of ['', 'What has to hold', 'has to be', 'this file', ...(right ? ['the right law'] : [])]) head.append($('th', name, { scope: 'col' }));
     own.facts.forEach((fact, i) => {
       const row = $('tr'), verdict = this.verdict(fact), other = right && right.facts[i];
-      row.append($('td', verdict, { class: { right: 'good', wrong: 'bad', '': 'muted' }[verdict] }), $('td', fact.unit === '' ? fact.name : `${fact.name} [${fact.unit}]`), $('td', fact.wanted === null ? '' : shown(fact.wanted), { class: 'number' }), $('td', shown(fact.value), { class: 'number' }));
-      if (right) row.append($('td', other ? shown(other.value) : '', { class: 'number' }));
+      const number = (text, column) => $('td', text, { class: 'number', 'data-name': column });   // a narrow page has the names of columns in the cells
+      row.append($('td', verdict, { class: { right: 'good', wrong: 'bad', '': 'muted' }[verdict] }), $('td', fact.unit === '' ? fact.name : `${fact.name} [${fact.unit}]`), number(fact.wanted === null ? '' : shown(fact.wanted), 'has to be'), number(shown(fact.value), 'this file'));
+      if (right) row.append(number(other ? shown(other.value) : '', 'the right law'));
       body.append(row);
     });
     const top = $('thead');
