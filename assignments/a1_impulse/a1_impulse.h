@@ -71,8 +71,8 @@ Vector3d linear_acceleration(const Body& body, const Vector3d& force_world);
 /// @param body          I: inertia_body (3,3), about the centre of mass [kg m^2]; R:
 ///                      world_from_body; w: omega_world [rad/s]
 /// @param torque_world  tau, (3), world, about the centre of mass [N m]
-/// @return alpha, (3), world [rad/s^2]; exactly zero for infinite mass; not zero for a free body that
-///         tumbles
+/// @return alpha, (3), world [rad/s^2]; exactly zero for infinite mass; not zero for a free body
+///         that tumbles
 /// Source: Baraff I, sections 2.9 and 2.10; Goldstein, Classical Mechanics, section 5.5.
 /// Tests: AngularAcceleration.*   Hints: handouts/a1_impulse.md#hint-angular
 Vector3d angular_acceleration(const Body& body, const Vector3d& torque_world);

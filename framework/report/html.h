@@ -102,7 +102,7 @@ class Page {
   void preformatted(std::string_view text);
   /// Lines of a program: one that is too long is read by scrolling, so that indents stay.
   void code(std::string_view text);
-  /// Preformatted text with links: where the text holds a cell's text, it leads where the cell does.
+  /// Preformatted, with links: where the text holds a cell's text, it leads where the cell does.
   void preformatted(std::string_view text, const std::vector<Cell>& links);
   /// Named values, one below the other: the names at the left.
   void fields(const std::vector<Field>& fields);

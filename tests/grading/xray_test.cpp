@@ -156,6 +156,14 @@ TEST(Xray, GoesBackToTheCallThatWasAnsweredWrongly) {
   call(1.0, 2.0);
   call(2.0, 4.0);
   EXPECT_NE(xray_of_last_call().find("y, found                  9"), std::string::npos);
+  // two wrong ones: that of which the story tells
+  call(6.0, 13.0);
+  EXPECT_NE(xray_of_last_call("\n  found:    9 m").find("y, found                  9"),
+            std::string::npos);
+  EXPECT_NE(xray_of_last_call("\n  found:    (13, 14) m").find("y, found                  13"),
+            std::string::npos);
+  EXPECT_NE(xray_of_last_call("\n  found:    nothing").find("y, found                  13"),
+            std::string::npos);
   call(5.0, 11.0);
   EXPECT_NE(xray_of_last_call().find("y, found                  11"), std::string::npos);
   begin_call_to_show();

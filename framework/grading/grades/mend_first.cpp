@@ -303,7 +303,7 @@ void add_cause(report::Page& page, std::size_t index, const Grade& grade, const 
   if (shown != nullptr && !shown->result.story.empty() && cause.kind != Cause::Kind::kNotWritten) {
     page.paragraph("For example, " + shown->item.title + ":", Look::kMuted);
     add_story(page, shown->result.story, view);
-  } else if (shown != nullptr && shown->item.hidden) {
+  } else if (shown != nullptr && shown->item.hidden && cause.kind != Cause::Kind::kNotWritten) {
     page.paragraph("Seen by hidden tests only: they tell no numbers.", Look::kMuted);
   }
   add_tests(page, cause, grade);

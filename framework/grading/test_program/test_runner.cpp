@@ -70,7 +70,7 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
     constexpr const char* kFailed = "Failed\n";
     if (message.starts_with(kFailed)) message.erase(0, std::strlen(kFailed));
     // the first failure is about the last answer, in nearly all tests
-    if (text.empty() && !bare) message += xray_of_last_call();
+    if (text.empty() && !bare) message += xray_of_last_call(message);
     if (message.size() > kStory) message.replace(kStory, std::string::npos, "\n[cut here]");
     if (text.size() <= kStory) text += (text.empty() ? "" : "\n") + message;
   }

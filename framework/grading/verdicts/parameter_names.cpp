@@ -89,9 +89,9 @@ std::string without_ends(const std::string& text) {
 
 // "(A1.7c)" at the end of a line becomes "eq-a1-7", and has three blanks before it.
 std::string equation_at_end(std::string& line) {
-  const std::size_t open = line.rfind("   (A");
+  const std::size_t open = line.rfind("  (A");
   if (open == line.npos || line.back() != ')') return "";
-  std::string number = line.substr(open + 4, line.size() - open - 5);  // "A1.7c"
+  std::string number = line.substr(open + 3, line.size() - open - 4);  // "A1.7c"
   line = without_ends(line.substr(0, open)) + "   (" + number + ")";
   while (!number.empty() && std::isdigit(static_cast<unsigned char>(number.back())) == 0)
     number.pop_back();

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <map>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tumble::grading {
 namespace {
@@ -194,16 +198,50 @@ std::deque<LastCall>& earlier_calls() {
   return calls;
 }
 
-std::string described_last_call() {
+// The numbers that a story names as found; none where it has words instead.
+std::vector<double> found_in(const std::string& story) {
+  constexpr std::string_view kFound = "\n  found:";
+  const std::size_t begin = story.find(kFound);
+  if (begin == story.npos) return {};
+  const std::string line =
+      story.substr(begin + kFound.size(), story.find('\n', begin + 1) - begin - kFound.size());
+  std::vector<double> numbers;
+  const char* at = line.c_str() + std::min(line.find_first_not_of(" ("), line.size());
+  for (char* end = nullptr; *at != '\0'; at = end) {
+    const double value = std::strtod(at, &end);
+    if (end == at) break;
+    numbers.push_back(value);
+    end += std::strspn(end, ",; ");
+  }
+  return numbers;
+}
+
+// Whether the numbers, of twelve digits, stand in the answer one behind the other.
+bool holds(const VectorXd& answer, const std::vector<double>& numbers) {
+  const auto n = static_cast<Eigen::Index>(numbers.size());
+  if (n == 0) return false;
+  const VectorXd part = Eigen::Map<const VectorXd>(numbers.data(), n);
+  for (Eigen::Index i = 0; i + n <= answer.size(); ++i)
+    if (is_near(answer.segment(i, n), part)) return true;
+  return false;
+}
+
+struct Described {
+  std::string words;
+  VectorXd found = {};
+};
+
+Described described_last_call() {
   const LastCall& call = last_call();
   const auto found = xrays().find(call.function);
-  if (found == xrays().end()) return "";
+  if (found == xrays().end()) return {};
   try {
     modules::Reader arguments(call.arguments), answer(call.answer);
     const auto xray = found->second(arguments, answer);
-    return xray ? xray_in_words(*xray, !call.answer.empty()) : "";
+    if (!xray) return {};
+    return {xray_in_words(*xray, !call.answer.empty()), xray->found};
   } catch (const modules::WireError&) {
-    return "";  // the arguments were too long to keep
+    return {};  // the arguments were too long to keep
   }
 }
 
@@ -217,15 +255,21 @@ void begin_call_to_show() {
   last_call() = {};
 }
 
-std::string xray_of_last_call() {
+std::string xray_of_last_call(const std::string& story) {
   const LastCall last = last_call();
-  std::string words = described_last_call();
-  if (last.answer.empty()) return words;
+  const Described of_last = described_last_call();
+  const std::vector<double> named = found_in(story);
+  std::string words = of_last.words;
+  const bool is_named = !words.empty() && holds(of_last.found, named);
+  if (last.answer.empty() || is_named || (!words.empty() && named.empty())) return words;
   for (const LastCall& call : earlier_calls()) {
-    if (!words.empty()) break;
     if (call.function != last.function || call.answer.empty()) continue;
     last_call() = call;  // a description asks it for what was asked
-    words = described_last_call();
+    const Described earlier = described_last_call();
+    if (earlier.words.empty()) continue;
+    const bool is_the_one = holds(earlier.found, named);
+    if (is_the_one || words.empty()) words = earlier.words;
+    if (is_the_one || named.empty()) break;
   }
   last_call() = last;
   return words;
