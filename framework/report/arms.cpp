@@ -211,6 +211,7 @@ std::string svg_of(const Arms& arms) {
                                     middle - 1.5 * side};
     for (const double part : {0.3, 0.7})
       for (const double sign : {1.0, -1.0}) places.push_back(from + part * along + sign * side);
+    for (const Vector2d& place : around(middle, 20)) places.push_back(place);  // of a short arm
     names += words_at(free.take(places), arms.arms[i].name, colour);
   }
   for (const Arms::Direction& direction : arms.directions) {

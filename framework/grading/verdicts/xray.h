@@ -117,8 +117,8 @@ void begin_call_to_show();
 /// it was, a test may have asked more of the function to find out what is wrong: then it is that of
 /// the first of the few kept calls which was not. A call without an answer shows what its terms
 /// are.
-/// @param story  of the failure: of several wrong calls it is that of the one whose answer the story
-///   names as found; empty: the last one
+/// @param story  of the failure: of several wrong calls it is that of the one whose answer the
+///   story names as found; empty: the last one
 std::string xray_of_last_call(const std::string& story = "");
 
 }  // namespace tumble::grading
