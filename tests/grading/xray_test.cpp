@@ -164,6 +164,11 @@ TEST(Xray, GoesBackToTheCallThatWasAnsweredWrongly) {
             std::string::npos);
   EXPECT_NE(xray_of_last_call("\n  found:    nothing").find("y, found                  13"),
             std::string::npos);
+  EXPECT_EQ(xray_of_last_call("\n  found:    9 m").find("one call of this test"),
+            std::string::npos);
+  EXPECT_NE(
+      xray_of_last_call("\n  found:    99 m").find("x-ray:    one call of this test: y = 2 x"),
+      std::string::npos);
   call(5.0, 11.0);
   EXPECT_NE(xray_of_last_call().find("y, found                  11"), std::string::npos);
   begin_call_to_show();

@@ -19,6 +19,7 @@ namespace {
 constexpr double kRoundOff = 1e-9;
 constexpr std::size_t kNameWidth = 24;
 constexpr int kDigits = 6;
+constexpr std::string_view kXrayMark = "\n  x-ray:    ";
 
 std::map<std::string, XrayOfCall>& xrays() {
   static std::map<std::string, XrayOfCall> all;
@@ -158,7 +159,7 @@ std::string xray_in_words(const Xray& xray, bool is_answered) {
   std::map<std::size_t, std::string> marks;
   if (is_answered) marks = variants_found(xray);
   if (is_answered && marks.empty()) marks = first_wrong(xray);
-  std::string text = "\n  x-ray:    " + xray.equation;
+  std::string text = std::string(kXrayMark) + xray.equation;
 
   for (std::size_t i = 0; i < xray.terms.size(); ++i) {
     const XrayTerm& term = xray.terms[i];
@@ -260,18 +261,21 @@ std::string xray_of_last_call(const std::string& story) {
   const Described of_last = described_last_call();
   const std::vector<double> named = found_in(story);
   std::string words = of_last.words;
-  const bool is_named = !words.empty() && holds(of_last.found, named);
-  if (last.answer.empty() || is_named || (!words.empty() && named.empty())) return words;
+  bool is_the_one = !words.empty() && holds(of_last.found, named);
+  if (last.answer.empty() || is_the_one || (!words.empty() && named.empty())) return words;
   for (const LastCall& call : earlier_calls()) {
     if (call.function != last.function || call.answer.empty()) continue;
     last_call() = call;  // a description asks it for what was asked
     const Described earlier = described_last_call();
     if (earlier.words.empty()) continue;
-    const bool is_the_one = holds(earlier.found, named);
+    is_the_one = holds(earlier.found, named);
     if (is_the_one || words.empty()) words = earlier.words;
     if (is_the_one || named.empty()) break;
   }
   last_call() = last;
+  // what the story names came of many calls, or of another question about them
+  if (!words.empty() && !named.empty() && !is_the_one)
+    words.insert(words.find(kXrayMark) + kXrayMark.size(), "one call of this test: ");
   return words;
 }
 
