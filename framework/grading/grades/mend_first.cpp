@@ -120,14 +120,14 @@ std::string places_of(const Cause& cause) {
     const std::size_t colon = place.rfind(':');
     if (colon == place.npos) continue;
     const std::string where =
-        fmt::format("line {} of {}.", place.substr(colon + 1), place.substr(0, colon));
-    text += text.empty() ? "" : " ";
+        fmt::format("line {} of {}", place.substr(colon + 1), place.substr(0, colon));
+    text += text.empty() ? "" : "; ";
     text += cause.kind == Cause::Kind::kCrash && cause.is_marked(i)
                 ? cause.functions[i] + " crashed in " + where +
-                      " Look at the lines above it, too: what it uses was made there."
+                      ". Look at the lines above it, too: what it uses was made there"
                 : cause.functions[i] + " begins in " + where;
   }
-  return text;
+  return text.empty() ? "" : text + '.';
 }
 
 // The test to look at first: one that its author can run, as basic as there is.

@@ -222,6 +222,10 @@ bool holds(const VectorXd& answer, const std::vector<double>& numbers) {
   const auto n = static_cast<Eigen::Index>(numbers.size());
   if (n == 0) return false;
   const VectorXd part = Eigen::Map<const VectorXd>(numbers.data(), n);
+  if (n == 9 && answer.size() == n) {  // a story shows a matrix by rows, an answer has its columns
+    const Matrix3d by_columns = Eigen::Map<const Matrix3d>(numbers.data()).transpose();
+    if (is_near(answer, Eigen::Map<const VectorXd>(by_columns.data(), n))) return true;
+  }
   for (Eigen::Index i = 0; i + n <= answer.size(); ++i)
     if (is_near(answer.segment(i, n), part)) return true;
   return false;
