@@ -1,4 +1,4 @@
-// tumble check a1 [FILE] [PATTERN...]: the student's loop.
+// tumble check a1 [FILE] [TEST...]: the student's loop.
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -30,11 +30,10 @@ ExitCode check_for_machines(const Command& command, const CheckWords& words) {
 }  // namespace
 
 void add_check(CLI::App& app, Command& command) {
-  auto id = std::make_shared<std::string>();
-  auto rest = std::make_shared<std::vector<std::string>>();
+  auto given = std::make_shared<GivenWords>();
   auto own_tests = std::make_shared<std::string>();
   Verb verb(app, "check", "Build your file and run the public tests: a verdict and a story each");
-  add_check_words(verb, *rest, *id);
+  add_check_words(verb, *given);
   auto json = std::make_shared<bool>(false);
   verb.flag("--json", *json, "For machines");
   verb.option("--my-tests", *own_tests,
@@ -42,10 +41,13 @@ void add_check(CLI::App& app, Command& command) {
               "your module in the sandbox, as the grader runs it")
       .type_name("FILE");
   verb.footer(
-      "Exit: 0 all right, 1 something is wrong or does not compile, 2 something to repair, 4 the "
-      "rest is right but not all is attempted.");
-  verb.runs([&command, id, rest, own_tests, json] {
-    CheckWords words = read_check_words(*id, *rest);
+      "Exit: 0 all tests right; 1 your code: a test is not right, or it does not compile; 2 this "
+      "command: no such assignment, file, test or flag, and nothing was checked; 4 not all is "
+      "attempted, and the rest is right.\n"
+      "Example: tumble check a1\n         tumble check a1 'two walls'\n"
+      "         tumble check a1 collision_impulse --all");
+  verb.runs([&command, given, own_tests, json] {
+    CheckWords words = read_check_words(*given);
     words.own_tests = *own_tests;
     if (*json && !own_tests->empty())
       throw UserError("--json", "is of the public tests", "Leave it out, or leave --my-tests out.");

@@ -53,10 +53,17 @@ void print_warnings(const fs::path& file, const std::string& said) {
   fmt::print("\n");
 }
 
-ExitCode run_tests(const Command& command, const CheckWords& words,
-                   std::vector<std::string> program) {
+// Of every program that runs public tests: titles, and where functions and crashes stand.
+void add_public_words(std::vector<std::string>& program, const Command& command,
+                      const CheckWords& words) {
   program.insert(program.end(), {"--rubric", public_rubric(command, words).string(), "--source",
                                  checked_file(command, words).string()});
+}
+
+ExitCode run_tests(const Command& command, const CheckWords& words,
+                   std::vector<std::string> program) {
+  add_public_words(program, command, words);
+  if (words.all) program.push_back("--all");
   if (!words.results.empty()) program.insert(program.end(), {"--json", words.results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);
@@ -204,18 +211,22 @@ ExitCode check_own_tests(const Command& command, const CheckWords& words, const 
 
 }  // namespace
 
-void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id) {
-  verb.option("assignment", id, "Which, e.g. a1").required().type_name("ID");
-  verb.option("what", rest,
-              "FILE.cpp: instead of your file under assignments/, run in the sandbox; other words "
-              "choose tests, e.g. 'CollisionImpulse.*'")
-      .type_name("[FILE] [PATTERN]");
+void add_check_words(Verb& verb, GivenWords& given) {
+  verb.option("assignment", given.id, "Which, e.g. a1").required().type_name("ID");
+  verb.option("what", given.rest,
+              "FILE.cpp in place of your file under assignments/, to be run in the sandbox. Other "
+              "words choose tests: a part of a title ('Two walls'), a function "
+              "(collision_impulse), a pattern of names ('CollisionImpulse.*')")
+      .type_name("FILE|TEST");
+  verb.flag("-v,--all", given.all, "A line for each test, the right ones too");
 }
 
-CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest) {
-  folder_of(id);
-  CheckWords words{id, {}, {}, {}, {}};
-  for (const std::string& word : rest) {
+CheckWords read_check_words(const GivenWords& given) {
+  folder_of(given.id);
+  CheckWords words;
+  words.id = given.id;
+  words.all = given.all;
+  for (const std::string& word : given.rest) {
     const bool is_file =
         word.ends_with(".cpp") || word.ends_with(".cc") || word.find('/') != std::string::npos;
     if (is_file && words.file) throw UserError(word, "is a second file", "Check one at a time.");
@@ -270,6 +281,7 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
                           kLoadLimit),
               {}};
   }
+  add_public_words(program, command, words);
   program.insert(program.end(), {"--json", results.string()});
   program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   const ProgramOutcome ran = run_program(program, Output::kCaptured);

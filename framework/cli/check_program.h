@@ -15,15 +15,22 @@ namespace tumble::cli {
 struct CheckWords {
   std::string id;
   std::optional<std::filesystem::path> file;  // instead of the stub
-  std::vector<std::string> patterns;          // of test names
+  std::vector<std::string> patterns;          // choose tests (test_program/test_words.h)
+  bool all = false;                           // a line for each test in the table
   std::string own_tests;                      // the student's own tests in place of the public ones
   std::filesystem::path results;              // where verdicts are written as well; may be empty
 };
 
-/// Declares "a1 [FILE] [PATTERN...]" on a verb; `rest` and `id` hold the words after the parse.
-void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id);
+/// The words "a1 [FILE] [TEST...] [--all]" as they are given.
+struct GivenWords {
+  std::string id;
+  std::vector<std::string> rest;
+  bool all = false;
+};
+/// Declares them on a verb.
+void add_check_words(Verb& verb, GivenWords& given);
 /// @throws UserError for an unknown assignment or a missing file
-CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest);
+CheckWords read_check_words(const GivenWords& given);
 
 /// The public rubric of the assignment.
 std::filesystem::path public_rubric(const Command& command, const CheckWords& words);

@@ -314,6 +314,16 @@ void judge_for_page(Context& context, const RunWords& words, const std::string& 
       grading::read_rubric(context.root / "assignments" / name.folder / "rubric.json");
   const std::string source = text_of(file);
   const std::vector<std::string> headings = grading::headings_of(checked.results, source);
+  std::vector<double> points;
+  for (const grading::TestResult& result : checked.results) {
+    const grading::RubricItem* item = rubric.find(result.test);
+    points.push_back(item != nullptr ? item->points : 0.0);
+  }
+  // By result: its place in the order of mending.
+  std::map<std::size_t, std::size_t> place;
+  for (const grading::HeadingGroup& group :
+       grading::in_order_of_mending(checked.results, headings, points))
+    for (const std::size_t i : group.tests) place.emplace(i, place.size());
   const auto follows = grading::what_follows(checked.results, source);
   const std::string used_up = grading::what_used_the_time(checked.results);
   Json tests = Json::array();
@@ -325,7 +335,7 @@ void judge_for_page(Context& context, const RunWords& words, const std::string& 
     Json one{{"test", result.test},
              {"group", result.test.substr(0, result.test.find('.'))},
              {"title", item != nullptr ? item->title : result.test},
-             {"points", item != nullptr ? item->points : 0.0},
+             {"points", points[i]},
              {"verdict", is_cut_off ? "not run" : grading::words(result.verdict)}};
     if (result.verdict != grading::Verdict::kRight) {
       const int line = exact_line_of(result);
@@ -339,9 +349,7 @@ void judge_for_page(Context& context, const RunWords& words, const std::string& 
       one["heading"] = headings[i];
       const auto other = follows.find(result.last_call);
       if (other != follows.end()) one["follows_from"] = other->second;
-      // Before all others: what kept tests from running.
-      const std::string& root = other != follows.end() ? other->second : function;
-      one["is_first"] = !used_up.empty() && root == used_up;
+      if (const auto at = place.find(i); at != place.end()) one["place"] = at->second;
     }
     tests.push_back(std::move(one));
   }

@@ -1,4 +1,4 @@
-// tumble watch a1 [FILE] [PATTERN...]: the student's loop on every save, until Ctrl-C.
+// tumble watch a1 [FILE] [TEST...]: the student's loop on every save, until Ctrl-C.
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include "framework/cli/check_program.h"
 #include "framework/core/files.h"
 #include "framework/core/save_watch.h"
+#include "framework/core/terminal.h"
 #include "framework/grading/verdicts/what_changed.h"
 
 namespace tumble::cli {
@@ -27,14 +28,18 @@ class Progress {
     if (!fs::exists(file)) return;
     const std::vector<grading::TestResult> now = grading::read_results(file.string());
     if (!before_.empty())
-      fmt::print("\nsince the last save: {}\n", grading::what_changed(before_, now, rubric_));
+      print("\nsince the last save: " + grading::what_changed(before_, now, rubric_));
     const std::string next = grading::what_comes_next(now, rubric_);
-    fmt::print("{}{}\n", before_.empty() ? "\n" : "",
-               next.empty() ? "every public test is right" : "next: " + next);
+    print((before_.empty() ? "\n" : "") +
+          (next.empty() ? "every public test is right" : "next: " + next));
     before_ = now;
   }
 
  private:
+  static void print(const std::string& text) {
+    fmt::print("{}\n", wrapped(text, terminal_columns(STDOUT_FILENO), 4));
+  }
+
   grading::Rubric rubric_;
   std::vector<grading::TestResult> before_;
 };
@@ -69,11 +74,13 @@ void watch(Command& command, CheckWords words) {
 }  // namespace
 
 void add_watch(CLI::App& app, Command& command) {
-  auto id = std::make_shared<std::string>();
-  auto rest = std::make_shared<std::vector<std::string>>();
-  Verb verb(app, "watch", "The same as check, on every save");
-  add_check_words(verb, *rest, *id);
-  verb.runs([&command, id, rest] { watch(command, read_check_words(*id, *rest)); });
+  auto given = std::make_shared<GivenWords>();
+  Verb verb(app, "watch", "The same as check, on every save; Ctrl-C ends it");
+  add_check_words(verb, *given);
+  verb.footer(
+      "It runs until Ctrl-C. Below the verdicts stand what the last save has changed, and what "
+      "comes next.");
+  verb.runs([&command, given] { watch(command, read_check_words(*given)); });
 }
 
 }  // namespace tumble::cli

@@ -42,7 +42,7 @@ void FormerRun::compare(const History& shown, bool has_ended) {
   const Trajectory a = run_.part(compared_until_, until), b = shown.part(compared_until_, until);
   if (a.frames.empty() || b.frames.empty()) return;
   const auto found =
-      report::compare(shown.outline(), shown.radii_m(), a, "the run before", b, "this run");
+      report::compare(shown.outline(), shown.radii_m(), b, "this run", a, "the run before");
   compared_until_ = until;
   Json words{{"kind", "difference"}, {"same_until_s", end}};
   if (found.first) {

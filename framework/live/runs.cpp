@@ -71,15 +71,19 @@ void Runs::listen_to(std::unique_ptr<Simulator>& simulator) {
     }
     if (is_open || !simulator || simulator.get() != before) return;
     if (auto loss = simulator->loss()) {
-      (*loss)["ends_run"] = simulator == running_;
+      (*loss)["ends_run"] = true;
+      if (simulator == starting_) end_former(*loss);
       shown_.tell_trouble(*loss);
       find_place(simulator->talk);
       if (simulator == starting_) settled_();
     }
     simulator.reset();
   } catch (const std::exception& error) {
-    shown_.tell_trouble(
-        {{"title", "The process with your code is out of step"}, {"text", error.what()}});
+    Json trouble{{"title", "The process with your code is out of step"},
+                 {"text", error.what()},
+                 {"ends_run", true}};
+    if (simulator == starting_) end_former(trouble);
+    shown_.tell_trouble(trouble);
     simulator.reset();
   }
 }
@@ -92,12 +96,15 @@ void Runs::hear_starting(Record record) {
   }
   if (record.kind != RecordKind::kEnd && record.kind != RecordKind::kRefused) return;
   starting_->has_ended = true;
+  const bool is_of_save = starting_->reason == "code";
   Json said = Json::parse(record.bytes);
   bool compiles = true;
   if (record.kind == RecordKind::kEnd) {  // before its first frame
     const std::string why = said.value("stopped_by", "");
-    shown_.tell_trouble({{"title", "The run stopped"},
-                         {"text", why.empty() ? "it ended before its first frame" : why}});
+    Json trouble{{"title", "The run stopped"},
+                 {"text", why.empty() ? "it ended before its first frame" : why}};
+    if (is_of_save) end_former(trouble);
+    shown_.tell_trouble(trouble);
     if (!why.empty()) find_place(why);
   } else {
     const std::string problem = said.at("problem");
@@ -107,10 +114,19 @@ void Runs::hear_starting(Record record) {
                                                          : "The scene cannot begin";
     said["text"] = problem;
     if (!compiles) said["remedy"] = "";  // for the command line
+    if (is_of_save && compiles) end_former(said);
+    if (is_of_save) said["shows_former"] = true;
     shown_.tell_trouble(said);
   }
   scenes_.look_for_unsaved(wanted());
   if (compiles) settled_();
+}
+
+// The code of the run that is shown is no more: its clock must not go on under the words of what has
+// become of the new one.
+void Runs::end_former(Json& trouble) {
+  running_.reset();
+  trouble["ends_run"] = trouble["shows_former"] = true;
 }
 
 // The run that has started takes the place of the one before.

@@ -52,6 +52,7 @@ class Runs {
   void hear(Simulator& from, Record record);
   void hear_starting(Record record);
   void adopt(const std::string& head);
+  void end_former(Json& trouble);
   void add_push(const std::string& text);
   void find_place(const std::string& said);
 

@@ -1,6 +1,7 @@
 // tumble check as a student runs it, on files of this test beside the stub.
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -89,7 +90,8 @@ bool untouched() {
 TEST(Check, JsonOfAPatternThatNoTestHasIsRefused) {
   SKIP_UNLESS_UNTOUCHED();
   const File file(stub());
-  expect_said(check({file.path.string(), "--json", "nosuch.*"}), 2, {"no test has this name"});
+  expect_said(check({file.path.string(), "--json", "nosuch.*"}), 2,
+              {"is no part of a test's title or name, and no function", "All titles: --all"});
 }
 
 TEST(Check, WarningsOfTheFileAreShownAboveTheTests) {
@@ -228,10 +230,45 @@ TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
   const File file(stub());
   const ProgramOutcome outcome = check({file.path.string(), "ColisionImpuls.*"});
   EXPECT_EQ(outcome.code, 2) << outcome.printed;
-  EXPECT_NE(
-      outcome.printed.find("ColisionImpuls.*: no test has this name. Nearest: CollisionImpulse."),
-      std::string::npos)
+  EXPECT_NE(outcome.printed.find("ColisionImpuls.*: is no part of a test's title or name, and no "
+                                 "function. Nearest: 'Impulse of a central hit' "
+                                 "(CollisionImpulse."),
+            std::string::npos)
       << outcome.printed;
+}
+
+TEST(Check, ATitleOrAFunctionChoosesTests) {
+  SKIP_UNLESS_UNTOUCHED();
+  const File file(with_normals("return Vector2d(1.5 * e.y(), x.x() + e.x());"));
+  const std::string title = check({file.path.string(), "two WALLS"}).printed;
+  EXPECT_NE(title.find("\n1 test: 1 not attempted"), std::string::npos) << title;
+  EXPECT_NE(title.find("CollisionImpulse.TwoWallsExchangeNone"), std::string::npos) << title;
+  EXPECT_EQ(check({file.path.string(), "Two", "walls"}).printed, title) << "words of one title";
+  const std::string function = check({file.path.string(), "contact_normal_vertex_vertex"}).printed;
+  EXPECT_NE(function.find("wrong in contact_normal_vertex_vertex"), std::string::npos) << function;
+  EXPECT_EQ(function.find("wrong in contact_normal_vertex_edge"), std::string::npos) << function;
+  EXPECT_EQ(function.find("not attempted"), std::string::npos) << function;
+  expect_said(check({file.path.string(), "two wals"}), 2,
+              {"Nearest: 'Two walls' (CollisionImpulse.TwoWallsExchangeNone)."});
+  expect_said(check({file.path.string(), "colision_impulse"}), 2, {"Nearest: collision_impulse."});
+}
+
+TEST(Check, RightTestsAreOneLineAGroupAndNoLineIsWiderThanAScreen) {
+  SKIP_UNLESS_UNTOUCHED();
+  const File file(with_normals(
+      "const Vector2d n(e.y(), -e.x());\n  return n.dot(x - a) < 0 ? Vector2d(-n) : n;"));
+  const std::string folded = check({file.path.string()}).printed,
+                    whole = check({file.path.string(), "--all"}).printed;
+  EXPECT_NE(folded.find("\n        3 of  5  Contact normal 2d         2 wrong\n"),
+            std::string::npos)
+      << folded;
+  EXPECT_EQ(count(folded, "ContactNormal2d.VertexEdgeIsPerpendicularTowardsTheVertex"), 0);
+  EXPECT_EQ(count(whole, "ContactNormal2d.VertexEdgeIsPerpendicularTowardsTheVertex"), 1) << whole;
+  for (const std::string& printed : {folded, whole}) {
+    std::istringstream lines(printed);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
+    EXPECT_LT(printed.find("\nmend first\n"), printed.find("\n72 tests: "));
+  }
 }
 
 TEST(Check, AMissingFileAndAnUnknownAssignmentAreReportedWithTheRemedy) {

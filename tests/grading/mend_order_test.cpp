@@ -109,13 +109,88 @@ TEST(MendOrder, ALineThatIsKnownIsTheOnlyOne) {
   EXPECT_EQ(exact_place_of(result("A.One", Verdict::kCrashed, "apart", "SIGSEGV, in apart")), "");
 }
 
+// Two functions that cost the same, one of them by a slip that costs more elsewhere; a third that
+// stories name in two ways.
+std::vector<TestResult> slips() {
+  return {result("G.KeepsNothingBetweenCalls", Verdict::kWrong, "apart", "\n  look at:  apart"),
+          result("A.One", Verdict::kWrong, "apart", "\n  likely:   a factor\n"),
+          result("A.Two", Verdict::kWrong, "apart", "\n  likely:   the frame\n"),
+          result("A.Three", Verdict::kWrong, "apart", "\n  likely:   the frame\n"),
+          result("H.One", Verdict::kWrong, "spin", "\n  look at:  it"),
+          result("W.One", Verdict::kNotAttempted, "write", "write is to be written"),
+          result("V.One", Verdict::kWrong, "drop", "\n  likely:   the sign\n"),
+          result("R.One", Verdict::kRight, "resolve")};
+}
+
+TEST(MendOrder, AHeadingNamesTheSlipsThatItsStoriesNameTheCommonOneFirst) {
+  const auto headings = headings_of(slips(), kSource);
+  EXPECT_EQ(headings[0],
+            "wrong in apart (which begins in line 9); likely: the frame; or: a factor");
+  for (const int i : {1, 2, 3}) EXPECT_EQ(headings[static_cast<std::size_t>(i)], headings[0]);
+  EXPECT_EQ(headings[4], "wrong in spin");
+}
+
+TEST(MendOrder, TheStoryThatNamesTheSlipComesFirstAndTheOneOfTwoCallsLast) {
+  const std::vector<TestResult> results = slips();
+  const auto groups =
+      in_order_of_mending(results, headings_of(results, kSource), {9, 0.1, 0.1, 0.1, 2, 99, 2, 99});
+  ASSERT_EQ(groups.size(), 4u);
+  EXPECT_EQ(groups[0].tests, (std::vector<std::size_t>{1, 2, 3, 0}));
+  EXPECT_NE(groups[1].heading.find("drop"), std::string::npos)
+      << "of equal ones the named slip";
+  EXPECT_NE(groups[2].heading.find("spin"), std::string::npos);
+  EXPECT_FALSE(groups[3].is_attempted) << "last what is not written";
+}
+
+TEST(MendOrder, OneSlipUnderTwoHeadingsWeighsWhatBothCost) {
+  std::vector<TestResult> results = slips();
+  results[4].story = "\n  likely:   the sign\n";
+  results[0].last_call = results[1].last_call = "push";
+  const auto groups =
+      in_order_of_mending(results, headings_of(results, kSource), {1, 1, 1, 1, 1.5, 0, 1.5, 0});
+  ASSERT_GE(groups.size(), 3u);
+  EXPECT_NE(groups[0].heading.find("the sign"), std::string::npos) << groups[0].heading;
+  EXPECT_NE(groups[1].heading.find("the sign"), std::string::npos) << groups[1].heading;
+}
+
+TEST(VerdictTable, TestsOfOneGroupAreOneLineWhereTheyAreMany) {
+  std::vector<TestResult> results;
+  for (int i = 0; i < 14; ++i)
+    results.push_back(result((i < 10 ? "RayTriangle.T" : "Rk4Step.T") + std::to_string(i),
+                             i == 12 ? Verdict::kWrong : Verdict::kRight, "apart"));
+  std::ostringstream folded, whole;
+  print_verdicts(folded, results, {}, {});
+  EXPECT_NE(folded.str().find("\n  ok   10 of 10  Ray triangle\n        3 of  4  Rk4 step      "
+                              "1 wrong\n"),
+            std::string::npos)
+      << folded.str();
+  EXPECT_EQ(folded.str().find("RayTriangle.T3"), std::string::npos) << folded.str();
+  print_verdicts(whole, results, {}, {.all = true});
+  EXPECT_NE(whole.str().find("RayTriangle.T3"), std::string::npos) << whole.str();
+}
+
+TEST(VerdictTable, LinesAreBrokenBehindTheirLabels) {
+  std::ostringstream out;
+  print_verdicts(
+      out,
+      {result(
+          "A.One", Verdict::kWrong, "apart",
+          "\n  scene:    a ball that falls on a plane and is thrown back by it, several times in "
+          "a row\n  likely:   the sign")},
+      {}, {.columns = 60, .source = kSource});
+  EXPECT_NE(out.str().find("    scene:    a ball that falls on a plane and is thrown\n"
+                           "              back by it, several times in a row\n    likely:"),
+            std::string::npos)
+      << out.str();
+}
+
 TEST(VerdictTable, SaysWhatWasNotRunAndWhatToMendFirst) {
   std::ostringstream out;
-  print_verdicts(out, a_loop_in_velocity(), {}, false, kSource);
+  print_verdicts(out, a_loop_in_velocity(), {}, {.source = kSource});
   const std::string text = out.str();
   EXPECT_NE(text.find("4 tests: 2 out of time or memory, 2 not run"), std::string::npos) << text;
   EXPECT_NE(text.find("mend first\n    out of time or memory in velocity (which begins in line 3): "
-                      "mend this first (4 tests)\n"),
+                      "mend this first\n        (4 tests)\n"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("velocity begins in line 3\n"), std::string::npos) << text;

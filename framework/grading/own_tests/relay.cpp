@@ -7,7 +7,6 @@
 #include <iostream>
 #include <set>
 
-#include "framework/core/terminal.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/test_program/test_words.h"
 #include "framework/grading/verdicts/call_log.h"
@@ -206,7 +205,9 @@ int run(const char* id, const Relay& relay, int argc, char** argv) {
     std::cout << "no test ran: the file has none, or its program ends before the first\n";
     return static_cast<int>(ExitCode::kCheckFailed);
   }
-  print_verdicts(std::cout, results, {}, shows_colours(STDOUT_FILENO));
+  TableWords table = table_words_for(STDOUT_FILENO);
+  table.all = true;
+  print_verdicts(std::cout, results, {}, table);
   return static_cast<int>(exit_code(results));
 }
 

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/core/terminal.h"
 #include "framework/grading/test_program/test_words.h"
 #include "framework/grading/test_program/time_budget.h"
 #include "framework/grading/verdicts/verdict_table.h"
@@ -29,7 +28,8 @@ struct Words {
   bool debug = false;
   TestLimits limits{.own_s = kTestOwn};
   TimeRules time{.budget_s = kBudget, .full_timeouts = 1, .suspect_own_s = kSuspectOwn};
-  std::string filter;  // GoogleTest's, patterns joined by ':'
+  std::vector<std::string> chosen;  // test_words.h
+  bool all = false;                 // a line for each test
 };
 
 Words read_words(int argc, char** argv) {
@@ -49,47 +49,55 @@ Words read_words(int argc, char** argv) {
       words.time.budget_s = number_word(word, value());
     else if (word == "--debug")
       words.debug = true;
+    else if (word == "--all")
+      words.all = true;
     else if (word.starts_with("--gtest_"))
       continue;  // already read by GoogleTest
     else if (word.starts_with("-"))
       throw UserError(word, "is not known here",
                       "Known: --json FILE, --rubric FILE, --source FILE, --wall-s S, --budget-s S, "
-                      "--debug, and "
-                      "patterns of test names.");
+                      "--all, --debug, and patterns of test names, parts of titles, functions.");
     else
-      words.filter += (words.filter.empty() ? "" : ":") + word;
+      words.chosen.push_back(word);
   }
   return words;
 }
 
-int run(int argc, char** argv) {
+int run(const std::vector<std::string>& functions, int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   const Words words = read_words(argc, argv);
   if (words.debug) {
-    if (!words.filter.empty()) ::testing::GTEST_FLAG(filter) = words.filter;
+    std::string filter;
+    for (const std::string& word : words.chosen) filter += (filter.empty() ? "" : ":") + word;
+    if (!filter.empty()) ::testing::GTEST_FLAG(filter) = filter;
     return RUN_ALL_TESTS();
   }
   TestLimits limits = words.limits;
+  limits.source = words.source;
   TimeBudget budget(words.time);
+  const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);
+  const TestChoice choice(words.chosen, linked_tests(), rubric, functions);
   std::vector<TestResult> results;
-  for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
+  for (const std::string& test : choice.to_run()) {
     limits.call_own_s = budget.suspects();
     results.push_back(budget.is_used_up() ? budget.not_run(test)
                                           : run_isolated(test, limits, Process::kStudents));
     if (!results.back().not_run) budget.charge(results.back());
   }
-  const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);
+  std::erase_if(results, [&](const TestResult& result) { return !choice.has(result); });
   if (!words.json.empty()) write_results(words.json, results);
-  const std::string source = words.source.empty() ? "" : text_of(words.source);
-  print_verdicts(std::cout, results, rubric, shows_colours(STDOUT_FILENO), source);
+  TableWords table = table_words_for(STDOUT_FILENO);
+  if (!words.source.empty()) table.source = text_of(words.source);
+  table.all = words.all;
+  print_verdicts(std::cout, results, rubric, table);
   return static_cast<int>(exit_code(results));
 }
 
 }  // namespace
 
-int run_check_program(int argc, char** argv) {
+int run_check_program(const std::vector<std::string>& functions, int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return run(functions, argc, argv);
   } catch (const UserError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return static_cast<int>(ExitCode::kUserError);

@@ -19,6 +19,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/grading/test_program/crash_line.h"
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/verdicts/death.h"
 #include "framework/grading/verdicts/own_time.h"
@@ -37,6 +38,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 CallLog* shared_log = nullptr;
+DyingPlaces* shared_places = nullptr;
 
 // s of CPU time: the judge's part of a test takes at most a few
 constexpr double kFreeJudging = 10.0;
@@ -96,6 +98,7 @@ void write_all(int fd, const std::string& text) {
   ::setrlimit(RLIMIT_FSIZE, &file);
   ::setrlimit(RLIMIT_CORE, &core);
   if (!TUMBLE_SANITIZED) ::setrlimit(RLIMIT_AS, &memory);
+  if (!TUMBLE_SANITIZED && !limits.source.empty()) note_places_when_dying(*shared_places);
 
   auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
   delete listeners.Release(listeners.default_result_printer());
@@ -209,7 +212,8 @@ std::string read_printed(int fd) {
 }
 
 // The verdict on a test whose process gave no normal report.
-void judge_death(TestResult& result, const CallLog& log, int status, const Answer& answer) {
+void judge_death(TestResult& result, const CallLog& log, int status, const Answer& answer,
+                 const std::string& source) {
   if (log.noted) {
     result.verdict = log.verdict;
     result.story = log.story;
@@ -225,6 +229,8 @@ void judge_death(TestResult& result, const CallLog& log, int status, const Answe
     result.story = WIFSIGNALED(status)
                        ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
                        : exit_story(WEXITSTATUS(status), log.last_call, log.in_call);
+    const std::string line = log.in_call ? line_of_crash(*shared_places, source) : "";
+    if (!line.empty()) result.story += ", " + line;
     if (log.in_call) result.story += asked_words(log.asked());
   }
 }
@@ -318,9 +324,14 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
   if (shared_log == nullptr) {
     void* page =
         ::mmap(nullptr, sizeof(CallLog), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (page == MAP_FAILED) return result.story = "no memory for the log of calls", result;
+    void* places = ::mmap(nullptr, sizeof(DyingPlaces), PROT_READ | PROT_WRITE,
+                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page == MAP_FAILED || places == MAP_FAILED)
+      return result.story = "no memory for the log of calls", result;
     shared_log = static_cast<CallLog*>(page);
+    shared_places = static_cast<DyingPlaces*>(places);
   }
+  new (shared_places) DyingPlaces;
   CallLog& log = *new (shared_log) CallLog;
   const auto start = Clock::now();
   int answer_pipe[2];
@@ -344,7 +355,7 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
     if (in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0)
       judge_answer(result, log, answer.text);
     else
-      judge_death(result, log, status, answer);
+      judge_death(result, log, status, answer, limits.source);
     result.timed_out_s = log.noted ? log.timed_out_s : answer.timed_out_s;
     const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
     // The judge's own CPU time is charged where it exceeds the cost of right answers.

@@ -17,6 +17,8 @@ struct TestLimits {
   std::uint64_t memory_bytes = 2ull << 30;  // of address space; a module's test needs a few MB
   // [s], shorter limits of one call, by function (see TimeBudget)
   std::map<std::string, double> call_own_s = {};
+  // the user's file, where its code is linked in: a crash is told with its line; may be empty
+  std::string source = "";
 };
 
 /// Whose code runs in the test's process, and so whose fault a crash of that process is.

@@ -43,17 +43,46 @@ std::string likely_in(const std::string& story) {
   return story.substr(begin, story.find('\n', begin) - begin);
 }
 
-// Where all that is called likely under a heading is the same, the heading says it.
+// What is called likely under each heading: first what most tests name.
+std::map<std::string, std::vector<std::string>> likely_under(
+    const std::vector<TestResult>& results, const std::vector<std::string>& headings) {
+  std::map<std::string, std::vector<std::pair<std::string, int>>> counts;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::string words = likely_in(results[i].story);
+    if (words.empty()) continue;
+    auto& all = counts[headings[i]];
+    auto one =
+        std::find_if(all.begin(), all.end(), [&](const auto& x) { return x.first == words; });
+    if (one == all.end()) one = all.insert(all.end(), {words, 0});
+    ++one->second;
+  }
+  std::map<std::string, std::vector<std::string>> likely;
+  for (auto& [heading, all] : counts) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    for (const auto& [words, tests] : all) likely[heading].push_back(words);
+  }
+  return likely;
+}
+
 std::vector<std::string> with_likely(const std::vector<TestResult>& results,
                                      std::vector<std::string> headings) {
-  std::map<std::string, std::set<std::string>> likely;
-  for (std::size_t i = 0; i < results.size(); ++i)
-    if (const std::string words = likely_in(results[i].story); !words.empty())
-      likely[headings[i]].insert(words);
-  for (std::string& heading : headings)
-    if (const auto all = likely.find(heading); all != likely.end() && all->second.size() == 1)
-      heading += "; likely: " + *all->second.begin();
+  constexpr std::size_t kNamed = 2;
+  const auto likely = likely_under(results, headings);
+  for (std::string& heading : headings) {
+    const auto all = likely.find(heading);
+    if (all == likely.end()) continue;
+    heading += "; likely: " + all->second.front();
+    for (std::size_t k = 1; k < std::min(kNamed, all->second.size()); ++k)
+      heading += "; or: " + all->second[k];
+  }
   return headings;
+}
+
+// How much a test says of the mistake: 0 names it, 2 fails for any mistake of the function.
+int rank_of(const TestResult& result) {
+  if (!likely_in(result.story).empty()) return 0;
+  return result.test.ends_with(".KeepsNothingBetweenCalls") ? 2 : 1;
 }
 
 }  // namespace
@@ -141,6 +170,60 @@ std::vector<std::string> headings_of(const std::vector<TestResult>& results,
   std::vector<std::string> headings;
   for (const TestResult& result : results) headings.push_back(heading_of(result));
   return with_likely(results, std::move(headings));
+}
+
+std::vector<HeadingGroup> in_order_of_mending(const std::vector<TestResult>& results,
+                                              const std::vector<std::string>& headings,
+                                              const std::vector<double>& points) {
+  struct Weighed {
+    HeadingGroup group;
+    std::string likely;
+    bool is_first = false;   // kept tests from running
+    double of_slip = 0.0;    // points under all headings with this slip
+    std::size_t family = 0;  // of headings with one slip: they stay together
+  };
+  const bool used_up = !what_used_the_time(results).empty();
+  const auto likely = likely_under(results, headings);
+  std::vector<Weighed> all;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (headings[i].empty()) continue;
+    auto one = std::find_if(all.begin(), all.end(),
+                            [&](const Weighed& x) { return x.group.heading == headings[i]; });
+    if (one == all.end()) {
+      one = all.insert(all.end(), Weighed{});
+      one->group.heading = headings[i];
+      one->group.is_attempted = results[i].verdict != Verdict::kNotAttempted;
+      if (const auto named = likely.find(headings[i]); named != likely.end())
+        one->likely = named->second.front();
+    }
+    one->group.tests.push_back(i);
+    one->group.points += points[i];
+    one->is_first = one->is_first || (used_up && is_cut_off(results[i]));
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    Weighed& one = all[k];
+    one.family = k;
+    one.of_slip = one.group.points;
+    for (std::size_t m = 0; m < all.size() && !one.likely.empty(); ++m) {
+      if (m == k || all[m].likely != one.likely) continue;
+      one.of_slip += all[m].group.points;
+      one.family = std::min(one.family, m);
+    }
+    std::stable_sort(
+        one.group.tests.begin(), one.group.tests.end(),
+        [&](std::size_t a, std::size_t b) { return rank_of(results[a]) < rank_of(results[b]); });
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Weighed& a, const Weighed& b) {
+    if (a.group.is_attempted != b.group.is_attempted) return a.group.is_attempted;
+    if (a.is_first != b.is_first) return a.is_first;
+    if (a.of_slip != b.of_slip) return a.of_slip > b.of_slip;
+    if (a.likely.empty() != b.likely.empty()) return b.likely.empty();
+    if (a.family != b.family) return a.family < b.family;
+    return a.group.points > b.group.points;
+  });
+  std::vector<HeadingGroup> groups;
+  for (Weighed& one : all) groups.push_back(std::move(one.group));
+  return groups;
 }
 
 }  // namespace tumble::grading

@@ -26,9 +26,28 @@ std::string what_used_the_time(const std::vector<TestResult>& results);
 std::string exact_place_of(const TestResult& result);
 
 /// What a test stands under, in words for its author: one heading for all that one function
-/// explains. Empty for a test that is right, or is not judged.
+/// explains, with the slip that its stories call likely (of several the two that most tests name).
+/// Empty for a test that is right, or is not judged.
 ///   "out of time or memory in linear_acceleration (which begins in line 53): mend this first"
 std::vector<std::string> headings_of(const std::vector<TestResult>& results,
                                      const std::string& source);
+
+/// All that stands under one heading.
+struct HeadingGroup {
+  std::string heading;
+  // places in the list of results: what names a slip first; last what fails for any mistake
+  std::vector<std::size_t> tests;
+  double points = 0.0;
+  bool is_attempted = true;
+};
+
+/// The headings in the order in which they are to be mended: before all what kept tests from
+/// running, then what costs most, where one slip is named under several headings by what it costs
+/// in all of them; last what is not attempted.
+/// @param headings  of headings_of()
+/// @param points    of each result
+std::vector<HeadingGroup> in_order_of_mending(const std::vector<TestResult>& results,
+                                              const std::vector<std::string>& headings,
+                                              const std::vector<double>& points);
 
 }  // namespace tumble::grading

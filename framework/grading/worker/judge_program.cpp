@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/core/terminal.h"
 #include "framework/grading/test_program/test_runner.h"
 #include "framework/grading/test_program/test_words.h"
 #include "framework/grading/test_program/time_budget.h"
@@ -40,8 +39,9 @@ TestResult not_run_for_busy(const std::string& test) {
 
 struct Words {
   WorkerOptions worker;
-  std::string json, filter, source;
-  bool list = false, quick = false;
+  std::string json, source;
+  std::vector<std::string> chosen;  // test_words.h
+  bool list = false, quick = false, all = false;
   Rubric rubric;
   TimeRules time;
 };
@@ -69,6 +69,8 @@ Words read_words(const char* id, int argc, char** argv) {
       words.source = value();
     else if (word == "--list")
       words.list = true;
+    else if (word == "--all")
+      words.all = true;
     else if (word == "--plain")
       words.worker.sandboxed = false;
     else if (word == "--quick")
@@ -80,9 +82,10 @@ Words read_words(const char* id, int argc, char** argv) {
       throw UserError(
           word, "is not known here",
           "Known: --submission FILE.so, --json FILE, --rubric FILE, --source FILE, --budget-s S, "
-          "--plain, --quick, --list, and patterns of test names.");
+          "--plain, --quick, --all, --list, and patterns of test names, parts of titles, "
+          "functions.");
     } else {
-      words.filter += (words.filter.empty() ? "" : ":") + word;
+      words.chosen.push_back(word);
     }
   }
   if (words.worker.module.empty() && !words.list)
@@ -157,10 +160,12 @@ std::vector<TestResult> run_in_halves(const Words& words, const Attach& attach,
   return results;
 }
 
-int run(const char* id, const Attach& attach, int argc, char** argv) {
+int run(const char* id, const std::vector<std::string>& functions, const Attach& attach, int argc,
+        char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   const Words words = read_words(id, argc, argv);
-  const std::vector<std::string> tests = chosen_tests(linked_tests(), words.filter);
+  const TestChoice choice(words.chosen, linked_tests(), words.rubric, functions);
+  const std::vector<std::string>& tests = choice.to_run();
   if (words.list) {
     for (const std::string& test : tests) std::cout << test << '\n';
     return static_cast<int>(ExitCode::kFine);
@@ -172,18 +177,22 @@ int run(const char* id, const Attach& attach, int argc, char** argv) {
     results = run_share(words, attach, tests, 0, 1);
     wait_for_all(0);
   }
+  std::erase_if(results, [&](const TestResult& result) { return !choice.has(result); });
   if (!words.json.empty()) write_results(words.json, results);
-  const std::string source = words.source.empty() ? "" : text_of(words.source);
-  print_verdicts(std::cout, results, words.rubric, shows_colours(STDOUT_FILENO), source);
+  TableWords table = table_words_for(STDOUT_FILENO);
+  if (!words.source.empty()) table.source = text_of(words.source);
+  table.all = words.all;
+  print_verdicts(std::cout, results, words.rubric, table);
   return static_cast<int>(exit_code(results));
 }
 
 }  // namespace
 
-int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach,
-                      int argc, char** argv) {
+int run_judge_program(const char* id, const std::vector<std::string>& functions,
+                      const std::function<void(modules::Connection&)>& attach, int argc,
+                      char** argv) {
   try {
-    return run(id, attach, argc, argv);
+    return run(id, functions, attach, argc, argv);
   } catch (const UserError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return static_cast<int>(ExitCode::kUserError);

@@ -3,7 +3,7 @@
 const byId = id => document.getElementById(id);
 
 const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
-const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false, finds: false, findsUntil: 0 };
+const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false, finds: false, findsUntil: 0, isFormerOnly: false, begunAt: 0 };
 
 // One after the other: a pull that came behind its release would hold the body for ever.
 let posted = Promise.resolve();
@@ -105,7 +105,7 @@ function drawMarks() {
   g.fillStyle = '#d0306c';
   for (const push of page.pushes.slice(-400)) g.fillRect(x(push.start_s) - 1, 0, 2, height);
   if (page.difference && page.difference.time_s !== undefined) {
-    g.fillStyle = style.getPropertyValue('--bad');
+    g.fillStyle = style.getPropertyValue('--now');
     g.beginPath();
     g.moveTo(x(page.difference.time_s), height);
     g.lineTo(x(page.difference.time_s) - 5, 0);
@@ -161,8 +161,10 @@ function showHint() {
   if (!run) { byId('hint').textContent = ''; return; }
   const words = { push: 'Drag from a body and let go: a force pushes it.', pull: run.facts.can_pull ? 'Drag a body: the spring of a3 holds it.' : 'Pulling needs the engine rd and the spring of a3.', look: 'Drag turns the view.' };
   if (page.ended) words.push = words.pull = `The run has ended${run.stopped ? '' : `, because it lasts ${short(run.facts.duration_s)} s`}: start over, or go back to an earlier instant.`;
+  const former = !page.isFormerOnly ? '' : page.ended ? 'The run before, at its end: the file as it was saved last has moved nothing. ' : 'The run before goes on: the file as it was saved last has moved nothing yet. ';
+  if (page.isFormerOnly && page.ended) words.push = words.pull = words.look = 'Go back to an earlier instant to look at it.';
   const lost = page.isLost ? ' All bodies have left the picture: “All” finds them, “Follow” keeps the chosen one in it.' : '';
-  byId('hint').textContent = (page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.') + lost;
+  byId('hint').textContent = former + (page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.') + lost;
 }
 
 // ---- Panes ----

@@ -39,6 +39,8 @@ function begin(message) {
   }
   page.run.about.forces = [...head.scene.forces.filter(force => !page.pushes.some(push => Math.abs(force.start - push.start_s) < 1e-9)), ...page.pushes.map((push, i) => forceOf(push, page.pushes[i + 1]))];
   byId('limit').hidden = true;
+  showFormerOnly(false);
+  page.begunAt = performance.now();
   page.needsStage = !isBack;
   page.follows = true;
   page.ended = false;
@@ -76,6 +78,7 @@ function beginScene(message) {
   page.scene = message.name;
   page.canSave = message.can_save;
   page.run = page.former = page.difference = page.asked = null;
+  showFormerOnly(false);
   page.pushes = [];
   byId('save').disabled = !message.can_save;
   byId('save').title = message.can_save ? 'Save the scene with what was done by hand: it runs again byte for byte' : 'This scene is made by code and has no file to add pushes to';
@@ -84,16 +87,36 @@ function beginScene(message) {
   panes.scenes.now(message.name);
 }
 
-// Whether the run differs from the one before; after a save that changed nothing in it, why that may be.
+// A saved file that does not compile, or whose run has ended before its first frame: what is drawn is the run before,
+// and nothing that is said of it is of the saved file.
+function showFormerOnly(is) {
+  page.isFormerOnly = is;
+  byId('scene').classList.toggle('former', Boolean(is && page.ended));
+  showDifference();
+}
+
+// The program compares what there is every 0.4 s: that two runs are alike is worth saying of more than their start.
+const kAlikeFor = 1;   // s of the run, or of the clock
+
+function isTooEarly(message) { return message.time_s === undefined && !page.ended && message.same_until_s < kAlikeFor && performance.now() - page.begunAt < 1000 * kAlikeFor; }
+
+// "handle is 0.062 m from where it is in the run before"
+function differenceInWords(what) { return what.replace(/ is (\S+ m) from where it is in the run before$/, ' is then $1 away from its place in the run before'); }
+
+// Whether the run differs from the one before; after a save that changed nothing in it, why that may be. A difference is no fault:
+// the line has the colour of one only where the same save has broken tests.
 function showDifference() {
-  const message = page.difference, line = byId('difference');
-  line.hidden = !message;
-  if (!message) return;
+  const message = page.difference, line = byId('difference'), isEarly = Boolean(message) && isTooEarly(message);
+  line.hidden = !message || page.isFormerOnly || isEarly;
+  if (isEarly) setTimeout(showDifference, 1000 * kAlikeFor);
+  if (line.hidden) return;
   const isDifferent = message.time_s !== undefined, hasStopped = Boolean(page.run && page.run.stopped), isSave = !isDifferent && !hasStopped && page.reason === 'code' && page.savedId;
-  line.classList.toggle('same', !isDifferent);
+  const change = page.reason === 'code' && page.savedId ? panes.verdicts.changeOf(page.savedId) : null, isWorse = Boolean(change) && change.broken > change.mended;
+  line.classList.toggle('worse', isDifferent && isWorse);
   byId('toDifference').hidden = !isDifferent;
   byId('toScenes').hidden = !isSave;
-  line.querySelector('span').textContent = isDifferent ? `First difference from the run before, at ${short(message.time_s, 6)} s: ${message.what}` : `${hasStopped ? 'This run has stopped; it is the same' : 'The same'} as the run before until ${short(message.same_until_s, 4)} s.${isSave && page.asked ? ` ${adviceOnSame(page.asked, page.savedId)}` : ''}`;
+  const tests = change && isDifferent && change.mended + change.broken > 0 ? ` Of the tests this save has mended ${change.mended} and broken ${change.broken}.` : '';
+  line.querySelector('span').textContent = isDifferent ? `Another motion than in the run before, from ${short(message.time_s, 6)} s on: ${differenceInWords(message.what)}.${tests}` : `${hasStopped ? 'This run has stopped; it is the same' : 'The same'} as the run before until ${short(message.same_until_s, 4)} s.${isSave && page.asked ? ` ${adviceOnSame(page.asked, page.savedId)}` : ''}`;
   document.body.dataset.difference = isDifferent ? String(message.time_s) : '';
 }
 
@@ -143,7 +166,7 @@ const told = {
   },
   run: begin,
   starting(message) { say({ code: 'compiling …', change: 'starting over …' }[message.reason] || 'starting …', 'busy'); },
-  code_saved(message) { page.isCompiling = true; say(`${message.file} was saved: compiling …`, 'busy'); page.savedId = message.id; panes.verdicts.saved(message.id); document.body.dataset.saved = String(performance.now()); },
+  code_saved(message) { page.isCompiling = true; say(`${message.file} was saved: compiling …`, 'busy'); page.savedId = message.id; panes.verdicts.saved(message.id); showDifference(); document.body.dataset.saved = String(performance.now()); },
   pace(message) { page.paused = message.paused; page.speed = message.speed; byId('speed').value = String(message.speed); showTime(); },
   aimed(message) {
     const run = page.run;
@@ -185,8 +208,9 @@ const told = {
       page.ended = true;
       page.run.stopped = page.run.stopped || message.title;
       showDifference();
-      showHint();
     }
+    if (message.shows_former && page.run) showFormerOnly(true);
+    showHint();
     say(message.title.toLowerCase(), 'bad');
     showTime();
   },
@@ -200,6 +224,7 @@ const told = {
     panes.verdicts.set(message);
     document.body.dataset.verdicts = JSON.stringify(Object.fromEntries(message.tests.map(test => [test.test, test.verdict])));
     document.body.dataset.judged = String(Number(document.body.dataset.judged || 0) + 1);
+    showDifference();
   },
   difference(message) {
     page.difference = message;

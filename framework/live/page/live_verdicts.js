@@ -53,23 +53,28 @@ class VerdictPane {
   }
 
   noteInWords() {
-    const { kind, id } = this.note, is = this.all.has(id);
-    if (kind === 'busy') return `The tests of ${id} run …`;
-    if (kind === 'saved') return `Saved: the tests of ${id} run when it has compiled.`;
-    return `The file of ${id} as it was saved last does not compile: no test of it ran.${is ? ' What stands below is of the save before.' : ''}`;
+    const { kind, id } = this.note, before = this.all.has(id) ? ' What stands below in grey is of the code before.' : '';
+    if (kind === 'busy') return `The tests of ${id} run …${before}`;
+    if (kind === 'saved') return `Saved: the tests of ${id} run when it has compiled.${before}`;
+    return `The file of ${id} as it was saved last does not compile: no test of it ran.${before}`;
   }
 
   show() {
     const open = new Set([...this.box.querySelectorAll('details[open]')].map(details => details.dataset.test));
     this.box.textContent = '';
     this.box.append(this.asked);
-    if (this.note) this.box.append(html('p', { className: this.note.kind === 'refused' ? 'bad' : 'soft' }, this.noteInWords()));
+    if (this.note) this.box.append(html('p', { className: `note${this.note.kind === 'refused' ? ' bad' : ''}`, role: 'status' }, this.noteInWords()));
     if (this.all.size === 0 && !this.note) this.box.append(html('p', { className: 'soft' }, 'No test has run. They run when you save your file.'));
     const ids = [...this.all.keys()].sort((a, b) => (b === this.now) - (a === this.now) || (a < b ? -1 : 1));
     for (const id of ids) {
-      const v = this.all.get(id);
-      if (id === this.now) { this.showOne(v, this.box, open); continue; }
-      const folded = html('details', { className: 'story' }, html('summary', {}, v.said ? `${v.title || id}: no test ran` : this.countInWords(v)));
+      const v = this.all.get(id), isOld = Boolean(this.note && this.note.id === id);
+      if (id === this.now) {
+        const shown = html('div', { className: isOld ? 'old' : '' });
+        this.showOne(v, shown, open);
+        this.box.append(shown);
+        continue;
+      }
+      const folded = html('details', { className: isOld ? 'story old' : 'story' }, html('summary', {}, v.said ? `${v.title || id}: no test ran` : this.countInWords(v)));
       folded.dataset.test = `of ${id}`;
       folded.open = open.has(folded.dataset.test);
       this.showOne(v, folded, open);
@@ -86,11 +91,9 @@ class VerdictPane {
 
   showOne(v, box, open) {
     if (v.said) { box.append(html('h2', { className: 'bad' }, `${v.file || v.id}: no test ran`), html('pre', {}, v.said)); return; }
-    const right = v.tests.filter(test => test.verdict === 'right'), before = this.before.get(v.id) || new Map();
-    const mended = v.tests.filter(test => before.has(test.test) && test.verdict === 'right' && before.get(test.test) !== 'right').length;
-    const broken = v.tests.filter(test => before.get(test.test) === 'right' && test.verdict !== 'right' && test.verdict !== 'not run').length;
+    const right = v.tests.filter(test => test.verdict === 'right'), { mended, broken } = this.changeOf(v.id) || { mended: 0, broken: 0 };
     box.append(html('p', { className: 'count' }, this.countInWords(v)));
-    if (mended + broken > 0 && !(this.note && this.note.id === v.id)) box.append(html('p', {}, html('span', { className: 'good' }, `${mended} mended`), ', ', html('span', { className: broken ? 'bad' : '' }, `${broken} broken`), ' by this save.'));
+    if (mended + broken > 0) box.append(html('p', {}, html('span', { className: 'good' }, `${mended} mended`), ', ', html('span', { className: broken ? 'bad' : '' }, `${broken} broken`), ' by this save.'));
     const choice = html('select', { ariaLabel: 'Grouping of the stories' }, html('option', { value: 'cause' }, 'by likely cause'), html('option', { value: 'group' }, 'by subject of the test'));
     choice.value = this.by;
     choice.addEventListener('change', () => { this.by = choice.value; this.show(); });
@@ -109,19 +112,27 @@ class VerdictPane {
     }
   }
 
-  // What costs most comes first; what is not attempted comes last.
+  // In the order of mending, as `check` has it: what costs most first, in it first what names a slip; last what is not attempted.
   groups(tests) {
-    const groups = new Map();
-    for (const test of tests) {
-      const isTodo = test.verdict === 'not attempted', likely = lineOf(test.story, 'likely');
+    const groups = new Map(), placeOf = test => (test.place === undefined ? Infinity : test.place);
+    for (const test of [...tests].sort((a, b) => placeOf(a) - placeOf(b) || 0)) {
       const where = test.function ? `${test.function}${test.line ? ` (line ${test.line})` : ''}` : test.group;
-      const cause = test.heading || (isTodo ? `not attempted: ${test.function || test.group}` : likely || `${test.verdict} in ${where}`);
+      const cause = test.heading || (test.verdict === 'not attempted' ? `not attempted: ${test.function || test.group}` : lineOf(test.story, 'likely') || `${test.verdict} in ${where}`);
       const name = this.by === 'cause' ? cause : test.group;
       if (!groups.has(name)) groups.set(name, []);
       groups.get(name).push(test);
     }
-    const weight = ([, list]) => list.reduce((sum, test) => sum + test.points, 0) + (list.every(test => test.verdict === 'not attempted') ? -1e6 : 0) + (list.some(test => test.is_first) ? 1e6 : 0);
-    return [...groups].sort((a, b) => weight(b) - weight(a));
+    return [...groups];
+  }
+
+  // What the last save has changed in the verdicts of an assignment; null while they are not known.
+  changeOf(id) {
+    const v = this.all.get(id), before = this.before.get(id);
+    if (!v || !before || before.size === 0 || v.said || (this.note && this.note.id === id)) return null;
+    return {
+      mended: v.tests.filter(test => before.has(test.test) && test.verdict === 'right' && before.get(test.test) !== 'right').length,
+      broken: v.tests.filter(test => before.get(test.test) === 'right' && test.verdict !== 'right' && test.verdict !== 'not run').length,
+    };
   }
 
   tag(test, v) {
