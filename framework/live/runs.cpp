@@ -126,7 +126,8 @@ void Runs::hear_starting(Record record) {
 // become of the new one.
 void Runs::end_former(Json& trouble) {
   running_.reset();
-  trouble["ends_run"] = trouble["shows_former"] = true;
+  trouble["ends_run"] = true;
+  trouble["shows_former"] = true;
 }
 
 // The run that has started takes the place of the one before.

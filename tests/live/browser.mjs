@@ -36,8 +36,8 @@ export class Browser {
     return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
   }
 
-  // @param size {width, height}; dark: the dark scheme
-  async open(address, { width = 1400, height = 900, dark = false } = {}) {
+  // @param size {width, height}; dark: the dark scheme; before: a script that runs before those of the page
+  async open(address, { width = 1400, height = 900, dark = false, before = '' } = {}) {
     const { targetId } = await this.send('Target.createTarget', { url: 'about:blank' });
     const { sessionId } = await this.send('Target.attachToTarget', { targetId, flatten: true });
     const page = new Page(this, targetId, sessionId);
@@ -46,6 +46,7 @@ export class Browser {
     await page.send('Log.enable');
     await page.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false });
     await page.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }] });
+    if (before) await page.send('Page.addScriptToEvaluateOnNewDocument', { source: before });
     await page.send('Page.navigate', { url: address });
     return page;
   }

@@ -1,8 +1,8 @@
 // A process that simulates, for tests of the session: it does what a file says, whose name is its
 // first word. "right": frames until nobody reads; "crash": three, then the message of a guarded
-// call and exit code 1; "die": three, then a signal; "refuse": a compiler's error; "stop": an end
-// before the first frame; "talk": as "right", with more on standard error than a pipe holds. After its
-// head it says that it has asked function f of module a1.
+// call and exit code 1; "crash_first": the message alone; "die": three, then a signal; "refuse": a
+// compiler's error; "stop": an end before the first frame; "talk": as "right", with more on standard
+// error than a pipe holds. After its head it says that it has asked function f of module a1.
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -27,6 +27,12 @@ int main(int argc, char** argv) {
     live::write_record(1, RecordKind::kEnd, R"({"stopped_by": "box: two bodies overlap"})");
     return 0;
   }
+  const auto crash = [] {
+    std::cerr << "frame /somewhere/a1_student.so 0x1234\n\ntumble: a1_impulse.cpp: crashed, in "
+                 "collision_impulse\n";
+    return 1;
+  };
+  if (what == "crash_first") return crash();
   if (what == "talk") std::cerr << std::string(1 << 20, '.') << std::flush;
   live::write_record(1, RecordKind::kHead,
                      R"({"from_s": 0, "scene": {"camera": {"eye": [0, -5, 0],)"
@@ -47,8 +53,6 @@ int main(int argc, char** argv) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (k < 3 || is_right) continue;
     if (what == "die") std::raise(SIGKILL);
-    std::cerr << "frame /somewhere/a1_student.so 0x1234\n\ntumble: a1_impulse.cpp: crashed, in "
-                 "collision_impulse\n";
-    return 1;
+    return crash();
   }
 }

@@ -11,7 +11,7 @@ import { Browser } from './browser.mjs';
 
 const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
 function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
-const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // three tests of seconds; all take minutes
+const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // four tests of seconds; all take minutes
 try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
 if (!existsSync(tumble)) skip(`${tumble} is not built`);
 const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
@@ -47,7 +47,7 @@ class Live {
   }
 }
 
-const tests = [], kQuick = ['a push', 'another origin', 'judges nobody'];
+const tests = [], kQuick = ['a push', 'another origin', 'judges nobody', 'of a save is said'];
 const test = (name, run, needsReference = true) => tests.push({ name, run, needsReference });
 const browser = new Browser();
 
@@ -84,6 +84,60 @@ test('a run on the reference judges nobody', async () => {
   await page.until('document.body.innerText.includes("This run asks a1 (reference) for")', 'what the reference is asked');
   await sleep(3000);   // verdicts of a starter's file take 2 s
   expect(!await page.value('document.body.dataset.verdicts'), 'the file beside the reference was judged');
+  await live.stop();
+});
+
+// What the program would tell is told by the test.
+test('what is said of a save is said of the saved code', async () => {
+  const live = await Live.start('poked_box', '--modules', 'reference');
+  const page = await browser.open(live.address, { before: `const Source = EventSource; window.EventSource = class extends Source { constructor(...words) { super(...words); window.stream = this; } };
+    window.tell = message => stream.dispatchEvent(new MessageEvent('say', { data: JSON.stringify(message) }));` });
+  const tell = message => page.value(`tell(${JSON.stringify(message)})`), text = id => page.value(`document.getElementById("${id}").hidden ? "" : document.getElementById("${id}").textContent.trim()`);
+  await page.until('tumble.run && tumble.run.length > 30 && tumble.hadStage', 'the motion');
+  const result = (name, verdict, more = {}) => ({ test: `Body.${name}`, group: 'Body', title: name, points: 1, verdict, ...more }), heading = 'wrong in f; likely: w stands left of q';
+  const verdicts = (...tests) => tell({ kind: 'verdicts', id: 'a1', title: 'Impulse', file: 'a1.cpp', handout: 'handouts/a1_impulse', said: '', tests });
+  const old = () => page.value('(() => { const old = document.querySelector("#panes .old"); return old ? `${getComputedStyle(old).opacity} ${old.textContent}` : ""; })()');
+  await verdicts(result('one', 'wrong', { heading, place: 1, story: 'two calls' }), result('two', 'wrong', { heading, place: 0, story: '\n  likely:   w stands left of q' }), result('three', 'right'));
+  expect(/likely: w stands left of q.*wrong: two.*wrong: one/s.test(await page.value('document.getElementById("panes").textContent')), 'the heading names the slip, and the story that names it is the first');
+  expect(await old() === '', 'verdicts of this code are not grey');
+  await page.value('tumble.reason = "code"');
+  await tell({ kind: 'code_saved', file: 'a1.cpp', id: 'a1' });
+  expect(/^0\.[1-6].*1 of 3 tests are right/.test(await old()), `the verdicts before are grey: ${await old()}`);
+  await tell({ kind: 'judging', id: 'a1' });
+  expect(/^0\.[1-6].*1 of 3/.test(await old()) && /The tests of a1 run .*in grey is of the code before/.test(await page.value('document.getElementById("panes").textContent')), 'they stay grey while the tests run');
+  // Two runs that are alike at their start may differ later.
+  await page.value('tumble.begunAt = performance.now()');
+  await tell({ kind: 'difference', same_until_s: 0.2 });
+  expect(await text('difference') === '', `0.2 s are no agreement: ${await text('difference')}`);
+  await page.until('!document.getElementById("difference").hidden', 'that it is the same, a second later', 20);
+  // A difference is no fault, unless the save has broken tests.
+  await tell({ kind: 'difference', same_until_s: 3, time_s: 1.25, what: 'handle is 0.062 m from where it is in the run before', body: 0 });
+  await verdicts(result('one', 'right'), result('two', 'right'), result('three', 'right'));
+  expect(await old() === '', 'the new verdicts are not grey');
+  expect(/Another motion than in the run before, from 1\.25 s on: handle is then 0\.062 m away from its place in the run before\. Of the tests this save has mended 2 and broken 0\./.test(await text('difference')), `the difference: ${await text('difference')}`);
+  const color = () => page.value('getComputedStyle(document.getElementById("difference")).borderLeftColor'), bad = await page.value('(() => { const line = document.createElement("i"); line.style.color = "var(--bad)"; document.body.append(line); const color = getComputedStyle(line).color; line.remove(); return color; })()');
+  expect(await color() !== bad, 'better verdicts have no colour of a fault');
+  await tell({ kind: 'code_saved', file: 'a1.cpp', id: 'a1' });
+  await verdicts(result('one', 'right'), result('two', 'wrong'), result('three', 'right'));
+  expect(await color() === bad, 'broken tests have it');
+  if (pictures) await page.picture(join(pictures, 'worse.png'));
+  // The saved code has crashed before its first frame.
+  await page.value('document.getElementById("go").click()');
+  await page.until('tumble.paused && document.getElementById("go").textContent === "Go"', 'the pause', 20);
+  await sleep(300);   // frames on their way
+  await tell({ kind: 'trouble', title: 'Crashed', text: 'SIGSEGV', ends_run: true, shows_former: true });
+  const clock = await page.value('document.getElementById("clock").textContent');
+  expect(await text('difference') === '', `nothing is said of a run that is none: ${await text('difference')}`);
+  expect(/^The run before, at its end: the file as it was saved last has moved nothing/.test(await text('hint')), `the picture is called what it is: ${await text('hint')}`);
+  expect(Number(await page.value('getComputedStyle(document.getElementById("picture")).opacity')) < 0.7, 'the picture is grey');
+  await tell({ kind: 'difference', same_until_s: 35.7 });
+  expect(await text('difference') === '', 'a comparison that comes late is not shown');
+  await sleep(500);
+  expect(await page.value('document.getElementById("clock").textContent') === clock, 'the clock stands');
+  if (pictures) await page.picture(join(pictures, 'crashed.png'));
+  await tell({ kind: 'trouble', title: 'Does not compile', text: 'line 7', shows_former: true });
+  expect(await text('difference') === '', 'nor of code that does not compile');
+  expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
   await live.stop();
 });
 
@@ -136,6 +190,12 @@ test('a saved slip shows its verdict; errors, loops and crashes are shown and th
   // A run that has stopped is no save that changed nothing.
   await save(right.replace('return -(1.0', 'return std::sqrt(-1.0'), 'save to the run that stopped', () => '/not a number/.test(document.body.dataset.trouble || "")');
   await page.until('/^This run has stopped; it is the same as the run before until [0-9.]+ s\\.$/.test(document.querySelector("#difference span").textContent)', 'that it stopped, and no advice', 20);
+  // A crash before the first frame: what is drawn is the run before, which stands.
+  await save(right.replace('return -(1.0', 'return *static_cast<volatile double*>(nullptr) + (1.0'), 'save to the crash', () => '/^Crashed/.test(document.body.dataset.trouble || "")');
+  const stood = await page.value('document.getElementById("clock").textContent');
+  await sleep(1500);
+  expect(await page.value('document.getElementById("clock").textContent') === stood, 'nothing moves after a crash');
+  expect(await page.value('document.getElementById("difference").hidden || tumble.run.stopped !== ""'), 'nothing is called the same after a crash');
   await save(right, 'mended', runs => `Number(document.body.dataset.runs) > ${runs} && !document.body.dataset.trouble && tumble.run.length > 2`);
   expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
   await live.stop('SIGTERM');

@@ -105,6 +105,7 @@ class LiveSession : public ::testing::Test {
   bool hears(const std::string& text) {
     for (;;) {
       if (const std::size_t at = heard_.find(text); at != std::string::npos) {
+        before_it_ = heard_.substr(0, at);
         heard_.erase(0, at + text.size());
         return true;
       }
@@ -130,7 +131,7 @@ class LiveSession : public ::testing::Test {
   live::Sitting sitting_;
   live::Left left_;
   std::thread thread_;
-  std::string host_, path_, heard_;
+  std::string host_, path_, heard_, before_it_;
   int stream_ = -1;
   sigset_t before_;
 };
@@ -168,7 +169,25 @@ TEST_F(LiveSession, EndBeforeTheFirstFrameIsToldWithItsReason) {
   ASSERT_TRUE(hears("event: f"));
   code("stop");
   EXPECT_TRUE(hears("\"title\":\"The run stopped\",\"text\":\"box: two bodies overlap\""));
-  for (int k = 0; k < 3; ++k) EXPECT_TRUE(hears("event: f"));  // the run before goes on
+  EXPECT_TRUE(hears("\"ends_run\":true,\"shows_former\":true"));
+}
+
+// Of code that is no more nothing moves under the words of what has become of the new one.
+TEST_F(LiveSession, CrashBeforeTheFirstFrameEndsTheRunOfTheCodeBefore) {
+  ASSERT_TRUE(hears("event: f"));
+  code("crash_first");
+  EXPECT_TRUE(hears("\"title\":\"Crashed\",\"text\":\"a1_impulse.cpp: crashed, in collision"));
+  EXPECT_TRUE(hears("\"ends_run\":true,\"shows_former\":true"));
+  EXPECT_TRUE(hears("\"where\":\"a1_impulse.cpp:26\""));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // twenty frames of the fake one
+  post(R"({"do": "pace", "speed": 0.5, "paused": false})");
+  EXPECT_TRUE(hears("\"kind\":\"pace\""));
+  EXPECT_EQ(before_it_.find("event: f"), std::string::npos) << before_it_;
+  post(R"({"do": "push", "force_n": [1, 0, 0], "duration_s": 0.1})");
+  EXPECT_TRUE(hears("the run has ended: start over"));
+  code("right");
+  EXPECT_TRUE(hears("\"reason\":\"code\""));
+  for (int k = 0; k < 10; ++k) EXPECT_TRUE(hears("event: f"));
 }
 
 TEST_F(LiveSession, CodeThatPrintsMuchRuns) {
@@ -192,7 +211,8 @@ TEST_F(LiveSession, RefusedChangeStaysOutOfTheRunThatIsShown) {
 TEST_F(LiveSession, CompilersErrorLeavesTheRunGoing) {
   ASSERT_TRUE(hears("event: f"));
   code("refuse");
-  EXPECT_TRUE(hears("\"title\":\"Does not compile\""));
+  EXPECT_TRUE(hears("\"shows_former\":true,\"kind\":\"trouble\""));
+  EXPECT_NE(before_it_.find("\"title\":\"Does not compile\""), std::string::npos) << before_it_;
   EXPECT_TRUE(hears("event: f"));
   EXPECT_TRUE(hears("event: f"));
 }
@@ -202,7 +222,7 @@ TEST_F(LiveSession, FirstDifferenceFromTheRunBeforeIsTold) {
   for (int k = 0; k < 30; ++k) ASSERT_TRUE(hears("event: f"));
   code("crash");  // it moves twice as fast
   EXPECT_TRUE(hears("\"kind\":\"difference\""));
-  EXPECT_TRUE(hears("from where it is in this run"));
+  EXPECT_TRUE(hears("from where it is in the run before"));
 }
 
 TEST_F(LiveSession, NonsenseFromThePageIsToldAndEndsNothing) {
