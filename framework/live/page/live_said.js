@@ -14,7 +14,7 @@ function showTrouble(trouble) {
   text.textContent = '';
   text.append(...withHandoutLinks(trouble.text));
   const onSave = trouble.title === 'Not attempted' ? 'Write the function and save the file: the scene begins by itself. Or choose another scene.' : isOfCode(trouble) ? 'The page goes on: mend the file and save it.' : '';
-  remedy.textContent = trouble.remedy || onSave;
+  remedy.textContent = (trouble.remedy || onSave) + (trouble.shows_former && page.run ? ' The picture is of the run before.' : '');
   document.body.dataset.trouble = `${trouble.title} ${trouble.where || ''} ${trouble.text || ''}`;
 }
 

@@ -18,6 +18,70 @@ function roundDown(x) {
   return (part >= 5 ? 5 : part >= 2 ? 2 : 1) * power;
 }
 
+// Small balls, each as one point of the graphics with the shading of a ball: where the processor draws, the corners of
+// some hundred balls cost more than their pixels. The depth is that of the centre: a disc that faces the eye cuts no
+// plane that the ball does not cut. Light as in Stage.addLight().
+class Discs {
+  // groups: [{mesh, members, color, isQuartered}], whose instances it draws in their place
+  constructor(stage, groups, opacity = 1) {
+    this.groups = groups;
+    this.key = stage.key;
+    const count = groups.reduce((sum, group) => sum + group.members.length, 0), tints = [];
+    for (const group of groups) for (let k = 0; k < group.members.length; ++k) tints.push(...group.color, group.isQuartered ? 1 : 0);
+    const geometry = new THREE.BufferGeometry(), add = (name, array, size) => { geometry.setAttribute(name, new THREE.BufferAttribute(array, size)); return geometry.attributes[name]; };
+    this.position = add('position', new Float32Array(3 * count), 3);
+    this.along = [add('alongX', new Float32Array(3 * count), 3), add('alongY', new Float32Array(3 * count), 3)];   // axes of the body, as long as its radius
+    add('tint', new Float32Array(tints), 4);
+    this.uniforms = { height: { value: 1 }, key: { value: new THREE.Vector3() }, up: { value: new THREE.Vector3() }, opacity: { value: opacity } };
+    const material = new THREE.ShaderMaterial({
+      uniforms: this.uniforms, transparent: opacity < 1, depthWrite: opacity === 1,
+      vertexShader: `attribute vec3 alongX, alongY; attribute vec4 tint; uniform float height; varying vec3 vX, vY; varying vec4 vTint;
+        void main() {
+          vec4 place = modelViewMatrix * vec4(position, 1.0);
+          vX = mat3(viewMatrix) * alongX; vY = mat3(viewMatrix) * alongY; vTint = tint;
+          gl_Position = projectionMatrix * place;
+          gl_PointSize = height * projectionMatrix[1][1] * length(alongX) / -place.z;
+        }`,
+      fragmentShader: `uniform vec3 key, up; uniform float opacity; varying vec3 vX, vY; varying vec4 vTint;
+        void main() {
+          vec2 at = vec2(2.0, -2.0) * gl_PointCoord + vec2(-1.0, 1.0);
+          float reach = dot(at, at);
+          if (reach > 1.0) discard;
+          vec3 normal = vec3(at, sqrt(1.0 - reach));
+          float shade = vTint.a > 0.0 && dot(normal, vX) * dot(normal, vY) > 0.0 ? 0.45 : 1.0;
+          vec3 light = 0.75 * max(dot(normal, key), 0.0) + 0.55 * mix(vec3(0.722, 0.690, 0.659), vec3(1.0), 0.5 + 0.5 * dot(normal, up));
+          gl_FragColor = linearToOutputTexel(vec4(vTint.rgb * shade * light, opacity));
+        }` });
+    this.points = new THREE.Points(geometry, material);
+    this.points.frustumCulled = false;
+    this.points.renderOrder = opacity < 1 ? 1 : 0;
+    stage.scene.add(this.points);
+  }
+
+  // @param height  of the canvas, in pixels
+  show(camera, height, isShown) {
+    this.points.visible = isShown;
+    for (const group of this.groups) group.mesh.visible = !isShown;
+    if (!isShown) return;
+    let at = 0;
+    for (const { mesh, members } of this.groups)
+      for (let k = 0; k < members.length; ++k, at += 3) {
+        const m = mesh.instanceMatrix.array, from = 16 * k;
+        for (let i = 0; i < 3; ++i) {
+          this.position.array[at + i] = m[from + 12 + i];
+          this.along[0].array[at + i] = m[from + i];
+          this.along[1].array[at + i] = m[from + 4 + i];
+        }
+      }
+    for (const attribute of [this.position, ...this.along]) attribute.needsUpdate = true;
+    camera.updateMatrixWorld();
+    this.uniforms.height.value = height;
+    this.uniforms.key.value.copy(this.key.position).sub(this.key.target.position).transformDirection(camera.matrixWorldInverse);
+    this.uniforms.up.value.set(0, 0, 1).transformDirection(camera.matrixWorldInverse);
+  }
+}
+const kMostOfDisc = 40;   // pixels: of larger balls the outline is no circle, and few are in sight
+
 class Ghost {
   constructor(stage, run) {
     this.run = run;
@@ -27,7 +91,7 @@ class Ghost {
       mesh.frustumCulled = false;
       mesh.renderOrder = 1;
       stage.scene.add(mesh);
-      return { mesh, members: group.members };
+      return { mesh, members: group.members, group };
     });
     this.scales = stage.scales;
     this.shift = new THREE.Vector3(...run.origin).sub(new THREE.Vector3(...stage.run.origin));   // the scene before may have another origin
@@ -153,6 +217,13 @@ function drawnBySoftware() {
   return is;
 }
 
+// Where the processor draws, the power of each pixel's colour costs more than all else of it: roots come as near as
+// 0.01 to it. Before the first material is compiled.
+function takeRoots() {
+  const chunk = THREE.ShaderChunk.encodings_pars_fragment, power = 'pow( value.rgb, vec3( 1.0 / gammaFactor ) )';
+  THREE.ShaderChunk.encodings_pars_fragment = chunk.replace(power, '( 0.85 * sqrt( value.rgb ) + 0.15 * sqrt( sqrt( value.rgb ) ) )');
+}
+
 // The canvas, the camera, and the pointer.
 class LivePicture {
   // hand: {aim(ray), showPush(body, way, span), push(body, way, span), pull(to), release(), choose(body), tool()}
@@ -162,12 +233,14 @@ class LivePicture {
     this.shown = shown;
     this.hand = hand;
     this.isSoftware = drawnBySoftware();
+    if (this.isSoftware) takeRoots();
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSoftware });
     this.renderer.gammaOutput = true;
     this.renderer.gammaFactor = 2.2;
     this.renderer.shadowMap.enabled = !this.isSoftware;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.ratio = Math.min(2, window.devicePixelRatio || 1);
+    this.movingRatio = 0;   // while it is paused: that of the run as it went
     this.drag = null;
     this.dark = window.matchMedia('(prefers-color-scheme: dark)');
     this.isFollowing = false;
@@ -183,14 +256,20 @@ class LivePicture {
     this.canvas.classList.add('empty');
   }
 
-  setRun(run, former, keepsCamera) {
+  setRun(run, formerRun, keepsCamera) {
     this.run = run;
     [kSky, kFloor, kLine] = this.dark.matches ? [0x1b222a, 0x262f38, 0x46535f] : [0xf1f4f7, 0xe3e8ec, 0xb9c4cd];
     if (this.stage) this.dispose(this.stage.scene);
     this.stage = new Stage(run.about, run);
+    if (this.isSoftware) this.stage.castNone();
     this.stage.marks.strongest = { impulse: 1e-12, contact: 1e-12, force: 1e-12 };
-    this.ghost = former && former.length > 1 && former.about.bodies.length === run.about.bodies.length ? new Ghost(this.stage, former) : null;
+    this.ghost = formerRun && formerRun.length > 1 && formerRun.about.bodies.length === run.about.bodies.length ? new Ghost(this.stage, formerRun) : null;
     this.vectors = new Vectors(this.stage, run);
+    this.discs = this.ghostDiscs = null;
+    const isBall = ({ body, glass }) => this.isSoftware && body.shape.kind === 'sphere' && body.shape.radius > 0 && !glass, balls = this.stage.groups.filter(isBall);
+    if (balls.length > 0) this.discs = new Discs(this.stage, balls);
+    const former = this.ghost ? this.ghost.meshes.filter(({ group }) => isBall(group)) : [], pale = new THREE.Color(kFormerColor).convertGammaToLinear(2.2).toArray();
+    if (former.length > 0) this.ghostDiscs = new Discs(this.stage, former.map(one => ({ ...one, color: pale, isQuartered: false })), 0.3);
     this.drawn = '';
     this.time = undefined;
     this.followed = null;
@@ -291,9 +370,20 @@ class LivePicture {
     return is;
   }
 
-  // Fewer pixels where pictures come slowly; all of them where the run is paused.
+  // Fewer pixels where pictures come slowly, more again where they would still come fast enough; all of them where the
+  // run is paused.
   adapt(picturesPerSecond, isPaused) {
-    const full = Math.min(2, window.devicePixelRatio || 1), ratio = isPaused ? full : picturesPerSecond < 22 ? Math.max(0.4 * full, 0.75 * this.ratio) : this.ratio;
+    const full = Math.min(2, window.devicePixelRatio || 1), kNotch = 0.75, kSlow = 28, kFast = kSlow / kNotch / kNotch;
+    if (isPaused !== Boolean(this.movingRatio)) {   // paused now, or going on
+      const ratio = isPaused ? full : this.movingRatio;
+      this.movingRatio = isPaused ? this.ratio : 0;
+      this.setRatio(ratio);
+    } else if (!isPaused) {
+      this.setRatio(picturesPerSecond < kSlow ? Math.max(0.4 * full, kNotch * this.ratio) : picturesPerSecond > kFast ? Math.min(full, this.ratio / kNotch) : this.ratio);
+    }
+  }
+
+  setRatio(ratio) {
     if (ratio === this.ratio) return;
     this.ratio = ratio;
     this.resize();
@@ -315,9 +405,17 @@ class LivePicture {
     for (const push of this.run.about.forces) stage.marks.strongest.force = Math.max(stage.marks.strongest.force, Math.hypot(...push.force));
     stage.show(t, 1, { impulses: false, contacts: false, forces: this.shown.forces, links: this.shown.links, path: false, halo: this.shown.halo, ground: this.shown.ground });
     if (this.ghost) this.ghost.show(t, this.shown.ghost);
+    this.showDiscs(pixels);
     this.vectors.show(t, this.shown, chosen);
     this.drawHand(t);
     this.renderer.render(stage.scene, camera);
+  }
+
+  showDiscs(pixels) {
+    const { camera } = this, height = this.height * this.ratio, areSmall = discs => discs.groups.every(({ members }) => members.every(i => this.stage.scales[i].x * pixels < kMostOfDisc));
+    if (this.discs) this.discs.show(camera, height, areSmall(this.discs));
+    if (this.ghostDiscs && this.shown.ghost) this.ghostDiscs.show(camera, height, areSmall(this.ghostDiscs));
+    else if (this.ghostDiscs) this.ghostDiscs.points.visible = false;
   }
 
   // Where the point that was aimed at is now.

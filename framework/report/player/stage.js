@@ -163,8 +163,16 @@ class Stage {
     shadow.position.set(cx, cy, height);
     shadow.receiveShadow = true;
     shadow.renderOrder = -1;
+    this.shadowed = shadow;
     if (this.floor >= 0) this.ground.add(shadow);
     this.scene.add(this.ground);
+  }
+
+  // Without shadows: the plane that takes them would be drawn over the whole ground for nothing.
+  castNone() {
+    this.key.castShadow = false;
+    if (this.shadowed) this.shadowed.visible = false;
+    for (const group of this.groups) group.mesh.castShadow = group.mesh.receiveShadow = false;
   }
 
   floorDisc(cx, cy, height, reach, floor, sky) {
