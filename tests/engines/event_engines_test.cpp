@@ -299,6 +299,39 @@ TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
     }
 }
 
+// How many moves are known at each frame.
+class MovesAtFrames final : public TrajectorySink {
+ public:
+  explicit MovesAtFrames(const VirtualTimes& times) : times_(times) {}
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame&) override { counts.push_back(times_.moves.size()); }
+  void event(const Event&) override {}
+  void end(const Counters&, const std::string&) override {}
+
+  std::vector<std::size_t> counts;
+
+ private:
+  const VirtualTimes& times_;
+};
+
+// A page draws them while the run goes; the moves of one ball are few.
+TEST(VirtualTimes, OfTheFastSchedulerAreKnownWhileItRuns) {
+  for (const int bodies : {1, 60})
+    for (const int threads : {1, 2}) {
+      VirtualTimes times;
+      MovesAtFrames sink(times);
+      engines::RunOptions options;
+      options.engine = "tw";
+      options.timewarp = engines::fast_timewarp(&times);
+      options.threads = threads;
+      engines::run_scene(sized("gas", bodies, 5.0), test_laws(), options, sink);
+      ASSERT_GT(sink.counts.size(), 10U);
+      EXPECT_GT(sink.counts[sink.counts.size() / 2], 0U) << bodies << " on " << threads;
+      EXPECT_LT(sink.counts[sink.counts.size() / 2], times.moves.size()) << bodies;
+      EXPECT_TRUE(std::is_sorted(sink.counts.begin(), sink.counts.end()));
+    }
+}
+
 // More than 10^5 impacts, each of which moves two local virtual times or one, and advances between.
 TEST(VirtualTimesOfALongRun, AreTheFirstOnesInEpochsToo) {
   VirtualTimes times;

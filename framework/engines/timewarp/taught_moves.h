@@ -31,7 +31,7 @@ class TaughtMoves {
     if (!times_.moves.empty() && !times_.is_cut)
       times_.moves.back().global_virtual_time_s = global_virtual_time;
     // All are handed over each time, so that times grow apart as their number does.
-    if (times_.moves.size() < told_ + 8 + told_ / 64) return;
+    if (times_.moves.size() < told_ + 1 + told_ / 64) return;
     told_ = times_.moves.size();
     end();
   }

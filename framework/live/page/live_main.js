@@ -3,7 +3,7 @@
 const byId = id => document.getElementById(id);
 
 const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
-const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false, finds: false, findsUntil: 0, isFormerOnly: false, begunAt: 0 };
+const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false, finds: false, findsUntil: 0, isFormerOnly: false, begunAt: 0, turnAt: 0 };
 
 // One after the other: a pull that came behind its release would hold the body for ever.
 let posted = Promise.resolve();
@@ -96,11 +96,16 @@ function drawMarks() {
   canvas.width = width * ratio;   // clears it
   canvas.height = height * ratio;
   if (!run) return;
-  const g = canvas.getContext('2d'), inset = 8, end = run.end || 1, x = t => inset + t / end * (width - 2 * inset), style = getComputedStyle(document.body);
+  const g = canvas.getContext('2d', { willReadFrequently: true }), inset = 8, end = run.end || 1, x = t => inset + t / end * (width - 2 * inset), style = getComputedStyle(document.body);
   g.scale(ratio, ratio);
   g.fillStyle = style.getPropertyValue('--before');
   g.globalAlpha = run.events.count > 300 ? 0.3 : 0.9;
-  for (let i = Math.max(0, run.events.count - 3000); i < run.events.count; ++i) if (run.events.kind[i] === kCollision) g.fillRect(x(run.events.time[i]) - 0.5, 2, 1, height - 2);
+  for (let i = Math.max(0, run.events.count - 3000), last = -1; i < run.events.count; ++i) {
+    const at = Math.round(2 * x(run.events.time[i]));   // of many at one place one is drawn
+    if (run.events.kind[i] !== kCollision || at === last) continue;
+    g.fillRect(at / 2 - 0.5, 2, 1, height - 2);
+    last = at;
+  }
   g.globalAlpha = 1;
   g.fillStyle = '#d0306c';
   for (const push of page.pushes.slice(-400)) g.fillRect(x(push.start_s) - 1, 0, 2, height);
@@ -300,6 +305,8 @@ function follow() {
   byId('follow').setAttribute('aria-pressed', String(page.picture.isFollowing));
 }
 
+const kTurnMs = 25;   // between two pictures that the processor draws: 30 a second of 60 turns
+
 function tick(now) {
   const run = page.run, dt = page.last === undefined ? 0 : Math.min(0.25, (now - page.last) / 1000);
   page.last = now;
@@ -309,13 +316,16 @@ function tick(now) {
       page.time = page.paused || page.ended ? run.end : Math.min(run.end, page.time + dt * page.speed);
       if (run.end - page.time > 0.12 * Math.max(page.speed, 0.1)) page.time = run.end - 0.02 * page.speed;
     }
+    page.ticks = (page.ticks || 0) + 1;
+    // Where the processor draws, the compiler has it first, and every second turn is left to the run.
+    const isSoftware = Boolean(page.picture) && page.picture.isSoftware;
+    if (isSoftware && now - page.turnAt < kTurnMs) return void requestAnimationFrame(tick);
+    page.turnAt = now;
     try {
       if (page.picture) {
         if (page.needsStage) { page.picture.setRun(run, page.former, page.hadStage); page.needsStage = false; page.hadStage = true; }
         if (page.finds && page.picture.stage) { page.picture.findAll(page.time, page.chosen); page.finds = page.paused && now < page.findsUntil; }
-        // where the processor draws, the compiler has it first
-        const waits = page.isCompiling && page.picture.isSoftware;
-        if (!waits && page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);
+        if (!(page.isCompiling && isSoftware) && page.picture.needsDrawing(page.time, page.chosen)) page.picture.draw(page.time, page.chosen);
       }
     } catch (error) {
       noPicture(error);
@@ -323,12 +333,12 @@ function tick(now) {
     if (page.follows) showTime();
     showPanes(false);
     page.drawn = (page.drawn || 0) + 1;
-    if (page.since === undefined) [page.since, page.drawn, page.framesThen] = [now, 0, page.frames];
+    if (page.since === undefined) [page.since, page.drawn, page.ticks, page.framesThen] = [now, 0, 0, page.frames];
     else if (now - page.since > 1000) {
       document.body.dataset.fps = (page.drawn * 1000 / (now - page.since)).toFixed(1);
       document.body.dataset.frameRate = ((page.frames - page.framesThen) * 1000 / (now - page.since)).toFixed(1);
+      if (page.picture) page.picture.adapt(Number(document.body.dataset.fps), page.ticks * 1000 / (now - page.since), page.paused);
       page.since = undefined;
-      if (page.picture) page.picture.adapt(Number(document.body.dataset.fps), page.paused);
     }
   }
   requestAnimationFrame(tick);

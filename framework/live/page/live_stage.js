@@ -370,16 +370,16 @@ class LivePicture {
     return is;
   }
 
-  // Fewer pixels where pictures come slowly, more again where they would still come fast enough; all of them where the
-  // run is paused.
-  adapt(picturesPerSecond, isPaused) {
-    const full = Math.min(2, window.devicePixelRatio || 1), kNotch = 0.75, kSlow = 28, kFast = kSlow / kNotch / kNotch;
+  // Fewer pixels where pictures come slowly, more again where the browser has turns to spare; all of them where the run
+  // is paused.
+  adapt(picturesPerSecond, turnsPerSecond, isPaused) {
+    const full = Math.min(2, window.devicePixelRatio || 1), kNotch = 0.75, kSlow = 25, kSpare = 52;
     if (isPaused !== Boolean(this.movingRatio)) {   // paused now, or going on
       const ratio = isPaused ? full : this.movingRatio;
       this.movingRatio = isPaused ? this.ratio : 0;
       this.setRatio(ratio);
     } else if (!isPaused) {
-      this.setRatio(picturesPerSecond < kSlow ? Math.max(0.4 * full, kNotch * this.ratio) : picturesPerSecond > kFast ? Math.min(full, this.ratio / kNotch) : this.ratio);
+      this.setRatio(picturesPerSecond < kSlow ? Math.max(0.4 * full, kNotch * this.ratio) : turnsPerSecond > kSpare ? Math.min(full, this.ratio / kNotch) : this.ratio);
     }
   }
 

@@ -42,6 +42,7 @@ void Coordinator::require_certain(const EventStamp& key) const {
 // Commits everything before `key` in order, with the frames between.
 void Coordinator::commit_before(const EventStamp& key) {
   require_certain(key);
+  hand_over_moves();
   // Collects the executed events of all workers, in their total order.
   std::vector<Executed>& executed = alone().executed;
   for (std::size_t k = 1; k < workers_.size(); ++k) {

@@ -324,11 +324,18 @@ void Coordinator::end(const std::string& stopped_by) {
             ->worked_at;
   }
   all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
-  if (record_) {
-    record_->moves = std::move(alone().moves);
-    record_->is_cut = alone().has_more_moves;
-  }
+  hand_over_moves();
   all_.run.end(stopped_by);
+}
+
+// Before frames are committed: who sees a frame sees the moves that led to it.
+void Coordinator::hand_over_moves() {
+  if (!record_) return;
+  const std::vector<VirtualTimes::Move>& moves = alone().moves;
+  record_->moves.insert(record_->moves.end(),
+                        moves.begin() + static_cast<std::ptrdiff_t>(record_->moves.size()),
+                        moves.end());
+  record_->is_cut = alone().has_more_moves;
 }
 
 void run_fast_timewarp(const scene::Scene& scene, const Laws& laws,

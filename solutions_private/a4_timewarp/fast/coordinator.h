@@ -91,6 +91,7 @@ class Coordinator {
   void commit_before(const EventStamp& key);
   // a stamp before all others of that time
   void commit_before(double t) { commit_before(EventStamp{t, 0, StampKind::kRecheck, -1, -1}); }
+  void hand_over_moves();
   void stand(double until);
   void note_kept();
   bool is_current(int body, std::uint32_t version) const;
