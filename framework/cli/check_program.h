@@ -19,6 +19,9 @@ struct CheckWords {
   bool all = false;                           // a line for each test in the table
   std::string own_tests;                      // the student's own tests in place of the public ones
   std::filesystem::path results;              // where verdicts are written as well; may be empty
+  // of check_quietly(): a shared object of the user's own file, for which the file is not compiled
+  // again as long as it is not newer; may be empty
+  std::filesystem::path object = {};
 };
 
 /// The words "a1 [FILE] [TEST...] [--all]" as they are given.

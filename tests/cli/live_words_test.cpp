@@ -50,6 +50,21 @@ TEST_F(CommandLine, LiveRefusesInTheTerminalWhatItsPageCouldNotDo) {
   EXPECT_TRUE(left_nothing());
 }
 
+#ifdef TUMBLE_HAS_REFERENCE
+// What the run has compiled is judged as it is: the verdicts come without a second compilation, here
+// where there is none to be had.
+TEST_F(CommandLine, VerdictsOfThePageNeedNoSecondCompilation) {
+  const fs::path object = fs::path(test::binary_dir()) / "modules" / "a1_student.so",
+                 own = fs::path(test::source_dir()) / "assignments/a1_impulse/a1_impulse.cpp";
+  if (fs::last_write_time(object) < fs::last_write_time(own)) GTEST_SKIP() << "not built anew";
+  const Said alone =
+      type("--version >/dev/null; TUMBLE_ROOT='" + test::source_dir() + "' PATH=/nowhere '" +
+           test::binary_dir() + "/bin/tumble' live poked_box --part judge --id a1");
+  EXPECT_TRUE(holds(alone.out, "\"said\":\"\",\"tests\":[{\"test\":\"RayTriangle."))
+      << alone.out.substr(0, 300) << alone.err;
+}
+#endif
+
 // The default folder of saved scenes cannot be made where "out" is a file. A sized scene is made by
 // code, and Save is greyed out.
 TEST_F(CommandLine, LiveGoesOnWhereNoSceneCouldBeSavedUnlessAFolderIsNamed) {
