@@ -122,8 +122,8 @@ void Runs::hear_starting(Record record) {
   if (compiles) settled_();
 }
 
-// The code of the run that is shown is no more: its clock must not go on under the words of what has
-// become of the new one.
+// The code of the run that is shown is no more: its clock must not go on under the words of what
+// has become of the new one.
 void Runs::end_former(Json& trouble) {
   running_.reset();
   trouble["ends_run"] = true;

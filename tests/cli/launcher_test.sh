@@ -27,7 +27,7 @@ holds() { case $1 in *"$2"*) ;; *) fail "'$2' is missing in: $1" ;; esac; }
 
 said 0 && holds "$out" "Verbs:"
 said 0 --help && holds "$out" "check"
-said 0 check --help && holds "$out" "PATTERN"
+said 0 check --help && holds "$out" "TEST"
 said 0 run pong_1 --help && holds "$out" "--modules"
 said 0 help && holds "$out" "Verbs:"
 said 0 help inspect && holds "$out" "--density"

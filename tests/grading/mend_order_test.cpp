@@ -136,8 +136,7 @@ TEST(MendOrder, TheStoryThatNamesTheSlipComesFirstAndTheOneOfTwoCallsLast) {
       in_order_of_mending(results, headings_of(results, kSource), {9, 0.1, 0.1, 0.1, 2, 99, 2, 99});
   ASSERT_EQ(groups.size(), 4u);
   EXPECT_EQ(groups[0].tests, (std::vector<std::size_t>{1, 2, 3, 0}));
-  EXPECT_NE(groups[1].heading.find("drop"), std::string::npos)
-      << "of equal ones the named slip";
+  EXPECT_NE(groups[1].heading.find("drop"), std::string::npos) << "of equal ones the named slip";
   EXPECT_NE(groups[2].heading.find("spin"), std::string::npos);
   EXPECT_FALSE(groups[3].is_attempted) << "last what is not written";
 }

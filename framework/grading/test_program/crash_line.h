@@ -1,5 +1,5 @@
-/// The line of the user's file in which a test died: of a process that holds the user's own code, and
-/// that is this program's fork, so that both have the same addresses.
+/// The line of the user's file in which a test died: of a process that holds the user's own code,
+/// and that is this program's fork, so that both have the same addresses.
 #pragma once
 
 #include <atomic>

@@ -24,8 +24,8 @@ std::string without_wildcards(std::string word) {
   return word;
 }
 
-// How far a word is from the nearest run of as many words of a title: "two wals" is near "Impulse of
-// two walls".
+// How far a word is from the nearest run of as many words of a title: "two wals" is near "Impulse
+// of two walls".
 std::size_t distance_in(const std::string& title, const std::string& wanted) {
   const auto count = 1 + std::count(wanted.begin(), wanted.end(), ' ');
   std::size_t nearest = edit_distance(title, wanted);
