@@ -301,6 +301,15 @@ test('300 bodies', async () => {
   const [shown, frames] = await page.value('[document.body.dataset.fps, document.body.dataset.frameRate]');
   console.log(`  300 bodies at 1280x720, drawn by the processor: ${shown} pictures a second, ${frames} frames a second from the program (load ${loadavg()[0].toFixed(1)})`);
   expect(Number(frames) > 0 && Number(shown) > 0, 'it moves');
+  if (await page.value('tumble.picture.isSoftware')) {
+    const drawn = await page.value('[tumble.picture.discs.points.visible, tumble.picture.renderer.info.render.triangles]');
+    expect(drawn[0] && drawn[1] < 8000, `balls are no meshes: ${drawn}`);   // meshes of 300 balls have 20000 to 40000 triangles
+    // All pixels where it is paused, and those of before where it goes on.
+    await page.value('tumble.picture.setRatio(0.5); document.getElementById("go").click()');
+    await page.until('tumble.picture.ratio === Math.min(2, window.devicePixelRatio)', 'all pixels of the paused run', 20);
+    await page.value('document.getElementById("go").click()');
+    await page.until('tumble.picture.ratio < 0.8', 'fewer pixels of the run that goes on', 20);
+  }
   await live.stop();
 });
 
