@@ -66,7 +66,7 @@ int run_with_xrays(int argc, char** argv) {
                 [](const char* name, auto& field) { field = detail::with_xray(name, field); });
   static const Module module = observed(right);
   modules::UnderTest<Module>::table = &module;
-  return run_check_program(argc, argv);
+  return run_check_program(names_of_functions(module), argc, argv);
 }
 
 }  // namespace tumble::grading

@@ -103,7 +103,9 @@ Mistake slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected
       !story.iterates && error > kFloatEps / 256 * scale && tolerance < kFloatEps / 4096 * scale;
   if (shows_in_bits) return shown(kFloat);
   if (!shows_in_size) return "";
-  return std::string("one way to get such an answer: ") + kFloat;
+  std::ostringstream text;
+  text << "one way to get such an answer: " << kFloat;
+  return text.str();
 }
 
 namespace {
