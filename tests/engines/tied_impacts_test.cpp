@@ -1,5 +1,7 @@
 // Two impacts of one body at one instant: the sequential law takes them in the order of bodies, and
 // says so where that decides what comes of them.
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "tests/engines/reference_runs.h"
@@ -68,6 +70,36 @@ TEST(ImpactsAtOneInstant, WhoseOrderDecidesNothingAreNotReported) {
   for (scene::BodySpec& body : row) body.restitution = 0.9;
   for (const std::string& notice : run_on("rd", scene_of(std::move(row), 1.0)).counters.notices)
     EXPECT_EQ(notice.find("at one instant"), std::string::npos) << notice;
+}
+
+// A ball comes to a row of three, (1 | 0.3 0.3 1): at first each impact causes the next, but at the
+// third the light ones part, and the first light one meets the one behind it and the one before it.
+// Which comes first decides between (-0.226, 0.646, 0.696, 0.824) and (-0.092, 0, 0.406, 0.971) of
+// the speed: two sequences of laws of conservation, of which engines take one each.
+TEST(ImpactsAtOneInstant, ThatEarlierOnesCauseAreReportedWhereTheirOrderDecides) {
+  const auto row_of = [](const std::array<double, 4>& masses) {
+    std::vector<scene::BodySpec> row;
+    for (int k = 0; k < 4; ++k)
+      row.push_back(ball("b" + std::to_string(k), 0.125, masses[static_cast<std::size_t>(k)],
+                         {k == 0 ? -0.5 : 0.25 * k, 0, 0}, {k == 0 ? 1.0 : 0.0, 0, 0}));
+    return scene_of(std::move(row), 1.0);
+  };
+  const auto says = [](const Trajectory& run) {
+    for (const std::string& notice : run.counters.notices)
+      if (notice.find("at one instant") != std::string::npos) return true;
+    return false;
+  };
+  for (const char* engine : {"rd", "ordered", "ca", "tw"})
+    for (const bool contact : {false, true}) {
+      SCOPED_TRACE(engine);
+      scene::Scene unequal = row_of({1.0, 0.3, 0.3, 1.0}), equal = row_of({1.0, 1.0, 1.0, 1.0}),
+                   falling = row_of({1.0, 0.9, 0.7, 0.5});
+      for (scene::Scene* scene : {&unequal, &equal, &falling})
+        if (contact) scene->contact.emplace();
+      EXPECT_TRUE(says(run_on(engine, unequal)));
+      EXPECT_FALSE(says(run_on(engine, equal))) << "Newton's cradle";
+      EXPECT_FALSE(says(run_on(engine, falling))) << "each leaves the one before it";
+    }
 }
 
 constexpr const char* kEventEngines[] = {"ordered", "ca", "tw"};

@@ -30,6 +30,8 @@ constexpr std::size_t kMostEventsPerPair = 64;
 // of the largest change of a velocity at that instant: what another order changes and is worth a
 // word
 constexpr double kSeenOrder = 1e-3;
+// rounds in which ties are looked for that impulses of earlier ones have made
+constexpr int kRoundsWatched = 8;
 // pairs at one instant: in a heap of more nothing is symmetric, and both orders take long
 constexpr std::size_t kMostInOrder = 64;
 
@@ -375,8 +377,8 @@ void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<Touchi
 }
 
 // @return false: pairs still approach after all rounds
-bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const TouchingPair*>& in_turn,
-                                        double threshold) {
+bool SequentialImpacts::collide_in_turn(Work& work, std::vector<const TouchingPair*> in_turn,
+                                        double threshold, std::vector<Tie>* ties, int turned_from) {
   const std::vector<Event>& events = work.result.events;
   const auto fastest_since = [&](std::size_t first) {
     double fastest = 0.0;
@@ -397,6 +399,10 @@ bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const Touc
         (!goes_on || now <= kStillFast * at_first))
       break;
     const std::size_t first = events.size();
+    if (round == turned_from) std::reverse(in_turn.begin(), in_turn.end());
+    if (ties && round <= kRoundsWatched)
+      if (const std::optional<Tie> tie = tie_of(work, in_turn, threshold, round))
+        ties->push_back(*tie);
     again = false;
     for (const TouchingPair* pair : in_turn) again = collide(work, *pair, threshold) || again;
     now = fastest_since(first);
@@ -410,13 +416,16 @@ bool SequentialImpacts::collide_in_turn(Work& work, const std::vector<const Touc
   return !again;
 }
 
-// Two that approach before the first impulse and share a body that moves: without such, what each
-// impact causes is one order.
+// Two that approach at the beginning of a round and share a body that moves. Before the first
+// impulse all count. A row of unequal balls has such only after others; in a heap of what hardly
+// rebounds they are many, and little hangs on them: later ones count where both rebound.
 std::optional<SequentialImpacts::Tie> SequentialImpacts::tie_of(
-    Work& work, const std::vector<TouchingPair>& pairs, double threshold) {
+    Work& work, const std::vector<const TouchingPair*>& pairs, double threshold, int round) {
   std::map<int, const TouchingPair*> hit;  // by body
   std::optional<Tie> tie;
-  for (const TouchingPair& pair : pairs) {
+  for (const TouchingPair* touching : pairs) {
+    const TouchingPair& pair = *touching;
+    if (round > 1 && restitution_of(work.world(), pair) < kRebounds) continue;
     const Approach approach =
         fastest_approach(laws_, region_of(pair), work.body(pair.a), work.body(pair.b), threshold);
     // what rests on a support meets it with what gravity gives it in a step
@@ -424,23 +433,24 @@ std::optional<SequentialImpacts::Tie> SequentialImpacts::tie_of(
     for (const int body : {pair.a, pair.b}) {
       if (work.body(body).inertia.inverse_mass == 0.0) continue;
       const auto [other, is_first] = hit.try_emplace(body, &pair);
-      if (!is_first && !tie) tie = Tie{body, other->second, &pair};
+      if (!is_first && !tie) tie = Tie{body, round, other->second, &pair};
     }
   }
   return tie;
 }
 
-// What the opposite order makes of impacts at one instant. Nothing of it is kept.
+// What the opposite order makes of impacts at one instant, from the round of the tie on. Nothing of
+// it is kept.
 void SequentialImpacts::watch_order(Work& work, const Tie& tie,
                                     const std::vector<TouchingPair>& pairs, double threshold) {
   MovingWorld& moving = work.bodies.moving();
   const RunCounters before = counters_;
   Work other(moving, laws_);
-  std::vector<const TouchingPair*> backwards;
-  for (auto pair = pairs.rbegin(); pair != pairs.rend(); ++pair) backwards.push_back(&*pair);
+  std::vector<const TouchingPair*> in_turn;
+  for (const TouchingPair& pair : pairs) in_turn.push_back(&pair);
   bool is_known = false;
   try {
-    is_known = collide_in_turn(other, backwards, threshold);
+    is_known = collide_in_turn(other, in_turn, threshold, nullptr, tie.round);
   } catch (const OutOfTime&) {
     throw;
   } catch (const StoppedRun&) {
@@ -492,9 +502,11 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   } else {
     const bool is_watched = pairs.size() > 1 && pairs.size() <= kMostInOrder &&
                             !counters_.watch.has_said(kOrderOfImpacts, moving.time());
-    const std::optional<Tie> tie = is_watched ? tie_of(work, pairs, threshold) : std::nullopt;
-    again = !collide_in_turn(work, in_turn, threshold);
-    if (tie && !again) watch_order(work, *tie, pairs, threshold);
+    std::vector<Tie> ties;
+    again = !collide_in_turn(work, in_turn, threshold, is_watched ? &ties : nullptr);
+    for (const Tie& tie : ties)
+      if (!again && !counters_.watch.has_said(kOrderOfImpacts, moving.time()))
+        watch_order(work, tie, pairs, threshold);
   }
   // what is left of an impact that many bodies in contact pass to and fro is resolved at all at
   // once

@@ -8,7 +8,7 @@
 /// approaches faster than round-off. For equal balls in a row and restitution 1 this is Newton's
 /// cradle. With restitution below 1 the outcome depends on the order, which is therefore part of
 /// the law; where two impacts of one body at one instant give another result in the opposite order,
-/// a notice says so.
+/// a notice says so, of the first eight rounds.
 ///
 /// Bodies on rods and joints: the impulse acts on the constrained system (impact_bodies.h). Its
 /// size is that of the laws' collision_impulse for the free bodies, times K_free / K_held, so that
@@ -99,14 +99,17 @@ class SequentialImpacts {
   struct Work;
   bool push_pair_apart(Work& work, const TouchingPair& pair);
   bool collide(Work& work, const TouchingPair& pair, double threshold);
-  bool collide_in_turn(Work& work, const std::vector<const TouchingPair*>& in_turn,
-                       double threshold);
   /// Impacts whose order decides: two of one body at one instant.
   struct Tie {
-    int body;
+    int body, round;
     const TouchingPair *one, *two;
   };
-  std::optional<Tie> tie_of(Work& work, const std::vector<TouchingPair>& pairs, double threshold);
+  // ties: null, or where the first of each of the first rounds is put; turned_from: the round from
+  // which on pairs are visited backwards
+  bool collide_in_turn(Work& work, std::vector<const TouchingPair*> in_turn, double threshold,
+                       std::vector<Tie>* ties, int turned_from = 0);
+  std::optional<Tie> tie_of(Work& work, const std::vector<const TouchingPair*>& pairs,
+                            double threshold, int round);
   void watch_order(Work& work, const Tie& tie, const std::vector<TouchingPair>& pairs,
                    double threshold);
   double friction_at_impact(const World& world, const TouchingPair& pair) const;

@@ -80,16 +80,22 @@ std::vector<int> TiedImpacts::partners(int body, double t, const FlightOf& befor
   return found;
 }
 
-// Whether one of the two meets a third body, and they each other, before any impulse.
+// Whether one of the two meets a third body, and they each other, before any impulse, or they end a
+// row of four at least: there impulses can bring a body two impacts at once.
 bool TiedImpacts::meets_another(const EventStamp& key, const FlightOf& before) const {
+  bool is_longer = false;
   for (const int body : {key.body_a, key.body_b}) {
     if (!world_.can_move(body) || before(body).segment >= 0) continue;
-    for (const int other : partners(body, key.time, before))
-      if (other != key.body_a && other != key.body_b &&
-          approach(std::min(body, other), std::max(body, other), key.time, before))
+    for (const int other : partners(body, key.time, before)) {
+      if (other == key.body_a || other == key.body_b) continue;
+      if (approach(std::min(body, other), std::max(body, other), key.time, before))
         return approach(key.body_a, key.body_b, key.time, before);
+      is_longer = true;
+    }
   }
-  return false;
+  constexpr std::size_t kRow = 4;
+  return is_longer && touching(key, before).size() >= kRow &&
+         approach(key.body_a, key.body_b, key.time, before);
 }
 
 // The two, and what touches them directly or through others, ascending.
