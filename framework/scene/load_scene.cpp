@@ -1,5 +1,6 @@
 #include "framework/scene/load_scene.h"
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -127,7 +128,10 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   read(root, "needs", scene.needs);
   read(root, "engine", scene.engine);
   scene.duration_s = root.at("duration_s");
-  read(root, "step_s", scene.step_s);
+  if (root.contains("step_s"))
+    read(root, "step_s", scene.step_s);
+  else
+    scene.step_s = std::min(scene.step_s, scene.duration_s);
   scene.gives_rest_speed = root.contains("rest_speed_m_s");
   read(root, "rest_speed_m_s", scene.rest_speed_m_s);
   // Bodies first, then the entries that name them.

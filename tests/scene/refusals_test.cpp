@@ -197,6 +197,17 @@ TEST(SceneRefusals, ADurationOrStepThatIsNotAboveZeroSaysSo) {
     }
 }
 
+TEST(SceneRefusals, AStepIsNotLongerThanTheRun) {
+  const auto lasting = [](const std::string& more) {
+    std::string text = scene_with(kBall, more);
+    text.replace(text.find("\"duration_s\": 1"), 15, "\"duration_s\": 0.01");
+    return refusal(text);
+  };
+  expect_words(lasting(", \"step_s\": 0.02"), {"/step_s", "longer than the whole run"});
+  EXPECT_EQ(lasting(", \"step_s\": 0.01"), "");
+  EXPECT_EQ(lasting(""), "");  // nobody gave 1/60 s
+}
+
 // 1e-320 kg has no inverse in doubles, and (1e200 m/s)^2 no value: errors that follow from them
 // would not name their cause.
 TEST(SceneRefusals, NumbersThatDoublesCannotSquareAreNamed) {
