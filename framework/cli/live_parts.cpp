@@ -163,54 +163,17 @@ std::vector<OwnSource> own_sources(const Context& context, const RunWords& words
   return sources;
 }
 
-struct Symbol {
-  std::string name;
-  std::uint64_t start = 0;
-};
-/// What nm says of the code in an object, by where it begins.
-std::vector<Symbol> symbols_of(const fs::path& object) {
-  const auto listed =
-      run_program({"nm", "--numeric-sort", object.string()}, Output::kCaptured, 20.0);
-  std::vector<Symbol> symbols;
-  std::istringstream lines(listed.printed);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream parts(line);
-    std::uint64_t start = 0;
-    std::string kind, name;
-    if (parts >> std::hex >> start >> kind >> name && (kind == "t" || kind == "T" || kind == "W"))
-      symbols.push_back({name, start});
-  }
-  return symbols;
-}
-
-/// The line of an offset into a shared object: the file is compiled once more, with lines, to the
-/// same code, and looked up by function and distance from its start.
+/// The line of an offset into a shared object: those of students are compiled with lines.
 /// @return 0: not found
-int line_of_offset(const Context& context, const fs::path& source, const fs::path& object,
-                   std::uint64_t offset) {
-  Symbol function;
-  for (const Symbol& symbol : symbols_of(object))
-    if (symbol.start <= offset) function = symbol;
-  if (function.name.empty()) return 0;
-  const PrivateFolder folder;
-  const fs::path with_lines = folder.path() / "with_lines.o";
-  const auto compiled = run_program(
-      {"g++", "-std=c++20", "-O2", "-g1", "-fPIC", "-ffp-contract=off", "-fno-finite-loops",
-       "-fno-gnu-unique", "-DTUMBLE_BUILDING_MODULE", "-I", context.root.string(), "-isystem",
-       TUMBLE_EIGEN_INCLUDE, "-c", source.string(), "-o", with_lines.string()},
-      Output::kCaptured, 60.0);
-  if (compiled.code != 0) return 0;
-  for (const Symbol& symbol : symbols_of(with_lines)) {
-    if (symbol.name != function.name) continue;
-    const auto told = run_program({"addr2line", "-i", "-e", with_lines.string(),
-                                   fmt::format("{:#x}", symbol.start + offset - function.start)},
-                                  Output::kCaptured, 20.0);
-    // Innermost first; inlined library code is passed over.
-    std::istringstream lines(told.printed);
-    for (std::string line; std::getline(lines, line);)
-      if (line.find(source.filename().string() + ":") != std::string::npos)
-        return std::atoi(line.c_str() + line.rfind(':') + 1);
-  }
+int line_of_offset(const fs::path& source, const fs::path& object, std::uint64_t offset) {
+  const auto told =
+      run_program({"addr2line", "-i", "-e", object.string(), fmt::format("{:#x}", offset)},
+                  Output::kCaptured, 20.0);
+  // Innermost first; inlined library code is passed over.
+  std::istringstream lines(told.printed);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find(source.filename().string() + ":") != std::string::npos)
+      return std::atoi(line.c_str() + line.rfind(':') + 1);
   return 0;
 }
 
@@ -259,7 +222,7 @@ void locate_for_page(Context& context, const RunWords& words) {
     for (const OwnSource& source : sources) {
       const std::string name = fs::path(object).filename().string();
       if (name != source.id + "_student.so" && name != source.id + ".so") continue;
-      if (const int number = line_of_offset(context, source.file, object, offset); number > 0) {
+      if (const int number = line_of_offset(source.file, object, offset); number > 0) {
         fmt::print("{}:{}: {}\n", source.file.filename().string(), number,
                    line_in(source.file, number));
         return;

@@ -147,6 +147,7 @@ class Expansion {
 std::optional<Axis> expand(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& start,
                            double size) {
   std::array<Vector3d, 4> corners;
+  corners.fill(Vector3d::Zero());
   for (int i = 0; i < start.size; ++i) corners[i] = start.points[i].difference;
   if (!complete(a, b, corners, start.size) && (start.size == 1 || !complete(a, b, corners, 1)))
     return std::nullopt;

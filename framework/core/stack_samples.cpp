@@ -21,18 +21,20 @@
 #include "framework/core/error.h"
 
 namespace tumble {
+
+// Not of the unnamed namespace: StackSamples::Stacks holds them.
+struct SampledStack {
+  int depth = 0;
+  std::array<void*, 64> functions;  // from the innermost
+};
+
 namespace {
 
-constexpr int kDeepest = 64;                   // stack frames kept, from the innermost
+constexpr int kDeepest = std::tuple_size_v<decltype(SampledStack::functions)>;
 constexpr std::size_t kMostSamples = 1 << 15;  // minutes of CPU time; later samples are dropped
 // innermost frames, which belong to the signal's delivery
 constexpr int kSignalFrames = 2;
 constexpr suseconds_t kInterval_us = 1000;  // requested; the system rounds it up to its own tick
-
-struct Stack {
-  int depth = 0;
-  std::array<void*, kDeepest> functions;
-};
 
 // ---- Names of functions -------------------------------------------------------------------------
 
@@ -130,19 +132,19 @@ std::size_t matching_prefix(const std::vector<std::string>& prefixes, const std:
 }  // namespace
 
 struct StackSamples::Stacks {
-  std::vector<Stack> all = std::vector<Stack>(kMostSamples);
+  std::vector<SampledStack> all = std::vector<SampledStack>(kMostSamples);
   std::atomic<std::size_t> taken = 0;
 };
 
 namespace {
 
 // Globals: a signal handler has no argument through which to reach its buffer.
-std::atomic<std::vector<Stack>*> writing = nullptr;
+std::atomic<std::vector<SampledStack>*> writing = nullptr;
 std::atomic<std::size_t>* writing_at = nullptr;
 
 void take_sample(int) {
   const int kept = errno;
-  if (std::vector<Stack>* all = writing.load(std::memory_order_acquire)) {
+  if (std::vector<SampledStack>* all = writing.load(std::memory_order_acquire)) {
     const std::size_t k = writing_at->fetch_add(1, std::memory_order_relaxed);
     if (k < all->size()) (*all)[k].depth = backtrace((*all)[k].functions.data(), kDeepest);
   }
@@ -210,7 +212,7 @@ StackSamples::Shares StackSamples::shares(const std::vector<Part>& parts,
   Shares shares;
   shares.of_part.assign(parts.size(), 0.0);
   for (std::size_t k = 0; k < std::min(stacks_->taken.load(), kMostSamples); ++k) {
-    const Stack& stack = stacks_->all[k];
+    const SampledStack& stack = stacks_->all[k];
     int part = kNone;
     for (int i = kSignalFrames; i < stack.depth && part != kLeftOut; ++i)
       if (const int its = part_at(stack.functions[static_cast<std::size_t>(i)], i == kSignalFrames);
