@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <cstdio>
 #include <vector>
@@ -32,6 +33,19 @@ void print(const char* what, const MatrixXd& m) {
   std::printf("\n");
 }
 
+/// Solved into a vector, and as a part of expressions, which read the numbers where Eigen put them.
+template <class Factors>
+void print_solved(const char* what, const Factors& factors, const VectorXd& b) {
+  VectorXd x = factors.solve(b);
+  print(what, x);
+  x += factors.solve(b);
+  print(what, x);
+  x -= 0.5 * factors.solve(b);
+  print(what, x);
+  print(what, VectorXd(b - factors.solve(2 * b)));
+  std::printf("%s %a\n", what, b.dot(factors.solve(b)));
+}
+
 /// A chain's: each row meets the next one, some meet a far one.
 Sparse sparse_of(Index n, double diagonal) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -55,8 +69,8 @@ void print_sparse(const char* what, const Sparse& m, const VectorXd& b) {
   const Factors factors(m);
   std::printf("%s info %d\n", what, static_cast<int>(factors.info()));
   if (factors.info() != Eigen::Success) return;
+  print_solved(what, factors, b);
   const VectorXd x = factors.solve(b);
-  print(what, x);
   print(what, VectorXd(factors.solve(b - m * x)));
   Factors again;
   again.analyzePattern(m);
@@ -79,13 +93,16 @@ int main() {
     print("b - A b", b - A * b);
     if (n == 0) continue;
     const MatrixXd S = A * A.transpose() + MatrixXd::Identity(n, n);
-    print("LU", A.partialPivLu().solve(b));
-    print("full LU", A.fullPivLu().solve(b));
+    print_solved("LU", A.partialPivLu(), b);
+    print_solved("full LU", A.fullPivLu(), b);
     print("inverse", A.inverse());
-    print("LLT", S.llt().solve(b));
+    print_solved("LLT", S.llt(), b);
     print("LDLT", S.ldlt().solve(b - A * b));
-    print("QR", A.colPivHouseholderQr().solve(b));
-    print("orthogonal", A.completeOrthogonalDecomposition().solve(b));
+    print_solved("LDLT", S.ldlt(), b);
+    print_solved("QR", A.colPivHouseholderQr(), b);
+    print_solved("plain QR", A.householderQr(), b);
+    print_solved("SVD", A.jacobiSvd(Eigen::ComputeThinU | Eigen::ComputeThinV), b);
+    print_solved("orthogonal", A.completeOrthogonalDecomposition(), b);
     print_sparse<Eigen::SimplicialLDLT<Sparse>>("sparse LDLT", sparse_of(n, 4), b);
     print_sparse<Eigen::SimplicialLLT<Sparse>>("sparse LLT", sparse_of(n, 4), b);
     print_sparse<Eigen::SimplicialLDLT<Sparse>>("indefinite LDLT", sparse_of(n, -0.7), b);

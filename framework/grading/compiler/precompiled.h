@@ -302,7 +302,8 @@ TUMBLE_SPECTRA SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd
     const EigenBase<MatrixXd>&, int);
 TUMBLE_SPECTRA void SVDBase<JacobiSVD<MatrixXd>>::_solve_impl(const VectorXd&, VectorXd&) const;
 
-// Sparse factors, with the ordering that each has where nothing is said.
+// Sparse factors, with the ordering that each has where nothing is said. A solution is written where
+// its vector lies: an expression that it is a part of (x += factors.solve(b)) points there already.
 using TumbleSparse = SparseMatrix<double>;
 using TumbleEntries = std::vector<Triplet<double>>::iterator;
 TUMBLE_SPARSE class SparseMatrix<double>;
@@ -329,11 +330,14 @@ TUMBLE_SPARSE void TumbleSparse::setFromTriplets(const TumbleEntries&, const Tum
           const TUMBLE_SPARSE_COMPILED_ONCE({                                               \
             if (m_info != Success) return;                                                  \
             VectorXd& solved = x.derived();                                                 \
-            solved = m_P.size() > 0 ? VectorXd(m_P * b.derived()) : VectorXd(b.derived());  \
+            if (m_P.size() > 0)                                                             \
+              solved = m_P * b.derived();                                                   \
+            else                                                                            \
+              solved = b.derived();                                                         \
             if (m_matrix.nonZeros() > 0) derived().matrixL().solveInPlace(solved);          \
             if (m_diag.size() > 0) solved = m_diag.asDiagonal().inverse() * solved;         \
             if (m_matrix.nonZeros() > 0) derived().matrixU().solveInPlace(solved);          \
-            if (m_P.size() > 0) solved = VectorXd(m_Pinv * solved);                         \
+            if (m_P.size() > 0) solved = m_Pinv * solved;                                   \
           })
 TUMBLE_FACTORISES(SimplicialLDLT<TumbleSparse>, true)
 TUMBLE_FACTORISES(SimplicialLLT<TumbleSparse>, false)
