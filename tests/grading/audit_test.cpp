@@ -1,4 +1,5 @@
 // What an audit says of its tests.
+#include <set>
 #include <gtest/gtest.h>
 
 #include "tests/support/places.h"
@@ -56,6 +57,21 @@ TEST(Audit, OnlyTheNamedAreJudgedAndAnUnknownNameIsAnsweredWithTheNearest) {
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("Did you mean 'e_squared'?"), std::string::npos)
         << error.what();
+  }
+}
+
+// All of these decide what a submission answers.
+TEST(Audit, ResultsOfOtherFilesAreNotKept) {
+  namespace fs = std::filesystem;
+  modules::Registry registry;
+  register_assignments(registry);
+  const PrivateFolder build;
+  const Course course{test::source_dir(), build.path(), &registry, ""};
+  std::set<std::string> digests{judging_digest(course, "a1")};
+  for (const char* file : {"bin/judge_a1", "bin/worker_a1", "bin/sandbox_init",
+                           "submission_sdk/precompiled.h", "submission_sdk/libkernels.a"}) {
+    write_whole(build.path() / file, "another");
+    EXPECT_TRUE(digests.insert(judging_digest(course, "a1")).second) << file;
   }
 }
 

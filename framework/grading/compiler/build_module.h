@@ -28,6 +28,9 @@ BuiltSubmission build_own_tests(const std::filesystem::path& root,
                                 const std::string& folder, const std::filesystem::path& source,
                                 const std::filesystem::path& object);
 
+/// What every submission is compiled with.
+const char* submission_flags();
+
 /// The words of a compilation of the user's own file outside the sandbox, with the same flags and
 /// the same precompiled header: g++ and what follows.
 std::vector<std::string> own_compilation(const std::filesystem::path& root,

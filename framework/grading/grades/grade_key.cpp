@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/digest.h"
+#include "framework/grading/compiler/build_module.h"
 #include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {
@@ -27,12 +28,13 @@ std::string judging_digest(const Course& course, const std::string& id) {
   for (const auto& entry : fs::directory_iterator(course.root / "assignments" / folder, ignored))
     if (entry.path().extension() == ".h") headers.push_back(entry.path());
   std::sort(headers.begin(), headers.end());
-  const fs::path bin = course.build / "bin";
-  std::vector<fs::path> files = {judge_of(course, id), bin / ("worker_" + id), bin / "sandbox_init",
-                                 "/usr/bin/g++"};
+  const fs::path bin = course.build / "bin", sdk = course.build / "submission_sdk";
+  std::vector<fs::path> files = {judge_of(course, id), bin / ("worker_" + id),
+                                 bin / "sandbox_init", "/usr/bin/g++",
+                                 sdk / "precompiled.h", sdk / "libkernels.a"};
   if (traits_of(chosen_sandbox()).links_worker) files.push_back(bin / ("worker_" + id + ".o"));
   files.insert(files.end(), headers.begin(), headers.end());
-  return digest_of_files(files);
+  return digest(digest_of_files(files) + submission_flags());
 }
 
 std::string grader_digest(const Course& course, const std::string& id, double budget_s) {

@@ -7,7 +7,7 @@
 namespace tumble::grading {
 
 /// Digest of everything that decides a verdict: the judge with its tests, the worker, the module's
-/// headers, the compiler.
+/// headers, the compiler, its flags, and what is compiled once for all submissions.
 std::string judging_digest(const Course& course, const std::string& id);
 /// The same with this program and a submission's time budget.
 std::string grader_digest(const Course& course, const std::string& id, double budget_s);
