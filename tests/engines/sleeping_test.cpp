@@ -188,6 +188,31 @@ TEST(Sleeping, WhatTrulySlidesIsAwakeHoweverSlow) {
   EXPECT_TRUE(falls_asleep(run_it(creeping_block(0.0, 1.1)), 0));
 }
 
+// A frictionless block on a slope of 1e-6 rad, from rest: in half a second it goes a micrometre, which
+// counts as still, and in 20 s it would go 2 mm. What sleep takes is told as what sleep takes: no step
+// mends it.
+TEST(Sleeping, WhatItTakesFromABodyThatMovesIsToldWithTheRemedy) {
+  const double angle = 1e-6, duration = 20.0;
+  const Vector3d normal(std::sin(angle), 0, std::cos(angle));
+  auto block = rough(box("block", {0.1, 0.1, 0.1}, 1.0, 0.1 * normal, Vector3d::Zero()), 0.0);
+  auto slope = rough(plane("slope", Vector3d::Zero(), normal), 0.0);
+  block.world_from_body = slope.world_from_body =
+      Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  const scene::Scene scene = sleepy({block, slope}, duration);
+  const Trajectory slept = run_it(scene), awake = run_awake(scene);
+  // g sin(angle) t^2 / 2; contact shells are 1e-11 m
+  EXPECT_NEAR(awake.frames.back().poses[0].com_world.x() - block.position_m.x(),
+              0.5 * kG * angle * duration * duration, 1e-9);
+  EXPECT_TRUE(awake.counters.faults.empty());
+  ASSERT_TRUE(falls_asleep(slept, 0));
+  ASSERT_EQ(slept.counters.faults.size(), 1u);
+  const RunFault& fault = slept.counters.faults[0];
+  EXPECT_EQ(fault.kind, "energy_lost");
+  EXPECT_NE(fault.meaning.find("falls asleep"), std::string::npos) << fault.meaning;
+  EXPECT_NE(fault.remedy.find("\"sleep\": false"), std::string::npos) << fault.remedy;
+  EXPECT_EQ(fault.remedy.find("a step of at most"), std::string::npos) << fault.remedy;
+}
+
 TEST(Sleeping, AForceThatIsSwitchedOnWakes) {
   scene::Scene scene = block_on_floor(4.0);
   scene.effects.of<effects::PointForceSpec>().push_back(

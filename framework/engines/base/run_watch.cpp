@@ -158,7 +158,7 @@ std::vector<RunFault> RunWatch::faults() const {
     fault.first_s = incident.first.time;
     fault.worst_s = incident.worst.time;
     fault.count = incident.count;
-    fault.meaning = words.meaning;
+    fault.meaning = incident.worst.meaning.empty() ? words.meaning : incident.worst.meaning;
     if (!std::isnan(incident.worst.whole))
       fault.meaning +=
           fmt::format(": {:.3g} J of the {:.3g} J that moved, were stored or came down",

@@ -77,6 +77,7 @@ class RunWatch {
     // kind's: known ones first
     double mending_step = kUnset;
     std::string first_remedy = {}, remedy = {};
+    std::string meaning = {};  // instead of its kind's
   };
 
   /// Keeps what is above what is allowed, or is not a number.

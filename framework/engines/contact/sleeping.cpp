@@ -105,7 +105,7 @@ std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touc
   return groups;
 }
 
-void Sleepers::look(const std::vector<Pair>& touching) {
+std::vector<int> Sleepers::look(const std::vector<Pair>& touching) {
   const StageTimer timer(counters_.sleep_seconds);
   for (int body = 0; body < moving_.size(); ++body) {
     if (moving_.can_move(body))
@@ -116,13 +116,18 @@ void Sleepers::look(const std::vector<Pair>& touching) {
   for (int k = 0; k < static_cast<int>(held_.size()); ++k)
     if (moving_.can_move(moving_.linked_groups()[k].bodies().front())) watch_control(k);
   const double latest = moving_.time() - kStillFor;
+  std::vector<int> fell_asleep;
   for (int body = 0; body < moving_.size(); ++body)
     // most of the time none is: no islands are formed
     if (moving_.can_move(body) && still_[body].roughly.since <= latest) {
       for (auto& [first, group] : groups_of(touching))
-        if (group.held && !group.driven && is_still(group, latest)) put_to_sleep(std::move(group));
-      return;
+        if (group.held && !group.driven && is_still(group, latest)) {
+          fell_asleep.insert(fell_asleep.end(), group.bodies.begin(), group.bodies.end());
+          put_to_sleep(std::move(group));
+        }
+      break;
     }
+  return fell_asleep;
 }
 
 void Sleepers::put_to_sleep(Group group) {

@@ -39,7 +39,8 @@ class Sleepers {
 
   /// After a step: puts the groups to sleep that have been still long enough.
   /// @param touching  pairs in contact in this step
-  void look(const std::vector<Pair>& touching);
+  /// @return the bodies that fell asleep
+  std::vector<int> look(const std::vector<Pair>& touching);
 
   /// Before a step's contacts: wakes groups that something moving will be in contact with.
   /// @return whether there were any: the step is to be begun again

@@ -277,7 +277,8 @@ void RetroactiveRun::run_to_the_end() {
     run_callbacks();
     watch_energy();
     record([&] { recorder_.record_committed(moving_); });
-    if (has_sleepers()) sleepers_->look(touching_);
+    if (has_sleepers())
+      for (const int body : sleepers_->look(touching_)) energy_watch_.note_sleep(body);
   }
 }
 

@@ -147,6 +147,9 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
   for (const int body : touched_)
     if (Part* part = part_with(body)) part->is_touched = true;
   touched_.clear();
+  for (const int body : fell_asleep_)
+    if (Part* part = part_with(body)) part->fell_asleep = true;
+  fell_asleep_.clear();
   std::vector<double> powers(takers_.empty() ? 0 : parts_.size(), 0.0);
   for (const Taker& taker : takers_)
     powers[static_cast<std::size_t>(taker.part)] +=
@@ -181,7 +184,8 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     const Seen seen_before = std::exchange(part.seen, seen);
     part.highest_place = std::max(part.highest_place, height);
     part.whole = std::max({part.whole, at_work, part.highest_place - height});
-    const bool is_touched = std::exchange(part.is_touched, false);
+    const bool is_touched = std::exchange(part.is_touched, false),
+               fell_asleep = std::exchange(part.fell_asleep, false);
     if (std::isnan(before)) {  // the first look
       part.highest = part.least = all;
       continue;
@@ -214,7 +218,7 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     if (!(lost > kEnergyLost * part.whole) ||
         (!part.losses.empty() && !(lost > kSeen * part.losses.back().size)))
       continue;
-    part.losses.push_back({time, lost, part.largest_fall > 0.5 * lost});
+    part.losses.push_back({time, lost, part.largest_fall > 0.5 * lost, fell_asleep});
     is_more = true;
   }
   return is_more;
@@ -228,8 +232,8 @@ std::vector<LostEnergy> EnergyLoss::losses(double rounding) const {
         // energy that swings, as that of symplectic methods does, is told of where it rises
         if (part.rise > kEnergyRises * part.whole && !(loss.size > 2.0 * part.rise)) continue;
         if (loss.size > kEnergyLost * part.whole + rounding)
-          found.push_back(
-              {part.bodies, loss.size, part.whole, loss.time, last_look_, loss.is_sudden});
+          found.push_back({part.bodies, loss.size, part.whole, loss.time, last_look_,
+                           loss.is_sudden, loss.is_by_sleep});
       }
     }
   return found;

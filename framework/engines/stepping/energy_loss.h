@@ -39,6 +39,7 @@ struct LostEnergy {
   double lost, whole;       // how much, of what moved, was stored or came down there at most [J]
   double time, watched;     // when, and until when it was looked at [s]
   bool is_sudden;           // half of it or more between two looks
+  bool is_by_sleep;         // bodies of the part fell asleep between these two looks
 };
 
 /// What one part of a world has won that nothing brings in.
@@ -59,6 +60,8 @@ class EnergyLoss {
     touched_.push_back(a);
     touched_.push_back(b);
   }
+  /// A body that has fallen asleep since the last look.
+  void note_sleep(int body) { fell_asleep_.push_back(body); }
   /// @param brought  by effects since the last look, by body; empty: nothing
   /// @return whether more is lost than before that may have to be told
   bool look(double time, const World& world, const std::vector<RigidBodyState>& states,
@@ -85,11 +88,11 @@ class EnergyLoss {
   };
   struct Loss {
     double time, size;  // [s], [J]
-    bool is_sudden;
+    bool is_sudden, is_by_sleep;
   };
   struct Part {
     std::vector<int> bodies;
-    bool is_watched = true, is_touched = false;
+    bool is_watched = true, is_touched = false, fell_asleep = false;
     // the frame that it is seen from: an immovable body that it is linked with, or kWorld
     std::optional<int> frame;
     Seen seen;
@@ -115,7 +118,7 @@ class EnergyLoss {
   std::vector<int> part_of_;   // by body; -1: immovable
   std::vector<Part> parts_, former_;
   std::vector<Taker> takers_;
-  std::vector<int> touched_;  // bodies, since the last look
+  std::vector<int> touched_, fell_asleep_;  // bodies, since the last look
   std::vector<int> resting_;  // the same, since the beginning; how many of them are left out
   std::size_t left_out_ = 0;
 };

@@ -51,6 +51,8 @@ class EnergyWatch {
   }
   /// Two bodies may have been kept apart in a step since the last look. @param a, b  -1: none
   void note_touch(int a, int b) { loss_.note_touch(a, b); }
+  /// A body has fallen asleep since the last look: sleep takes what it still had.
+  void note_sleep(int body) { loss_.note_sleep(body); }
   /// @param contacts  persistent ones of the step that leads to these states
   /// @return nothing while all is well, and for worlds that moving walls drive
   std::optional<Runaway> look(double time, const World& world,

@@ -78,6 +78,14 @@ RunWatch::Size told_of_loss(const LostEnergy& loss, const World& world, const La
   const PartLinks links = links_of(loss.bodies, world);
   RunWatch::Size told{loss.lost / loss.whole, kEnergyLost, loss.time, step,
                       kOrderOfMethods,        loss.whole};
+  if (loss.is_by_sleep) {
+    told.step = 0.0;  // none helps
+    told.meaning =
+        "what falls asleep stands still from then on: these bodies were slow enough for it, and "
+        "not at rest";
+    told.remedy = "\"sleep\": false in the scene's \"contact\", or a smaller \"rest_speed_m_s\"";
+    return told;
+  }
   try {
     told.order = order_of_damping(laws);
     if (links.are_springs)
