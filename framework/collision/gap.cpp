@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/collision/axes.h"
 #include "framework/collision/ellipsoid.h"
 #include "framework/collision/piece_pairs.h"
 #include "framework/collision/touching_normal.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr double kRoundingOfGaps = 1e-14;
 // likewise: far above the error of any search
 constexpr double kCertain = 1e-11;
+// likewise: what rounding of places and of times of impact leaves
+constexpr double kApartAsWell = 1e-12;
 
 Gap flipped(Gap gap) {
   std::swap(gap.point_a_world, gap.point_b_world);
@@ -186,6 +189,29 @@ std::optional<Separation> largest_separation(const CollisionShape& a, const Pose
   }
   if (!(found.distance <= limit)) return std::nullopt;
   return found;
+}
+
+std::optional<Vector3d> other_normal(const CollisionShape& a, const Pose& pose_a,
+                                     const CollisionShape& b, const Pose& pose_b, const Gap& gap) {
+  // pairs of edge directions: those of boxes and tetrahedra
+  constexpr std::size_t kMostPairs = 36;
+  const auto is_asked = [](const CollisionShape& shape) {
+    return !shape.is_half_space() && !shape.ellipsoid() && !shape.is_closed_surface() &&
+           shape.radius() == 0.0;
+  };
+  if (!is_asked(a) || !is_asked(b) ||
+      a.pieces()[0].edge_directions.size() * b.pieces()[0].edge_directions.size() > kMostPairs)
+    return std::nullopt;
+  const Query query(a, pose_a, b, pose_b);
+  if (gap.distance > kApartAsWell * query.size) return std::nullopt;
+  BarredAxes barred;
+  barred.first = gap.normal_b_to_a_world;
+  const Axis other = best_axis(query.piece_of_a(0), query.piece_of_b(0), query.size, &barred);
+  constexpr double kAnother = 1e-2;  // rad: of the impulse, nearer ones change a hundredth
+  if (!(other.separation >= -kApartAsWell * query.size) ||
+      (other.normal_b_to_a - gap.normal_b_to_a_world).norm() < kAnother)
+    return std::nullopt;
+  return other.normal_b_to_a;
 }
 
 double separation_along(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,

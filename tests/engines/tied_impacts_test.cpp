@@ -1,5 +1,6 @@
 // Two impacts of one body at one instant: the sequential law takes them in the order of bodies, and
 // says so where that decides what comes of them.
+#include <algorithm>
 #include <array>
 
 #include <gtest/gtest.h>
@@ -175,6 +176,46 @@ TEST(ImpactsAtOneInstant, ThatLeaveOutReboundsSaySo) {
       });
       EXPECT_EQ(is_said, restitution == 0.3) << engine;
     }
+}
+
+// Two cubes that fly at each other, turned by 45 degrees about z: edge meets parallel edge. `aside`
+// is how far the second passes beside the first.
+scene::Scene edge_on_edge(double aside) {
+  std::vector<scene::BodySpec> bodies{
+      box("left", {0.5, 0.5, 0.5}, 1.0, {-2, 0, 0}, {1, 0, 0}),
+      box("right", {0.5, 0.5, 0.5}, 2.0, {2, aside, 0}, {-1, 0, 0})};
+  for (scene::BodySpec& body : bodies)
+    body.world_from_body = Quaterniond(Eigen::AngleAxisd(M_PI / 4, Vector3d::UnitZ()));
+  return scene_of(std::move(bodies), 4.0);
+}
+
+bool says_normal(const Trajectory& run) {
+  return std::any_of(
+      run.counters.notices.begin(), run.counters.notices.end(), [](const std::string& notice) {
+        return notice.find("'left' meets 'right' corner on corner") != std::string::npos;
+      });
+}
+
+// By symmetry nothing would move along y. A normal of faces, along which two cubes are apart as
+// well, sends them aside, and a rounding of places chooses to which side.
+TEST(ImpactsWithSeveralNormals, AreReported) {
+  for (const char* engine : {"rd", "ordered", "ca", "tw"})
+    for (const double aside : {0.0, 1e-13}) {
+      const Trajectory run = run_on(engine, edge_on_edge(aside));
+      ASSERT_EQ(run.events.size() > 0, true);
+      const double across = std::abs(run.frames.back().poses[0].velocity_world.y());
+      EXPECT_TRUE(across < 1e-9 || says_normal(run)) << engine << ' ' << across;
+      // with a tenth of the edge beside each other, an edge meets a face: one normal
+      EXPECT_FALSE(says_normal(run_on(engine, edge_on_edge(0.1)))) << engine;
+    }
+}
+
+// A cube that lands flat on another, side above side, has one normal.
+TEST(ImpactsWithSeveralNormals, AreNotThoseOfFacesThatFitEachOther) {
+  std::vector<scene::BodySpec> bodies{box("left", {0.5, 0.5, 0.5}, 1.0, {0, 0, 3}, {0, 0, -1}),
+                                      box("right", {0.5, 0.5, 0.5}, 2.0, {0, 0, 0}, {0, 0, 1})};
+  for (const char* engine : {"rd", "ordered"})
+    EXPECT_TRUE(run_on(engine, scene_of(bodies, 3.0)).counters.notices.empty()) << engine;
 }
 
 }  // namespace

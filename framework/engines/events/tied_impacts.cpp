@@ -6,6 +6,7 @@
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/impact_law.h"
+#include "framework/engines/contact/normal_watch.h"
 
 namespace tumble::engines {
 namespace {
@@ -110,7 +111,33 @@ std::vector<int> TiedImpacts::touching(const EventStamp& key, const FlightOf& be
   return bodies;
 }
 
+// Of two bodies that fly freely, or one that does and a wall; within processes an impact is watched
+// where it is resolved.
+void TiedImpacts::look_at_normal(const EventStamp& key, const FlightOf& before,
+                                 RunWatch& watch) const {
+  const int a = key.body_a, b = key.body_b;
+  if (key.kind != StampKind::kCollision || key.microstep > 0 || b < 0 || before(a).segment >= 0 ||
+      before(b).segment >= 0 || world_.is_half_space(a) || world_.is_half_space(b) ||
+      watch.has_said(kNormalOfImpact, key.time))
+    return;
+  const Body one = world_.body_at(a, before(a), key.time),
+             two = world_.body_at(b, before(b), key.time);
+  const MeetingBodies bodies{world_.world().bodies[a],
+                             world_.world().bodies[b],
+                             world_.shape(a),
+                             world_.shape(b),
+                             {one.com_world, one.world_from_body},
+                             {two.com_world, two.world_from_body}};
+  if (bodies.shape_a.is_ball() || bodies.shape_b.is_ball()) return;
+  const collision::Gap gap =
+      collision::compute_gap(bodies.shape_a, bodies.pose_a, bodies.shape_b, bodies.pose_b);
+  if (collision::other_normal(bodies.shape_a, bodies.pose_a, bodies.shape_b, bodies.pose_b, gap) &&
+      approach(a, b, key.time, before))
+    watch_normal(key.time, bodies, gap, watch);
+}
+
 void TiedImpacts::look(const EventStamp& key, const FlightOf& before, RunWatch& watch) {
+  look_at_normal(key, before, watch);
   const std::size_t asked =
       static_cast<std::size_t>(world_.size()) <= kMostAsked ? 0 : world_.obstacles().size();
   if (key.kind != StampKind::kCollision || key.microstep > 0 || asked > kMostAsked ||

@@ -23,7 +23,8 @@ class TiedImpacts {
   TiedImpacts(const FlightWorld& world, const Laws& laws, ProcessRules rules)
       : world_(world), laws_(laws), rules_(rules) {}
 
-  /// Says once a run where the opposite order gives another result.
+  /// Says once a run where the opposite order gives another result, and where an impact has more
+  /// than one normal (contact/normal_watch.h).
   /// @param key     of an impact that is committed
   /// @param before  the flights of all bodies before that instant
   void look(const EventStamp& key, const FlightOf& before, RunWatch& watch);
@@ -33,6 +34,7 @@ class TiedImpacts {
   bool touch(int a, int b, double t, const FlightOf& before) const;
   bool approach(int a, int b, double t, const FlightOf& before) const;
   std::vector<int> partners(int body, double t, const FlightOf& before) const;
+  void look_at_normal(const EventStamp& key, const FlightOf& before, RunWatch& watch) const;
   std::vector<int> touching(const EventStamp& key, const FlightOf& before) const;
   bool meets_another(const EventStamp& key, const FlightOf& before) const;
 
