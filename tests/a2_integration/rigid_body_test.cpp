@@ -76,7 +76,7 @@ TEST(RigidBodyDerivative, MovesTheCentreOfMassAndPassesForces) {
                    ? "the derivative has 13 numbers, as pack() orders them"
                    : likely(found,
                             Slips<VectorXd>{
-                                {undivided, "x' = P / m: momentum is not velocity"},
+                                {undivided, "momentum is taken for velocity: x' = P / m"},
                                 {swapped, "force and torque are swapped: P' = F, L' = tau"}},
                             "x' = P / m, P' = F, L' = tau in the order of pack()"),
        .handout = equation(4)});
@@ -211,7 +211,7 @@ TEST(RigidBodyDerivative, ProductsOfInertiaCountInEveryUnit) {
                  {rate(R * (body.inverse_inertia_body * L)),
                   "R^T is missing: L stands in the world, I^-1 in the body"},
                  {rate_of(skew_turn() * Quaterniond(0, w_right.x(), w_right.y(), w_right.z())),
-                  "q' = 1/2 (0, w) q: the world's w stands left of q, not right"}},
+                  "the world's w stands right of q: q' = 1/2 (0, w) q"}},
              unit_slip),
          .handout = equation(5)});
     expect_near(Vector3d(found.head<3>() / unit), Vector3d(3, -1, 2), kRoundoff * 3, "units/s (x')",

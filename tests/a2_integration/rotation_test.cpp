@@ -88,9 +88,9 @@ Mistake slip_of_columns(const Matrix3d& found, const Matrix3d& drifted) {
   return likely(
       found,
       Slips<Matrix3d>{{of(x, y, off(c, x).normalized()),
-                       "(y . c) y: the second projection is not taken off the third column"},
+                       "the second projection is not taken off the third column: (y . c) y"},
                       {of(x, y, off(c, y).normalized()),
-                       "(x . c) x: the first projection is not taken off the third column"},
+                       "the first projection is not taken off the third column: (x . c) x"},
                       {of(x, y, c.normalized()), "no projection is taken off the third column"},
                       {of(x, off(b, x), off(off(c, x), off(b, x).normalized())),
                        "columns that are not made unit"},

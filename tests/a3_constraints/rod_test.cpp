@@ -200,7 +200,7 @@ TEST(RodRow, AccelerationOfASwingingPoint) {
                   "the velocity product is missing: (|d'|^2 - (n . d')^2) / |d|, a straight flight "
                   "leaves the circle"},
                  {-18, "the sign of the velocity product is wrong"},
-                 {20, "|d'|^2 / |d|: only the motion across the rod counts, take (n . d')^2 off"},
+                 {20, "|d'|^2 / |d| is used whole: take (n . d')^2 off |d'|^2"},
                  {36, "the velocity product is divided by the length twice"},
                  {9, "the division by |d| is forgotten"}},
              "(|d'|^2 - (n . d')^2) / |d|"),

@@ -38,7 +38,7 @@ TEST(SpringForce, PushesThemApartWhenCompressed) {
        .slip =
            likely(found,
                   Slips<Vector3d>{
-                      {{0, 0, 0}, "a spring pushes, too: this is a rope"},
+                      {{0, 0, 0}, "the spring only pulls, as a rope: a spring pushes, too"},
                       {{18, 24, 0},
                        "the sign of the force is wrong: a compressed spring pushes A away from B"},
                       {{30, 40, 0}, "the rest length is forgotten"}},
@@ -63,11 +63,11 @@ TEST(SpringForce, DampsAlongTheSpringOnly) {
        .slip = likely(
            found,
            Slips<Vector3d>{
-               {3 * u, "damping acts along the spring only: project the velocity on n"},
+               {3 * u, "the damper acts in every direction: project the velocity on n"},
                {-9 * n, "the sign of the damping is wrong: ends that part are pulled together"},
                {3 * n, "the velocity of one end only: the damper feels n . (v_b - v_a)"},
                {6 * n, "the velocity of one end only: the damper feels n . (v_b - v_a)"},
-               {-3 * u, "damping acts along the spring only, and its sign"},
+               {-3 * u, "the damper acts in every direction, and its sign is wrong"},
                {3 * u.norm() * n,
                 "the speed in place of its part along the spring: damping acts along "
                 "the spring only"},

@@ -88,12 +88,12 @@ TEST(EffectiveSampleSize, OfTwoShortChains) {
            found,
            {{9.62970200293112, "the chains are not cut into halves first"},
             {19.265919722494797, "the variance between the means is left out of var_plus"},
-            {5.29350947731189, "c_t has the divisor N, W the divisor N - 1: c_t N / (N - 1)"},
+            {5.29350947731189, "c_t has the divisor N, W the divisor N - 1: use c_t N / (N - 1)"},
             {3.1009421265141324, "tau begins at -1: lag 0 is in the first pair, and counts once"},
             {3.846410684474124, "tau begins at -1: lag 0 is in the first pair, and counts once"},
             {14.81672025723473, "each pair counts twice in tau"},
             {7.3220338983050866, "c_t has the divisor N at every lag"},
-            {455.0 / 144, "this is tau: S_eff = S / tau"}},
+            {455.0 / 144, "tau is returned: S_eff = S / tau"}},
            "W, B/N, var_plus, rho_t, pairs, tau, one after the other: the handout has each of "
            "them"),
        .handout = "handouts/a5_plausible.md#worked-example"});
@@ -226,19 +226,20 @@ TEST(SplitRHat, OfTwoShortChains) {
   expect_answer(
       found, 1.3493250991984624, 1e-13, "",
       {.scene = "chains 0, 1, 3, 2, 4, 3, 5, 2 and 1, 2, 2, 4, 6, 5, 3, 4",
-       .slip = likely(found,
-                      {{1.0102422599602796, "the chains are not cut into halves first"},
-                       {1.3501054811112287, "the numbers are used where their scores z belong"},
-                       {1.8206782233269403, "the root is forgotten"},
-                       {0.7411112419045851, "W / var_plus, upside down"},
-                       {1 / 0.8915603050519727, "W / var_plus, upside down"},
-                       {0.8915603050519727, "only the folded part counts: R is the larger one"},
-                       {1.43898513659, "var_plus has (N - 1)/N of W"},
-                       {1.3561713934794544, "equal numbers share the mean of their ranks"},
-                       {1.337951748212715, "equal numbers share the mean of their ranks"},
-                       {1.3475380546485851, "scores are those of (r - 3/8) / (S + 1/4)"},
-                       {1.35205007368549, "scores are those of (r - 3/8) / (S + 1/4)"}},
-                      "ranks from 1 among all numbers, their scores, W and var_plus of these"),
+       .slip = likely(
+           found,
+           {{1.0102422599602796, "the chains are not cut into halves first"},
+            {1.3501054811112287, "the numbers are used where their scores z belong"},
+            {1.8206782233269403, "the root is forgotten"},
+            {0.7411112419045851, "W / var_plus, upside down"},
+            {1 / 0.8915603050519727, "W / var_plus, upside down"},
+            {0.8915603050519727, "only the folded part is counted: R is the larger of the two"},
+            {1.43898513659, "var_plus has (N - 1)/N of W"},
+            {1.3561713934794544, "equal numbers share the mean of their ranks"},
+            {1.337951748212715, "equal numbers share the mean of their ranks"},
+            {1.3475380546485851, "scores are those of (r - 3/8) / (S + 1/4)"},
+            {1.35205007368549, "scores are those of (r - 3/8) / (S + 1/4)"}},
+           "ranks from 1 among all numbers, their scores, W and var_plus of these"),
        .handout = equation(9)});
 }
 

@@ -162,7 +162,7 @@ TEST(LogProposal, MixesTheTwoProposals) {
                        {std::log(0.75) + usual, "only the usual proposal counts"},
                        {std::log(0.25) + wide, "only the wide proposal counts"},
                        {0.75 * usual + 0.25 * wide,
-                        "logarithms are mixed: the densities are, ln((1 - w) q_1 + w q_f)"},
+                        "the logarithms are mixed, not the densities: ln((1 - w) q_1 + w q_f)"},
                        {std::log(0.25 * std::exp(usual) + 0.75 * std::exp(wide)),
                         "the two shares are exchanged"},
                        {std::log(std::exp(usual) + std::exp(wide)), "the shares are forgotten"},

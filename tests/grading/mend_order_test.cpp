@@ -32,10 +32,11 @@ TestResult result(const std::string& test, Verdict verdict, const std::string& f
 }
 
 std::vector<TestResult> velocity_is_wrong() {
-  return {result("V.One", Verdict::kWrong, "velocity", "\n  likely:   the sign\n  read:     x"),
-          result("V.Two", Verdict::kRight, "velocity"),
-          result("J.One", Verdict::kWrong, "impulse", "\n  look at:  the law"),
-          result("R.One", Verdict::kWrong, "resolve"), result("A.One", Verdict::kWrong, "apart")};
+  return {
+      result("V.One", Verdict::kWrong, "velocity", "\n  likely:   the sign: n . u\n  read:     x"),
+      result("V.Two", Verdict::kRight, "velocity"),
+      result("J.One", Verdict::kWrong, "impulse", "\n  look at:  the law"),
+      result("R.One", Verdict::kWrong, "resolve"), result("A.One", Verdict::kWrong, "apart")};
 }
 
 TEST(OwnFunctions, AreAskedDirectlyOrThroughOthers) {

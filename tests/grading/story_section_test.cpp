@@ -76,6 +76,16 @@ TEST(Story, EachSceneStandsByItself) {
   EXPECT_NE(html.find("<dt>likely mistake</dt><dd>the factor"), std::string::npos);
 }
 
+// "mistake: what is right" is one line in a terminal; in a page what is right stands apart.
+TEST(Story, TellsMistakeAndCureApart) {
+  report::Page page("T");
+  add_story(page, "  found:    (3, 4)\n  likely:   normal not unit: divide by its length", {});
+  EXPECT_NE(page.html().find("<dt>likely mistake</dt><dd>normal not unit</dd>\n"
+                             "<dt>remember</dt><dd>divide by its length</dd>"),
+            std::string::npos)
+      << page.html();
+}
+
 TEST(Story, IsTextInAPage) {
   report::Page page("T");
   add_story(page, "  found:    <b>6</b>, handouts/a1_impulse.md#eq-a1-9",

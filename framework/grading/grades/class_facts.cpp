@@ -10,6 +10,7 @@
 #include "framework/core/text.h"
 #include "framework/grading/grades/ledger.h"
 #include "framework/grading/grades/ledger_records.h"
+#include "framework/grading/verdicts/mend_order.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -25,7 +26,8 @@ void collect_slips(const std::string& story, std::set<std::string>& slips) {
     const auto first = line.find_first_not_of(' ');
     if (first == std::string::npos || line.compare(first, kMark.size(), kMark) != 0) continue;
     const auto text = line.find_first_not_of(' ', first + kMark.size());
-    if (text != std::string::npos) slips.insert(plain_name(line.substr(text)));
+    if (text != std::string::npos)
+      slips.insert(plain_name(parts_of_mistake(line.substr(text)).mistake));
   }
 }
 

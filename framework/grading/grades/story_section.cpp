@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/math.h"
+#include "framework/grading/verdicts/mend_order.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::grading {
@@ -123,7 +124,13 @@ std::vector<std::vector<report::Field>> cases_of(const std::vector<report::Field
     const auto is_scene = [](const report::Field& other) { return other.name == "scene"; };
     if (is_scene(field) && std::any_of(cases.back().begin(), cases.back().end(), is_scene))
       cases.emplace_back();
-    cases.back().push_back({name_in_page(field.name), field.text, field.links});
+    if (field.name == "likely") {
+      const MistakeParts parts = parts_of_mistake(field.text);
+      cases.back().push_back({name_in_page(field.name), parts.mistake, field.links});
+      if (!parts.cure.empty()) cases.back().push_back({"remember", parts.cure, field.links});
+    } else {
+      cases.back().push_back({name_in_page(field.name), field.text, field.links});
+    }
   }
   return cases;
 }

@@ -34,13 +34,13 @@ std::map<std::string, Count> counts_by_function(const std::vector<TestResult>& r
   return counts;
 }
 
-// What a story calls likely; empty: nothing.
+// What a story calls likely, without what is right; empty: nothing.
 std::string likely_in(const std::string& story) {
   constexpr std::string_view kMark = "\n  likely:   ";
   const std::size_t at = story.find(kMark);
   if (at == story.npos) return "";
   const std::size_t begin = at + kMark.size();
-  return story.substr(begin, story.find('\n', begin) - begin);
+  return parts_of_mistake(story.substr(begin, story.find('\n', begin) - begin)).mistake;
 }
 
 // What is called likely under each heading: first what most tests name.
@@ -141,6 +141,13 @@ std::string what_used_the_time(const std::vector<TestResult>& results) {
   return std::max_element(used.begin(), used.end(),
                           [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
+}
+
+MistakeParts parts_of_mistake(const std::string& words) {
+  constexpr std::string_view kBetween = ": ";
+  const std::size_t at = words.find(kBetween);
+  if (at == words.npos) return {words, ""};
+  return {words.substr(0, at), words.substr(at + kBetween.size())};
 }
 
 std::vector<std::string> headings_of(const std::vector<TestResult>& results,

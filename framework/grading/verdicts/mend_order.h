@@ -25,6 +25,12 @@ std::string what_used_the_time(const std::vector<TestResult>& results);
 /// "a1_impulse.cpp:108", the line in which a call ended, where the story names it; else empty.
 std::string exact_place_of(const TestResult& result);
 
+/// What a story says after "likely:", as "mistake: what is right".
+struct MistakeParts {
+  std::string mistake, cure;  // cure: empty where the words name the mistake alone
+};
+MistakeParts parts_of_mistake(const std::string& words);
+
 /// What a test stands under, in words for its author: one heading for all that one function
 /// explains, with the slip that its stories call likely (of several the two that most tests name).
 /// Empty for a test that is right, or is not judged.
