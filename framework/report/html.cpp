@@ -73,6 +73,12 @@ details { margin: .5rem 0; } summary { cursor: pointer; font-weight: 600; }
 figure { margin: 0; flex: 1 1 20rem; max-width: 100%; }
 figure img, figure video { max-width: 100%; height: auto; display: block;
   border: 1px solid var(--line); } figure .in-print { display: none; }
+/* Controls stand below the picture, where they cover no scale of lengths: the hidden picture gives
+   the height, the padding has room for them. */
+.film { position: relative; width: fit-content; max-width: 100%; padding-bottom: 5rem; }
+.film video { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain;
+  object-position: top; background: #1c2733; box-sizing: border-box; }
+figure .film .in-print { display: block; visibility: hidden; }
 .wide:focus-visible, .plot-figure:focus-visible, summary:focus-visible, a:focus-visible {
   outline: 2px solid var(--link); outline-offset: 2px; }
 ul { margin: .4rem 0; padding-left: 1.4rem; }
@@ -109,6 +115,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   svg.plot .halo { stroke: #dbe2e9; } .story svg.plot .halo { stroke: #ced7e0; }
   svg.plot .grid { stroke: #a9b6c2; } }
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
+  /* a table wider than the page scrolls, and its caption stays */
+  caption span { display: inline-block; position: sticky; left: 0; max-width: calc(100vw - 3rem); }
   th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; }
   .story table, .story tbody, .story tr, .story td,
@@ -125,7 +133,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   .story .plot-figure { float: none; margin: .4rem auto; }
   .thumbs { grid-template-columns: repeat(auto-fill, minmax(7rem, 1fr)); } }
 @media print { pre.code { white-space: pre-wrap; }
-  figure video { display: none; } figure .in-print { display: block; }
+  figure video { display: none; } figure .in-print, figure .film .in-print { display: block;
+  visibility: visible; } .film { padding-bottom: 0; }
   .wide { overflow: visible; } table { font-size: 9pt; }
   body { padding: 0; max-width: none; font-size: 11pt; }
   a { color: inherit; text-decoration: none; }
@@ -195,13 +204,14 @@ std::string figure_html(const Figure& figure) {
   if (!figure.label.empty()) html += "<p class=\"label\">" + html_escape(figure.label) + "</p>";
   const std::string alt = html_escape(figure.caption);
   if (!figure.video.empty()) {
+    if (!figure.picture.empty()) html += "<div class=\"film\">";
     html += "<video controls loop muted preload=\"none\" src=\"" + link_to(figure.video) + '"';
     if (!figure.picture.empty()) html += " poster=\"" + link_to(figure.picture) + '"';
     html += " aria-label=\"" + alt + "\"></video>";
     // on paper a video is its picture
     if (!figure.picture.empty())
-      html +=
-          "<img class=\"in-print\" src=\"" + link_to(figure.picture) + "\" alt=\"" + alt + "\">";
+      html += "<img class=\"in-print\" src=\"" + link_to(figure.picture) + "\" alt=\"" + alt +
+              "\"></div>";
   } else if (!figure.picture.empty()) {
     html += "<img src=\"" + link_to(figure.picture) + "\" alt=\"" + alt + "\">";
   }
@@ -300,7 +310,8 @@ void Page::table(const Table& table) {
   if (is_blocks) classes += classes.empty() ? "blocks" : " blocks";
   body_ += "<div class=\"wide\" tabindex=\"0\"><table" +
            (classes.empty() ? "" : " class=\"" + classes + '"') + '>';
-  if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
+  if (!table.caption.empty())
+    body_ += "<caption><span>" + html_escape(table.caption) + "</span></caption>";
   const bool has_head = std::any_of(table.columns.begin(), table.columns.end(),
                                     [](const Column& column) { return !column.name.empty(); });
   if (has_head) body_ += "<thead><tr>";
@@ -343,7 +354,9 @@ void Page::figure(const std::string& svg, const std::string& caption, bool is_sm
 }
 
 void Page::plot(const Plot& plot) { figure(svg_of(plot), plot.caption, false); }
-void Page::plot(const StackedBars& bars) { figure(svg_of(bars), bars.caption, bars.is_small); }
+void Page::plot(const StackedBars& bars) {
+  figure(svg_of(bars, ++charts_of_bars_), bars.caption, bars.is_small);
+}
 void Page::plot(const Arms& arms) { figure(svg_of(arms), arms.caption, true); }
 
 void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {

@@ -144,6 +144,7 @@ class Page {
 
   std::string title_, subtitle_, body_, record_, script_, style_;
   std::vector<const char*> open_;  // tags of parts without their end
+  int charts_of_bars_ = 0;
 };
 
 }  // namespace tumble::report

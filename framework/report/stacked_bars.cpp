@@ -36,22 +36,22 @@ constexpr Paint kPaints[] = {
 
 const Paint& paint_of(std::size_t part) { return kPaints[part % std::size(kPaints)]; }
 
-std::string fill_of(std::size_t part) {
+std::string fill_of(std::size_t part, int number) {
   return *paint_of(part).lines == '\0'
              ? fmt::format("fill=\"{}\"", paint_of(part).ground)
-             : fmt::format("fill=\"url(#bar{})\"", part % std::size(kPaints));
+             : fmt::format("fill=\"url(#bar{}-{})\"", number, part % std::size(kPaints));
 }
 
-std::string hatches(std::size_t parts) {
+std::string hatches(std::size_t parts, int number) {
   std::string defs;
   for (std::size_t part = 0; part < std::min(parts, std::size(kPaints)); ++part) {
     const Paint& paint = paint_of(part);
     if (*paint.lines == '\0') continue;
     defs += fmt::format(
-        "<pattern id=\"bar{}\" width=\"5\" height=\"5\" patternUnits=\"userSpaceOnUse\" "
+        "<pattern id=\"bar{}-{}\" width=\"5\" height=\"5\" patternUnits=\"userSpaceOnUse\" "
         "patternTransform=\"rotate({})\"><rect width=\"5\" height=\"5\" fill=\"{}\"/>"
         "<path d=\"M0 0V5\" stroke=\"{}\" stroke-width=\"2\"/></pattern>\n",
-        part, paint.turned, paint.ground, paint.lines);
+        number, part, paint.turned, paint.ground, paint.lines);
   }
   return defs.empty() ? "" : "<defs>\n" + defs + "</defs>\n";
 }
@@ -71,7 +71,8 @@ std::string name_of(const StackedBars::Row& row, double y, double left) {
               fmt::format(" font-size=\"{:.3g}\"", size));
 }
 
-std::string bar(const StackedBars::Row& row, double y, double longest, const Sides& sides) {
+std::string bar(const StackedBars::Row& row, double y, double longest, const Sides& sides,
+                int number) {
   std::string svg = name_of(row, y, sides.left);
   double x = sides.left;
   for (std::size_t part = 0; part < row.values.size(); ++part) {
@@ -81,7 +82,7 @@ std::string bar(const StackedBars::Row& row, double y, double longest, const Sid
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" {} stroke=\"#fff\" "
         "stroke-width=\".8\"/>\n",
-        x, y, wide, kBar, fill_of(part));
+        x, y, wide, kBar, fill_of(part, number));
     const std::string halo =
         *paint_of(part).lines == '\0'
             ? ""
@@ -95,7 +96,7 @@ std::string bar(const StackedBars::Row& row, double y, double longest, const Sid
   return svg;
 }
 
-std::string legend(const StackedBars& bars, double& y) {
+std::string legend(const StackedBars& bars, double& y, int number) {
   std::string svg;
   double x = kMargin;
   for (std::size_t part = 0; part < bars.parts.size(); ++part) {
@@ -107,7 +108,7 @@ std::string legend(const StackedBars& bars, double& y) {
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"14\" height=\"11\" {} stroke=\"#5b6875\" "
         "stroke-width=\".8\"/>\n",
-        x, y - 10, fill_of(part));
+        x, y - 10, fill_of(part, number));
     svg += text(x + 19, y, bars.parts[part], "start");
     x += wide;
   }
@@ -116,7 +117,7 @@ std::string legend(const StackedBars& bars, double& y) {
 
 }  // namespace
 
-std::string svg_of(const StackedBars& bars) {
+std::string svg_of(const StackedBars& bars, int number) {
   const Sides sides = sides_of(bars);
   double longest = 0.0;
   for (const StackedBars::Row& row : bars.rows) {
@@ -128,8 +129,9 @@ std::string svg_of(const StackedBars& bars) {
     longest = std::max(longest, std::accumulate(row.values.begin(), row.values.end(), 0.0));
   }
   const double bottom = kTop + kRow * static_cast<double>(bars.rows.size());
-  std::string body = hatches(bars.parts.size()) + text(kMargin, 20, bars.title, "start",
-                                                       " font-weight=\"bold\" font-size=\"13.5\"");
+  std::string body =
+      hatches(bars.parts.size(), number) +
+      text(kMargin, 20, bars.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
   if (longest > 0.0)
     for (const double tick : ticks_of(0.0, longest, Scale::kLinear)) {
       const double x = sides.left + tick / longest * (sides.right - sides.left);
@@ -142,13 +144,13 @@ std::string svg_of(const StackedBars& bars) {
     }
   for (std::size_t i = 0; i < bars.rows.size(); ++i)
     body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest,
-                sides);
+                sides, number);
   body +=
       text(0.5 * (sides.left + sides.right), bottom + 34,
            fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit),
            "middle");
   double y = bottom + 58;
-  body += legend(bars, y);
+  body += legend(bars, y, number);
   return fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
       sides.right + kMargin, y + 10, html_escape(bars.title), body);

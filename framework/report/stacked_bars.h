@@ -28,7 +28,8 @@ struct StackedBars {
 };
 
 /// An <svg> element, 640 units wide, 360 where small.
+/// @param number  of the chart on its page, so that each has ids of its own
 /// @pre every row has one finite value >= 0 for each part
-std::string svg_of(const StackedBars& bars);
+std::string svg_of(const StackedBars& bars, int number = 1);
 
 }  // namespace tumble::report

@@ -124,6 +124,32 @@ TEST(Page, AThumbnailIsAPictureThatLeads) {
   EXPECT_EQ(html.find("<video"), std::string::npos);
 }
 
+// A chart's hatching is found by its id: on a page each chart has ids of its own.
+TEST(Page, TwoChartsShareNoId) {
+  Page page("T");
+  const StackedBars bars{
+      .title = "t", .axis = {"n"}, .parts = {"a", "b", "c"}, .rows = {{"row", {1.0, 1.0, 1.0}}}};
+  page.plot(bars);
+  page.plot(bars);
+  const std::string html = page.html();
+  for (const std::string number : {"1", "2"}) {
+    const std::size_t at = html.find("<pattern id=\"bar" + number + "-2\"");
+    ASSERT_NE(at, std::string::npos) << html;
+    EXPECT_EQ(html.find("<pattern id=\"bar" + number + "-2\"", at + 1), std::string::npos);
+    EXPECT_NE(html.find("url(#bar" + number + "-2)"), std::string::npos);
+  }
+}
+
+// The picture stands in the flow and gives the height; the controls have room below it.
+TEST(Page, AVideoHasRoomForItsControlsBelowThePicture) {
+  Page page("T");
+  page.figures({{"a.png", "a.mp4", "A fall", "", ""}});
+  const std::string html = page.html();
+  EXPECT_NE(html.find("<div class=\"film\"><video "), std::string::npos) << html;
+  EXPECT_NE(html.find(".film { position: relative;"), std::string::npos);
+  EXPECT_NE(html.find("alt=\"A fall\"></div>"), std::string::npos);
+}
+
 // A plot is wider than a phone, and scrolls there: by the keyboard, too.
 TEST(Page, AWidePlotTakesTheKeyboardAndASmallOneFits) {
   Page page("T");
