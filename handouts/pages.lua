@@ -51,6 +51,15 @@ local function title(document)
   return document
 end
 
+-- A heading that has an anchor's id by its words is where the anchor leads: a page has an id once.
+local function one_of_each_id(document)
+  local headings = {}
+  document:walk { Header = function(element) headings[element.identifier] = true end }
+  return document:walk { Span = function(element)
+    if #element.content == 0 and headings[element.identifier] then return {} end
+  end }
+end
+
 -- A long command or path may break where a reader would break it.
 local kEscapes = { ['\\'] = '\\textbackslash{}', ['{'] = '\\{', ['}'] = '\\}', ['$'] = '\\$', ['&'] = '\\&', ['%'] = '\\%', ['#'] = '\\#', ['_'] = '\\_', ['^'] = '\\^{}', ['~'] = '\\textasciitilde{}', ['-'] = '-{}' }
 local function code(element)
@@ -89,5 +98,6 @@ return {
   { RawInline = anchor, RawBlock = function(element) return panel(element) or anchor(element) end, Link = link, Table = columns },
   { Code = code },   -- after the columns, which count its letters
   { Pandoc = title },
+  { Pandoc = one_of_each_id },
   { Pandoc = scripts },
 }
