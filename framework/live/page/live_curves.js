@@ -5,7 +5,7 @@ const kCurvePlots = [
   { title: 'Change of the total energy', unit: 'J', curves: [['drift', 'E − E(0)', 2]] },
   { title: 'Momentum of all movable bodies', unit: 'kg m/s', curves: [['px', 'x', 0], ['py', 'y', 1], ['pz', 'z', 2]] },
   { title: 'Angular momentum about the origin', unit: 'kg m²/s', curves: [['lx', 'x', 0], ['ly', 'y', 1], ['lz', 'z', 2]] },
-  { title: 'Worst gap between two bodies', unit: 'm', curves: [['gap', 'gap', 3]] },
+  { title: 'Smallest gap between two bodies', unit: 'm', curves: [['gap', 'gap', 3]] },
 ];
 const kCurveColors = { light: ['#00446b', '#c14d00', '#007a57', '#9a4f86'], dark: ['#7cc0f4', '#ff9a5c', '#5fcfa8', '#e0a0d0'] };
 

@@ -80,7 +80,7 @@ class ChangePane {
     this.box.textContent = '';
     this.showWhatGoes();
     this.box.append(this.whatGoes, form,
-      html('p', { className: 'soft' }, `code: ${facts.modules || facts.motion}; engine ${facts.engine}, step ${short(facts.step_s)} s`));
+      html('p', { className: 'soft anywhere' }, `code: ${facts.modules || facts.motion}; engine ${facts.engine}, step ${short(facts.step_s)} s`));
   }
 }
 
