@@ -367,6 +367,28 @@ TEST(Jamming, WhatIsSymmetricStaysSo) {
   }
 }
 
+// Two blocks that fill a slot from wall to wall, to the last bit of their widths: nothing presses
+// them against it, so they fall as if it were not there, however rough it is.
+TEST(Jamming, WhatFitsExactlyBetweenTwoWallsFalls) {
+  const auto block = [](const char* name, double width, double x) {
+    return rough(box(name, {width / 2, 0.3, 0.2}, 1.0, {x, 0, 0}, Vector3d::Zero()), 0.5);
+  };
+  const auto wall = [](const char* name, double x) {
+    auto spec = rough(box(name, {0.5, 5, 20}, 1.0, {x, 0, 0}, Vector3d::Zero()), 0.5);
+    spec.immovable = true;
+    return spec;
+  };
+  const Trajectory result = run(with_contact({block("narrow", 0.3, 0.15), block("wide", 0.7, 0.65),
+                                              wall("left", -0.5), wall("right", 1.5)},
+                                             1.0),
+                                reference_laws());
+  ASSERT_EQ(result.stopped_by, "");
+  for (const int block : {0, 1})  // RK4 is exact for a parabola: 60 steps of rounding
+    EXPECT_NEAR(result.frames.back().poses[block].com_world.z(), -kG / 2, 1e-11);
+  // no room for margins: gaps of 0 to rounding, as they were
+  for (const Frame& frame : result.frames) EXPECT_GE(frame.smallest_gap, -1e-14);
+}
+
 // Corners that a .3ds file keeps in single precision leave gaps between what is built of them. It
 // stands from the start: nothing falls.
 TEST(PersistentContacts, WhatIsBuiltInSinglePrecisionStandsFromTheStart) {

@@ -155,7 +155,8 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
   double reach = 0.0, before = std::numeric_limits<double>::infinity();
   const bool is_held =
       !island.linked.empty() || std::any_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
-        return moving_.is_driven(pair.first) || moving_.is_driven(pair.second);
+        return moving_.world().bodies[pair.first].immovable() ||
+               moving_.world().bodies[pair.second].immovable();
       });
   for (int round = 0; round < kContact.most_corrections; ++round) {
     ContactProblem problem;
@@ -182,7 +183,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
       size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
     const double open = farthest_open(problem, size);
     if (wrong == 0.0 && open == 0.0) return true;
-    // Only rods, joints and driven bodies can leave no room: others give way.
+    // Only rods, joints and immovable bodies can leave no room: others give way.
     const double left = std::max(missing.too_near, open);
     if (is_held && left > kContact.correction_in_vain * before) {
       if (!give_up_margins(missing.below_margin, t)) return false;
