@@ -168,6 +168,15 @@ struct ContactConstants {
   /// of what was missing before it: a round that leaves more finds no room, and the pairs give up
   /// their margin. Larger: slow. Smaller: contacts that could have their margin lose it.
   double correction_in_vain = 0.4;
+  /// of what was missing before it: a round that leaves more has gained nothing. Larger: two walls
+  /// that leave no room are noticed late. Smaller: as above.
+  double correction_stands = 0.99;
+  /// rounds in a row that gain nothing: so many between two walls find no room either. Larger:
+  /// slow. Smaller: what has room between them loses its margins.
+  int most_rounds_in_vain = 3;
+  /// cosine: walls whose normals part by more push against each other. Larger: what stands in a
+  /// right-angled corner counts, though it has room. Smaller: three walls round a ball do not.
+  double against = -0.1;
   /// longest steps: how long. Larger: their margin comes back late where there is room again.
   /// Smaller: the correction in vain is tried too often.
   double steps_without_margin = 64;

@@ -90,6 +90,13 @@ bool PositionCorrection::give_up_margins(const std::vector<Pair>& pairs, double 
   return any;
 }
 
+bool PositionCorrection::Missing::is_between_walls() const {
+  for (const Vector3d& one : out_of_walls)
+    for (const Vector3d& other : out_of_walls)
+      if (one.dot(other) < kContact.against) return true;
+  return false;
+}
+
 // The island's contacts as they are in these places: what each has to move by. Points farther apart
 // than `reach` are no concern.
 PositionCorrection::Missing PositionCorrection::add_corrections(
@@ -122,6 +129,10 @@ PositionCorrection::Missing PositionCorrection::add_corrections(
       if (point.gap < too_near || (is_active && point.gap > 2 * margin))
         missing.farthest = std::max(missing.farthest, std::abs(margin - point.gap));
       is_short = is_short || point.gap < margin;
+      if (point.gap < margin && moving_.world().bodies[pair.first].immovable())
+        missing.out_of_walls.push_back(-point.normal_b_to_a_world);
+      if (point.gap < margin && moving_.world().bodies[pair.second].immovable())
+        missing.out_of_walls.push_back(point.normal_b_to_a_world);
       PushingContact contact;
       place_for_correction(island, pair, point, states, t, margin, problem, contact);
       if (is_active) {
@@ -153,10 +164,10 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
                                            const std::vector<ActiveContact>& active) {
   place_driven(states, t);
   double reach = 0.0, before = std::numeric_limits<double>::infinity();
+  int rounds_in_vain = 0;
   const bool is_held =
       !island.linked.empty() || std::any_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
-        return moving_.world().bodies[pair.first].immovable() ||
-               moving_.world().bodies[pair.second].immovable();
+        return moving_.is_driven(pair.first) || moving_.is_driven(pair.second);
       });
   for (int round = 0; round < kContact.most_corrections; ++round) {
     ContactProblem problem;
@@ -183,11 +194,14 @@ bool PositionCorrection::correct_positions(const ContactIsland& island,
       size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
     const double open = farthest_open(problem, size);
     if (wrong == 0.0 && open == 0.0) return true;
-    // Only rods, joints and immovable bodies can leave no room: others give way.
+    // Rods, joints and driven bodies often leave no room, two walls may; others give way.
     const double left = std::max(missing.too_near, open);
-    if (is_held && left > kContact.correction_in_vain * before) {
+    rounds_in_vain = left > kContact.correction_stands * before ? rounds_in_vain + 1 : 0;
+    if ((is_held && left > kContact.correction_in_vain * before) ||
+        (rounds_in_vain >= kContact.most_rounds_in_vain && missing.is_between_walls())) {
       if (!give_up_margins(missing.below_margin, t)) return false;
       before = std::numeric_limits<double>::infinity();
+      rounds_in_vain = 0;
       continue;
     }
     before = left;

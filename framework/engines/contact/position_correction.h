@@ -59,6 +59,9 @@ class PositionCorrection {
     // as far apart as this, points of every pair have been looked at [m]
     double reach = std::numeric_limits<double>::infinity();
     std::vector<Pair> below_margin;
+    std::vector<Vector3d> out_of_walls;  // normals of immovable bodies at points below the margin
+    /// Whether two immovable bodies push against each other.
+    bool is_between_walls() const;
   };
   struct KnownManifold {  // a pair's points as they were when it was last asked for them
     ContactManifold points;

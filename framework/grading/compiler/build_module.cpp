@@ -11,9 +11,7 @@ fs::path header_in(const std::string& folder) {
   return fs::path("assignments") / folder / (folder + ".h");
 }
 
-const char* submission_flags() {
-  return TUMBLE_SUBMISSION_FLAGS;
-}
+const char* submission_flags() { return TUMBLE_SUBMISSION_FLAGS; }
 
 std::vector<std::string> own_compilation(const fs::path& root, const fs::path& build,
                                          const fs::path& source, const fs::path& object) {

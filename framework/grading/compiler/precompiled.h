@@ -302,8 +302,8 @@ TUMBLE_SPECTRA SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd
     const EigenBase<MatrixXd>&, int);
 TUMBLE_SPECTRA void SVDBase<JacobiSVD<MatrixXd>>::_solve_impl(const VectorXd&, VectorXd&) const;
 
-// Sparse factors, with the ordering that each has where nothing is said. A solution is written where
-// its vector lies: an expression that it is a part of (x += factors.solve(b)) points there already.
+// Sparse factors, with the ordering that each has where nothing is said. A solution is written
+// where its vector lies: an expression that it is a part of (x += factors.solve(b)) points there.
 using TumbleSparse = SparseMatrix<double>;
 using TumbleEntries = std::vector<Triplet<double>>::iterator;
 TUMBLE_SPARSE class SparseMatrix<double>;

@@ -29,8 +29,8 @@ std::string judging_digest(const Course& course, const std::string& id) {
     if (entry.path().extension() == ".h") headers.push_back(entry.path());
   std::sort(headers.begin(), headers.end());
   const fs::path bin = course.build / "bin", sdk = course.build / "submission_sdk";
-  std::vector<fs::path> files = {judge_of(course, id), bin / ("worker_" + id),
-                                 bin / "sandbox_init", "/usr/bin/g++",
+  std::vector<fs::path> files = {judge_of(course, id),  bin / ("worker_" + id),
+                                 bin / "sandbox_init",  "/usr/bin/g++",
                                  sdk / "precompiled.h", sdk / "libkernels.a"};
   if (traits_of(chosen_sandbox()).links_worker) files.push_back(bin / ("worker_" + id + ".o"));
   files.insert(files.end(), headers.begin(), headers.end());
