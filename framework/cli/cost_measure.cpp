@@ -134,9 +134,9 @@ std::string what_error_is(const CostReference& reference) {
         "A run that exceeds a tolerance of 0 has no such error and is not drawn.",
         reference.why_by_numbers);
   return fmt::format(
-      "Errors are against {}: {:.1e} m. The error of a body is the distance of its centre of mass "
+      "Errors are against {}: {:.2g} m. The error of a body is the distance of its centre of mass "
       "from the reference, plus the angle of its rotation error times its radius of gyration; the "
-      "largest over all movable bodies and samples counts. An error of {:.1e} m, the size of the "
+      "largest over all movable bodies and samples counts. An error of {:.2g} m, the size of the "
       "motion, is no answer, and is not drawn.",
       reference.what, reference.floor_m, reference.scale_m);
 }
@@ -520,7 +520,7 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked, const 
           "judged by its numbers, over {:.3g} s: the worst of them over its tolerance [-]",
           reference.duration_s);
     else
-      measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", reference.what,
+      measured.against = fmt::format("error: against {}: {:.2g} m, over {:.3g} s", reference.what,
                                      reference.floor_m, reference.duration_s);
     measured.duration_s = reference.duration_s;
     measured.asked_s = reference.asked_s;

@@ -44,9 +44,9 @@ bool stays(const std::vector<CostResult>& results) {
 /// For a method without an order because its errors are at the floor.
 std::string of_exact(const CostMethod& method, double least, const CostReference& reference) {
   if (least > kRoundOff * reference.scale_m)
-    return fmt::format("{} reaches the error floor of the reference solution: {:.1e} m.",
+    return fmt::format("{} reaches the error floor of the reference solution: {:.2g} m.",
                        method.name, least);
-  return fmt::format("{} is exact here, to round-off: {:.1e} m.", method.name, least);
+  return fmt::format("{} is exact here, to round-off: {:.2g} m.", method.name, least);
 }
 
 std::string of_stopped(const CostMethod& method, const std::vector<CostResult>& results) {
@@ -85,7 +85,7 @@ std::string of_numbers(const CostMethod& method, const std::vector<CostResult>& 
 
 std::string of_wrong_limit(const CostMethod& method, double least) {
   return fmt::format(
-      "{} does not converge: its error stays at {:.1e} m however small the step. It computes "
+      "{} does not converge: its error stays at {:.2g} m however small the step. It computes "
       "another motion (a wrong law, or a missing term).",
       method.name, least);
 }
@@ -148,38 +148,38 @@ std::string read_refinement(const CostMethod& method, const std::vector<CostResu
         "{} has no step to choose: its error is at the floor of the reference solution.",
         method.name);
   if (!method.has_refinement)
-    return fmt::format("{} has no step to choose: its error is {:.1e} m.", method.name, least);
+    return fmt::format("{} has no step to choose: its error is {:.2g} m.", method.name, least);
   const std::optional<FittedOrder> fit = order_of(method, results, reference);
-  if (!fit && method.controlled) return fmt::format("{} gets to {:.1e} m.", method.name, least);
+  if (!fit && method.controlled) return fmt::format("{} gets to {:.2g} m.", method.name, least);
   if (!fit && least <= kWrongLimit * reference.floor_m) return of_exact(method, least, reference);
   if (!method.controlled && stays(results) && least > kWrongLimit * reference.floor_m &&
       least < kStaysBelow * reference.scale_m)
     return of_wrong_limit(method, least);
   if (!fit && least > kNoMotion * reference.scale_m)
     return fmt::format(
-        "{} does not find the motion: its error is still {:.1e} m at the finest {}, where bodies "
-        "move {:.1e} m. Either a law is wrong, or the steps are far too long.",
+        "{} does not find the motion: its error is still {:.2g} m at the finest {}, where bodies "
+        "move {:.2g} m. Either a law is wrong, or the steps are far too long.",
         method.name, least, method.controlled ? "tolerance" : "step", reference.scale_m);
   if (!fit)
     return fmt::format(
-        "{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.",
+        "{} shows no order yet: its error is still {:.2g} m where bodies move {:.2g} m.",
         method.name, least, reference.scale_m);
   if (method.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope))
-    return fmt::format("{} gets to {:.1e} m.", method.name, least);
+    return fmt::format("{} gets to {:.2g} m.", method.name, least);
   if (method.controlled)
     return fmt::format(
-        "{} gets to {:.1e} m; ten times the evaluations divide its error by 10^{:.1f}.",
+        "{} gets to {:.2g} m; ten times the evaluations divide its error by 10^{:.1f}.",
         method.name, least, fit->order);
   if (fit->order < kNoOrder && least <= kWrongLimit * reference.floor_m)
     return of_exact(method, least, reference);
   if (fit->pairs < 2)
-    return fmt::format("{} gets to {:.1e} m; too few resolutions to show an order.", method.name,
+    return fmt::format("{} gets to {:.2g} m; too few resolutions to show an order.", method.name,
                        least);
   if (fit->order < kNoOrder && least > kWrongLimit * reference.floor_m)
     return of_wrong_limit(method, least);
   if (fit->spread > kSettled)
     return fmt::format(
-        "{} gets to {:.1e} m; its order has not settled ({:.1f}, slopes {:.1f} apart).",
+        "{} gets to {:.2g} m; its order has not settled ({:.1f}, slopes {:.1f} apart).",
         method.name, least, fit->order, fit->spread);
   return of_order(method, *fit, smooth);
 }

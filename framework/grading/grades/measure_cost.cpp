@@ -178,7 +178,7 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   CostSection section;
   section.scene = scene.title;
   section.truth = fmt::format(
-      "Errors are against {}: {:.1e} m; the error is the distance of a body's centre of mass from "
+      "Errors are against {}: {:.2g} m; the error is the distance of a body's centre of mass from "
       "its reference position, plus the angle between its orientations times its radius of "
       "gyration.",
       reference.what, reference.floor_m);
