@@ -67,6 +67,7 @@ TEST(Audit, ResultsOfOtherFilesAreNotKept) {
   register_assignments(registry);
   const PrivateFolder build;
   const Course course{test::source_dir(), build.path(), &registry, ""};
+  write_whole(build.path() / "bin/judge_a1", "one");
   std::set<std::string> digests{judging_digest(course, "a1")};
   for (const char* file : {"bin/judge_a1", "bin/worker_a1", "bin/sandbox_init",
                            "submission_sdk/precompiled.h", "submission_sdk/libkernels.a"}) {
