@@ -131,9 +131,7 @@ void TiedImpacts::look_at_normal(const EventStamp& key, const FlightOf& before,
   if (bodies.shape_a.is_ball() || bodies.shape_b.is_ball()) return;
   const collision::Gap gap =
       collision::compute_gap(bodies.shape_a, bodies.pose_a, bodies.shape_b, bodies.pose_b);
-  if (collision::other_normal(bodies.shape_a, bodies.pose_a, bodies.shape_b, bodies.pose_b, gap) &&
-      approach(a, b, key.time, before))
-    watch_normal(key.time, bodies, gap, watch);
+  if (approach(a, b, key.time, before)) watch_normal(key.time, bodies, gap, watch);
 }
 
 void TiedImpacts::look(const EventStamp& key, const FlightOf& before, RunWatch& watch) {
