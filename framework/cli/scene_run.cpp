@@ -227,6 +227,28 @@ void check_virtual_times(const PlannedRun& plan, const RunWords& words) {
   if (!words.virtual_times.empty() && engine != "tw") refuse_virtual_times(words);
 }
 
+/// Threads, and a cap on the states that are kept, are the fast timewarp's: no other engine has
+/// them, nor has a timewarp on a module's decisions.
+/// @throws UserError
+void check_words_of_fast_timewarp(const PlannedRun& plan, const RunWords& words) {
+  const std::string word = words.threads != 1 ? fmt::format("--threads {}", words.threads)
+                           : words.most_states != 0
+                               ? fmt::format("--most-states {}", words.most_states)
+                               : "";
+  if (word.empty()) return;
+  const std::string flag = word.substr(0, word.find(' '));
+  const std::string& engine = plan.options.engine.empty() ? plan.scene.engine : plan.options.engine;
+  if (engine != "tw")
+    throw UserError(word,
+                    fmt::format("the engine is {}, and this is a word of timewarp",
+                                engine.empty() ? "rd" : engine),
+                    fmt::format("Run with --engine tw, or leave out {}.", flag));
+  if (plan.laws.scheduling)
+    throw UserError(
+        word, "the scheduler of a module makes one move after the other, and keeps all",
+        fmt::format("Leave out {}, or the module of a4: the fast timewarp takes it.", flag));
+}
+
 }  // namespace
 
 void add_run_words(Verb& verb, RunWords& words) {
@@ -316,6 +338,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);
   check_virtual_times(plan, words);
+  check_words_of_fast_timewarp(plan, words);
   VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
   if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;

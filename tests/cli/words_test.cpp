@@ -202,7 +202,10 @@ TEST_F(CommandLine, WordsThatWouldDoNothingAreRefusedBeforeTheRun) {
                                     {"--png p.png --at-s 1e6", "the run ends at"},
                                     {"--png p.png --sheet ./p.png", "is the file of --png, too"},
                                     {"--trajectory taken", "it is a folder"},
-                                    {"--threads 0", "--threads"}}) {
+                                    {"--threads 0", "--threads"},
+                                    {"--threads 2", "the engine is rd"},
+                                    {"--engine ca --threads 2", "the engine is ca"},
+                                    {"--most-states 8", "leave out --most-states"}}) {
     const Said said = type(std::string("run t_handle --modules library ") + words);
     EXPECT_EQ(said.code, 2) << words << ": " << said.out;
     EXPECT_EQ(said.out, "") << words;
