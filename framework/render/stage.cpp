@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/core/error.h"
+#include "framework/core/shortest_turn.h"
 #include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
 #include "framework/scene/build_shape.h"
@@ -51,8 +52,7 @@ double round_length(double x) {
 Instance pip_on(const BodyPose& pose, const scene::Pip& pip, const Drawing& drawing) {
   constexpr double kThickness = 0.05;  // of its radius: enough that the surface does not hide it
   const Vector3d black(0.01, 0.01, 0.01);
-  const Quaterniond turn =
-      pose.world_from_body * Quaterniond::FromTwoVectors(Vector3d::UnitZ(), pip.normal_body);
+  const Quaterniond turn = pose.world_from_body * shortest_turn(Vector3d::UnitZ(), pip.normal_body);
   return placed(drawing.from_origin(pose.com_world + pose.world_from_body * pip.point_body),
                 turn.toRotationMatrix(), pip.radius_m * Vector3d(1, 1, kThickness), black);
 }

@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "framework/core/shortest_turn.h"
 #include "framework/dynamics/articulated_tree.h"
 
 namespace tumble::testing::articulated_test {
@@ -231,7 +232,7 @@ TEST(ArticulatedTree, JointForcesAreWhatMovesEachBody) {
   links[0].b = 0;
   links[0].point_b_body = {-0.5 * kLength, 0, 0};
   links[0].a_from_joint = links[0].b_from_joint =
-      Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitY());
+      shortest_turn(Vector3d::UnitZ(), Vector3d::UnitY());
   links[1].kind = TreeJoint::kRod;
   links[1].a = 1;
   links[1].b = 2;

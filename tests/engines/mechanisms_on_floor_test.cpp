@@ -195,8 +195,8 @@ TEST(MechanismsOnAFloor, WhatHingesHoldPressesNoFloor) {
   }
 }
 
-/// Bars of a kilogram in a row, along x or at a heading [rad], with friction, that turn together; hinges link them and hold
-/// the first, but one, else the last, hangs on a ball.
+/// Bars of a kilogram in a row, along x or at a heading [rad], with friction, that turn together;
+/// hinges link them and hold the first, but one, else the last, hangs on a ball.
 scene::Scene arm_with_friction(std::size_t bars, double omega, double friction, Random& random,
                                std::optional<std::size_t> on_ball = {}, double heading = 0.0) {
   const auto kind_of = [&](std::size_t bar) {

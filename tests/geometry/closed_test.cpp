@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/core/shortest_turn.h"
 #include "framework/geometry/closed.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/shape.h"
@@ -270,7 +271,7 @@ TEST(Closed, PartsThatTouchAreNotCrossing) {
   // other.
   const TriangleMesh diamond = [] {  // its lowest corner at the origin
     TriangleMesh mesh = subdivided_sphere(0);
-    const Quaterniond down = Quaterniond::FromTwoVectors(mesh.vertices[0], -Vector3d::UnitZ());
+    const Quaterniond down = shortest_turn(mesh.vertices[0], -Vector3d::UnitZ());
     for (Vector3d& vertex : mesh.vertices) vertex = down * vertex + Vector3d(0.4, 0.4, 2.0);
     return mesh;
   }();

@@ -31,13 +31,15 @@ constexpr const char* kEigen = R"(In file included from /usr/include/eigen3/Eige
 /usr/include/eigen3/Eigen/src/Core/CwiseBinaryOp.h: In instantiation of 'Eigen::CwiseBinaryOp<...>':
 /usr/include/eigen3/Eigen/src/plugins/CommonCwiseBinaryOps.h:27:1:   required from 'const Eigen::CwiseBinaryOp<...>'
 mine.cpp:3:12:   required from here
-/usr/include/eigen3/Eigen/src/Core/CwiseBinaryOp.h:115:7: error: static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES
+/usr/include/eigen3/Eigen/src/Core/CwiseBinaryOp.h:115:7: error: )"
+                               R"(static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES
   115 |       EIGEN_STATIC_ASSERT_SAME_MATRIX_SIZE(Lhs, Rhs)
       |       ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
 /usr/include/eigen3/Eigen/src/Core/CwiseBinaryOp.h:115:7: note: evaluates to false
 /usr/include/eigen3/Eigen/src/Core/AssignEvaluator.h: In instantiation of 'void call_assignment_no_alias(...)':
 mine.cpp:3:12:   required from here
-/usr/include/eigen3/Eigen/src/Core/AssignEvaluator.h:887:3: error: static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES
+/usr/include/eigen3/Eigen/src/Core/AssignEvaluator.h:887:3: error: )"
+                               R"(static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES
 )";
 
 TEST_F(CompilerWords, ErrorInsideALibraryBeginsWithTheStudentsLine) {

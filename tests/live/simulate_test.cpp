@@ -27,8 +27,10 @@ using live::RecordKind;
 constexpr const char* kScene = R"({
   "title": "Two boxes", "duration_s": 3, "step_s": 0.004,
   "bodies": [
-    {"name": "box", "shape": {"box": {"size_m": [0.4, 0.6, 0.8]}}, "mass_kg": 2, "position_m": [0.1, 0.2, 0.3]},
-    {"name": "top", "shape": {"box": {"size_m": [0.2, 0.3, 0.4]}}, "mass_kg": 1, "position_m": [3, 0, 0], "angular_velocity_rad_s": [1, 2, 0.1]}
+    {"name": "box", "shape": {"box": {"size_m": [0.4, 0.6, 0.8]}}, "mass_kg": 2,
+     "position_m": [0.1, 0.2, 0.3]},
+    {"name": "top", "shape": {"box": {"size_m": [0.2, 0.3, 0.4]}}, "mass_kg": 1,
+     "position_m": [3, 0, 0], "angular_velocity_rad_s": [1, 2, 0.1]}
   ]})";
 
 Laws laws_for_hands() {

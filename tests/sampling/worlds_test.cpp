@@ -164,7 +164,8 @@ TEST(Violation, IsOfThePointThatThePlaceIsAskedOf) {
   // A corner of the die: turned by 90 degrees about y, its body's (0, 0, 0.5) points along x.
   const SampledScene scene = thrown_ball(
       kSpeed,
-      R"({"body": "die", "place": {"point_body_m": [0, 0, 0.5], "low_m": [6, null, null], "high_m": [7, null, null], "softness_m": 0.1}})");
+      R"({"body": "die", "place": {"point_body_m": [0, 0, 0.5], "low_m": [6, null, null],
+          "high_m": [7, null, null], "softness_m": 0.1}})");
   const Quaterniond over(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY()));
   // The die is at x = 5: upright the point is there too, 1 m short; turned it is 0.5 m short.
   EXPECT_NEAR(violation_of(scene, frame_with({0, 0, 0}, Quaterniond::Identity())), 10, 1e-12);
@@ -234,11 +235,11 @@ TEST(SamplingEntry, IsRefusedWithItsPlace) {
   expect_refused(
       refusal(R"({"body": "ball", "what": "colour", "uniform": {"low": 0, "high": 1}})", kPlace),
       "/sampling/perturbed/0/what");
-  expect_refused(
-      refusal(
-          R"({"body": "ball", "what": "velocity_x_m_s", "proposal": "multiply", "normal": {"mean": 0, "deviation": 1}})",
-          kPlace),
-      "must be positive");
+  expect_refused(refusal(
+                     R"({"body": "ball", "what": "velocity_x_m_s", "proposal": "multiply",
+              "normal": {"mean": 0, "deviation": 1}})",
+                     kPlace),
+                 "must be positive");
   expect_refused(refusal(kSpeed, R"({"body": "ball"})"), "neither");
   expect_refused(
       refusal(
