@@ -44,6 +44,11 @@ struct ConstraintRow {
   double velocity_product = kUnset;
 };
 
+/// Whether it speaks of directions alone, in rad: it pushes neither body, it turns them.
+inline bool is_of_directions(const ConstraintRow& row) {
+  return row.jacobian_a.head<3>().isZero(0) && row.jacobian_b.head<3>().isZero(0);
+}
+
 /// A row between two bodies of a list. A multiplier lambda pushes A with lambda J_a and B with
 /// lambda J_b.
 struct Constraint {

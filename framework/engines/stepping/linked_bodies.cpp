@@ -387,21 +387,25 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   return local;
 }
 
-// The largest error of these rows, over the group's size: its longest rod, its farthest coordinate,
-// and where these are near 0 its largest radius of gyration.
+// The largest error of these rows: of a place over the group's size, which is its longest rod, its
+// farthest coordinate, and where these are near 0 its largest radius of gyration; of a direction
+// [rad] as it is, whatever the size.
 double LinkedBodies::open_part(const std::vector<Body>& bodies,
                                const std::vector<Constraint>& rows) const {
-  double worst = 0.0, size = 0.0;
-  for (const Constraint& c : rows)
-    worst = std::isnan(c.row.value) ? c.row.value : std::max(worst, std::abs(c.row.value));
+  double worst = 0.0, turn = 0.0, size = 0.0;
+  for (const Constraint& c : rows) {
+    double& largest = is_of_directions(c.row) ? turn : worst;
+    largest = std::isnan(c.row.value) ? c.row.value : std::max(largest, std::abs(c.row.value));
+  }
   for (const Terms& terms : terms_) size = std::max(size, terms.acting->size());
   for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
-  if (worst == 0.0 || worst <= kNegligible * size) return worst == 0.0 ? 0.0 : worst / size;
-  for (const int body : bodies_) {
-    const Inertia& inertia = world_.bodies[static_cast<std::size_t>(body)].inertia;
-    size = std::max(size, std::sqrt(inertia.inertia_body.diagonal().maxCoeff() / inertia.mass));
-  }
-  return worst / size;
+  if (!(worst <= kNegligible * size))
+    for (const int body : bodies_) {
+      const Inertia& inertia = world_.bodies[static_cast<std::size_t>(body)].inertia;
+      size = std::max(size, std::sqrt(inertia.inertia_body.diagonal().maxCoeff() / inertia.mass));
+    }
+  const double part = worst == 0.0 ? 0.0 : worst / size;
+  return std::isnan(part) || std::isnan(turn) ? kUnset : std::max(part, turn);
 }
 
 std::vector<ConstrainedBody> LinkedBodies::constrained(const std::vector<Body>& bodies) {
