@@ -183,7 +183,7 @@ scene::Scene of_size(scene::Scene scene, int exponent) {
 
 // A joint's error of direction is in rad, and no part of a length: of bars of a micrometre,
 // rounding (2e-16 rad) was told as an open joint.
-TEST(Loops, MechanismsOfNanometresAndOfMegametresMoveAlike) {
+TEST(Loops, MechanismsOfPicometresAndOfMegametresMoveAlike) {
   Random random(1);
   const scene::Scene bar =
       linkage({Vector3d(0, 0, 0), Vector3d(0.8, 0, 0)}, {Vector3d::UnitY(), Vector3d::UnitY()});
