@@ -240,6 +240,8 @@ TEST(ZeroLookAhead, IsOrderedByMicrostepAndAnEndlessChainIsReported) {
     EXPECT_NE(run.stopped_by.find("time stands still"), std::string::npos)
         << engine << ": " << run.stopped_by;
     EXPECT_NE(run.stopped_by.find("'ball'"), std::string::npos) << engine << ": " << run.stopped_by;
+    EXPECT_NE(run.stopped_by.find("need \"contact\": {} in the scene"), std::string::npos)
+        << engine << ": " << run.stopped_by;
   }
 }
 

@@ -38,14 +38,20 @@ inline const char* room_beside_driven(const World& world) {
   return is_any_driven ? "; what drives bodies together (\"motion\") must leave them room" : "";
 }
 
+/// What a scene needs where bodies meet again and again in no time.
+inline const char* room_for_contact(const World& world) {
+  return world.contact ? "a larger \"rest_speed_m_s\" is needed"
+                       : "bodies that lie or slide on each other need \"contact\": {} in the "
+                         "scene; or a larger \"rest_speed_m_s\" is needed";
+}
+
 /// @param bodies  names, as "bodies 'a' and 'b'"
 inline std::string endless_impacts_message(double time, const std::string& bodies,
                                            const World& world) {
   return fmt::format(
-      "at t = {:.6f} s, {}: time stands still, they meet again and again; a persistent contact is "
-      "needed there, or a larger \"rest_speed_m_s\"; or, where so many impacts in a step are "
-      "right, a shorter \"step_s\"{}",
-      time, bodies, room_beside_driven(world));
+      "at t = {:.6f} s, {}: time stands still, they meet again and again; {}; or, where so many "
+      "impacts in a step are right, a shorter \"step_s\"{}",
+      time, bodies, room_for_contact(world), room_beside_driven(world));
 }
 
 }  // namespace tumble::engines

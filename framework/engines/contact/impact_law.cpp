@@ -67,7 +67,7 @@ std::string left_approaching_message(const Laws& laws) {
   return fmt::format(
       "collision (collision_impulse, apply_impulse of {}) left them approaching, however often it "
       "was applied: the impulse has no effect, the wrong sign or too "
-      "little size, or a persistent contact is needed there",
+      "little size, or bodies that lie on each other need \"contact\": {{}} in the scene",
       laws.impulse_source);
 }
 

@@ -59,10 +59,9 @@ Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, 
     return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b));
   };
   if (key.microstep > most_microsteps(world_.size()))
-    throw StoppedRun(
-        fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; "
-                    "a persistent contact is needed there, or a larger \"rest_speed_m_s\"{}",
-                    key.time, subject(), room_beside_driven(world_.world())));
+    throw StoppedRun(fmt::format(
+        "at t = {:.6f} s, {}: time stands still, impacts cause each other without end; {}{}",
+        key.time, subject(), room_for_contact(world_.world()), room_beside_driven(world_.world())));
   try {
     ++counters.impacts;
     Discontinuity discontinuity = meetings_.resolve_impact(key, f, g);
@@ -108,8 +107,9 @@ Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Fli
   if (key.microstep > most_microsteps(world_.size()))
     throw StoppedRun(
         fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each "
-                    "other without end; a larger \"rest_speed_m_s\" is needed{}",
-                    key.time, name(a), name(b), room_beside_driven(world_.world())));
+                    "other without end; {}{}",
+                    key.time, name(a), name(b), room_for_contact(world_.world()),
+                    room_beside_driven(world_.world())));
   LogicalProcesses& processes = *world_.processes();
   ++counters.impacts;
   const auto state_of = [&](int body, const Flight& flight) {
