@@ -129,6 +129,28 @@ Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size,
   return search.best();
 }
 
+std::vector<Vector3d> axes_apart(const PlacedPolytope& a, const PlacedPolytope& b,
+                                 double separation) {
+  std::vector<Vector3d> normals;
+  const auto offer = [&](const Vector3d& n) {
+    if (!(n.dot(a.vertex(a.lowest(n)) - b.vertex(b.lowest(-n))) >= separation)) return;
+    if (std::none_of(normals.begin(), normals.end(),
+                     [&](const Vector3d& known) { return (known - n).norm() < kSameAxis; }))
+      normals.push_back(n);
+  };
+  for (const Vector3d& m : a.polytope->face_normals) offer(-(a.query_from_body * m));
+  for (const Vector3d& m : b.polytope->face_normals) offer(b.query_from_body * m);
+  for (const Vector3d& edge_a : a.polytope->edge_directions)
+    for (const Vector3d& edge_b : b.polytope->edge_directions) {
+      const Vector3d across = (a.query_from_body * edge_a).cross(b.query_from_body * edge_b);
+      const double sine = across.norm();
+      if (sine < kParallel) continue;
+      offer(across / sine);
+      offer(-across / sine);
+    }
+  return normals;
+}
+
 Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction,
                     double angle, double size) {
   Search search(a, b, size);

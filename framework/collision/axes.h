@@ -9,6 +9,7 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "framework/collision/polytope.h"
 
@@ -32,6 +33,11 @@ struct BarredAxes {
 /// few axes that may be the best.
 Axis best_axis(const PlacedPolytope& a, const PlacedPolytope& b, double size,
                const BarredAxes* barred = nullptr);
+
+/// The normals of all axes along which the two are at least so far apart, each once.
+/// Cost: that of best_axis without its cheap rejections.
+std::vector<Vector3d> axes_apart(const PlacedPolytope& a, const PlacedPolytope& b,
+                                 double separation);
 
 /// The best of the axes within about `angle` (rad) of a direction: those of the faces, edges and
 /// corners that face each other along it. Separation -infinity where there is none.

@@ -191,8 +191,8 @@ std::optional<Separation> largest_separation(const CollisionShape& a, const Pose
   return found;
 }
 
-std::optional<Vector3d> other_normal(const CollisionShape& a, const Pose& pose_a,
-                                     const CollisionShape& b, const Pose& pose_b, const Gap& gap) {
+std::vector<Vector3d> normals_apart(const CollisionShape& a, const Pose& pose_a,
+                                    const CollisionShape& b, const Pose& pose_b, const Gap& gap) {
   // pairs of edge directions: those of boxes and tetrahedra
   constexpr std::size_t kMostPairs = 36;
   const auto is_asked = [](const CollisionShape& shape) {
@@ -201,17 +201,17 @@ std::optional<Vector3d> other_normal(const CollisionShape& a, const Pose& pose_a
   };
   if (!is_asked(a) || !is_asked(b) ||
       a.pieces()[0].edge_directions.size() * b.pieces()[0].edge_directions.size() > kMostPairs)
-    return std::nullopt;
+    return {};
   const Query query(a, pose_a, b, pose_b);
-  if (gap.distance > kApartAsWell * query.size) return std::nullopt;
+  if (gap.distance > kApartAsWell * query.size) return {};
   BarredAxes barred;
   barred.first = gap.normal_b_to_a_world;
   const Axis other = best_axis(query.piece_of_a(0), query.piece_of_b(0), query.size, &barred);
   constexpr double kAnother = 1e-2;  // rad: of the impulse, nearer ones change a hundredth
   if (!(other.separation >= -kApartAsWell * query.size) ||
       (other.normal_b_to_a - gap.normal_b_to_a_world).norm() < kAnother)
-    return std::nullopt;
-  return other.normal_b_to_a;
+    return {};
+  return axes_apart(query.piece_of_a(0), query.piece_of_b(0), -kApartAsWell * query.size);
 }
 
 double separation_along(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,

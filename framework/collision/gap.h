@@ -71,13 +71,13 @@ std::optional<Separation> largest_separation(const CollisionShape& a, const Pose
 double separation_along(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b,
                         const Pose& pose_b, const Vector3d& normal_b_to_a_world);
 
-/// Of two boxes, or other convex solids of few corners, that touch: a normal, other than theirs,
-/// along which they are apart as well. Two corners that meet have many, and so have two parallel
-/// edges: which one a gap has is decided by a rounding there.
+/// Of two boxes, or other convex solids of few corners, that touch corner on corner, or edge on
+/// parallel edge: all normals of faces and pairs of edges along which they are apart. Which of them
+/// their gap has is decided by a rounding. What lies between them, too, keeps the two apart.
 /// @param gap  theirs
 /// @return nothing of solids that have one normal, or are apart, and of all others
-std::optional<Vector3d> other_normal(const CollisionShape& a, const Pose& pose_a,
-                                     const CollisionShape& b, const Pose& pose_b, const Gap& gap);
+std::vector<Vector3d> normals_apart(const CollisionShape& a, const Pose& pose_a,
+                                    const CollisionShape& b, const Pose& pose_b, const Gap& gap);
 
 /// Whether the interiors of two solids intersect, also when one lies entirely inside the other. For
 /// initial states.

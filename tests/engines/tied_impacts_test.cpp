@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/shortest_turn.h"
 #include "tests/engines/reference_runs.h"
 
 namespace tumble::testing::tied_impacts_test {
@@ -178,16 +179,20 @@ TEST(ImpactsAtOneInstant, ThatLeaveOutReboundsSaySo) {
     }
 }
 
-// Two cubes that fly at each other, turned by 45 degrees about z: edge meets parallel edge. `aside`
-// is how far the second passes beside the first.
-scene::Scene edge_on_edge(double aside) {
+// Two cubes that fly at each other, turned so that edge meets parallel edge (about z by 45 degrees),
+// or corner meets corner (diagonals along x). `aside` is how far the second passes beside the first.
+scene::Scene head_on(const Quaterniond& turn, double aside) {
   std::vector<scene::BodySpec> bodies{
       box("left", {0.5, 0.5, 0.5}, 1.0, {-2, 0, 0}, {1, 0, 0}),
       box("right", {0.5, 0.5, 0.5}, 2.0, {2, aside, 0}, {-1, 0, 0})};
-  for (scene::BodySpec& body : bodies)
-    body.world_from_body = Quaterniond(Eigen::AngleAxisd(M_PI / 4, Vector3d::UnitZ()));
+  for (scene::BodySpec& body : bodies) {
+    body.world_from_body = turn;
+    body.restitution = 0.5;
+  }
   return scene_of(std::move(bodies), 4.0);
 }
+Quaterniond edges_first() { return Quaterniond(Eigen::AngleAxisd(M_PI / 4, Vector3d::UnitZ())); }
+Quaterniond corners_first() { return shortest_turn(Vector3d(1, 1, 1), Vector3d::UnitX()); }
 
 bool says_normal(const Trajectory& run) {
   return std::any_of(
@@ -196,18 +201,44 @@ bool says_normal(const Trajectory& run) {
       });
 }
 
-// By symmetry nothing would move along y. A normal of faces, along which two cubes are apart as
-// well, sends them aside, and a rounding of places chooses to which side.
-TEST(ImpactsWithSeveralNormals, AreReported) {
+// By symmetry nothing moves but along x, and restitution tells how fast. A normal of faces, along
+// which two cubes are apart as well, would send them aside, and a rounding of places to which side.
+TEST(ImpactsWithSeveralNormals, KeepTheSymmetryOfWhatMeets) {
   for (const char* engine : {"rd", "ordered", "ca", "tw"})
-    for (const double aside : {0.0, 1e-13}) {
-      const Trajectory run = run_on(engine, edge_on_edge(aside));
-      ASSERT_EQ(run.events.size() > 0, true);
-      const double across = std::abs(run.frames.back().poses[0].velocity_world.y());
-      EXPECT_TRUE(across < 1e-9 || says_normal(run)) << engine << ' ' << across;
-      // with a tenth of the edge beside each other, an edge meets a face: one normal
-      EXPECT_FALSE(says_normal(run_on(engine, edge_on_edge(0.1)))) << engine;
-    }
+    for (const Quaterniond& turn : {edges_first(), corners_first()})
+      for (const double aside : {0.0, 1e-13}) {
+        const Trajectory run = run_on(engine, head_on(turn, aside));
+        ASSERT_FALSE(run.events.empty());
+        // (m1 u1 + m2 u2 +- m e (u2 - u1)) / (m1 + m2) of 1 and 2 kg at 1 and -1 m/s
+        const double expected[] = {(1 - 2 - 2 * 0.5 * 2) / 3.0, (1 - 2 + 1 * 0.5 * 2) / 3.0};
+        for (std::size_t k = 0; k < 2; ++k)
+          // 1e-9: the arms of the impulse, of some 1e-13 m, and 2 s of turning
+          EXPECT_LT(
+              (run.frames.back().poses[k].velocity_world - expected[k] * Vector3d::UnitX()).norm(),
+              1e-9)
+              << engine << ' ' << aside;
+        EXPECT_TRUE(says_normal(run)) << engine;
+      }
+}
+
+// With a tenth of the edge beside each other, an edge meets a face.
+TEST(ImpactsWithSeveralNormals, AreNotThoseOfEdgesOnFaces) {
+  for (const char* engine : {"rd", "ordered", "ca", "tw"})
+    EXPECT_FALSE(says_normal(run_on(engine, head_on(edges_first(), 0.1)))) << engine;
+}
+
+// Side flush with side, but for a rounding: along the normal of the sides the cubes do not approach,
+// and where faces that meet by 1e-13 m stop them, their own normal does.
+TEST(ImpactsWithSeveralNormals, ActAlongOneWhereBodiesPassAlongAnother) {
+  for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
+    const Trajectory run = run_on(
+        engine, scene_of({box("left", {0.5, 0.5, 0.5}, 1.0, {0, 0, 0}, {0, 0, -1}),
+                          box("right", {0.5, 0.5, 0.5}, 2.0, {1.0 - 1e-13, 0, -2}, {0, 0, 1})},
+                         1.0));
+    ASSERT_FALSE(run.events.empty()) << engine;
+    EXPECT_EQ(run.events[0].normal_b_to_a_world, Vector3d::UnitZ()) << engine;
+    EXPECT_FALSE(says_normal(run)) << engine;
+  }
 }
 
 // A cube that lands flat on another, side above side, has one normal.

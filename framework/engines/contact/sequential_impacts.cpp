@@ -14,7 +14,6 @@
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/impact_law.h"
-#include "framework/engines/contact/normal_watch.h"
 
 namespace tumble::engines {
 namespace {
@@ -542,13 +541,6 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
       approach = std::max(approach, -event.normal_velocity_before);
     }
     if (!hit && k != trigger) continue;
-    if (hit && approach > rules_.restitution_threshold) {
-      const auto pose = [&](int body) { return moving.motion_at(body, moving.time()).pose; };
-      watch_normal(moving.time(),
-                   {moving.world().bodies[pair.a], moving.world().bodies[pair.b],
-                    moving.shape(pair.a), moving.shape(pair.b), pose(pair.a), pose(pair.b)},
-                   pair.gap, counters_.watch);
-    }
     const bool in_vain = work.result.events.empty();
     const bool soon_again = moving.time() - last->second < rules_.micro_interval &&
                             approach < rules_.restitution_threshold;

@@ -8,6 +8,7 @@
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/impact_law.h"
+#include "framework/engines/contact/impact_normal.h"
 
 namespace tumble::engines {
 
@@ -154,22 +155,38 @@ void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in
 // The trigger, the pairs that touch, and those in persistent contact: what rests on something
 // touches it.
 WorldStep::TouchingPairs WorldStep::touching_pairs(const std::vector<Pair>& pairs, Pair trigger,
-                                                   bool is_in_step) const {
+                                                   bool is_in_step) {
   const auto is_in_contact = [&](Pair pair) {
     return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair));
   };
   TouchingPairs touching;
   for (const Pair& pair : pairs) {
-    const collision::Gap gap = impact_detection_.gap(pair);
+    collision::Gap gap = impact_detection_.gap(pair);
     const bool lasts = is_in_contact(pair);
     if (pair != trigger && !lasts && !(gap.distance <= impact_detection_.touching_distance(pair)))
       continue;
     if (pair == trigger) touching.trigger = touching.all.size();
+    if (!lasts) choose_normal(pair, gap);
     const double band = lasts ? contacts_->impact_band(pair) : 0.0;
     touching.all.push_back(
         {pair.first, pair.second, gap, impact_detection_.touching_points(pair, gap, band)});
   }
   return touching;
+}
+
+// Along which the two push each other.
+void WorldStep::choose_normal(Pair pair, collision::Gap& gap) {
+  const double t = moving_.time();
+  const auto& bodies = moving_.world().bodies;
+  const MeetingBodies meeting{bodies[pair.first],
+                              bodies[pair.second],
+                              moving_.shape(pair.first),
+                              moving_.shape(pair.second),
+                              moving_.motion_at(pair.first, t),
+                              moving_.motion_at(pair.second, t)};
+  const Vector3d normal = normal_of_impact(meeting, gap, rules_.restitution_threshold);
+  watch_normal(t, meeting, gap, normal, counters_.watch);
+  gap.normal_b_to_a_world = normal;
 }
 
 // A pair that touches and whose impacts, if any, were slow enough not to bounce begins a persistent

@@ -115,7 +115,8 @@ class WorldStep {
   bool keep_contacts(Taken& taken, StepStages& stages);
   void remove_overlaps(const Taken& taken);
   Taken give_up();
-  TouchingPairs touching_pairs(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step) const;
+  TouchingPairs touching_pairs(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step);
+  void choose_normal(Pair pair, collision::Gap& gap);
   void begin_slow_contacts(const TouchingPairs& touching, const std::vector<Event>& events);
   void bring_to_rest(const TouchingPairs& touching, const std::vector<Event>& events);
   void send_apart(const TouchingPairs& touching, const Resolution& resolution);

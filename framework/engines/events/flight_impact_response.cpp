@@ -12,6 +12,7 @@
 #include "framework/engines/contact/impact_bodies.h"
 #include "framework/engines/contact/impact_law.h"
 #include "framework/engines/contact/impact_detection.h"
+#include "framework/engines/contact/impact_normal.h"
 
 namespace tumble::engines {
 namespace {
@@ -200,6 +201,14 @@ Discontinuity FlightImpactResponse::resolve_impact(const EventStamp& key, const 
       pose_b{work.b.com_world, work.b.world_from_body};
   const collision::CollisionShape &shape_a = world_.shape(a), &shape_b = world_.shape(b);
   work.gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
+  work.gap.normal_b_to_a_world =
+      normal_of_impact({world_.world().bodies[a],
+                        world_.world().bodies[b],
+                        shape_a,
+                        shape_b,
+                        {pose_a, work.a.velocity_world, work.a.omega_world},
+                        {pose_b, work.b.velocity_world, work.b.omega_world}},
+                       work.gap, rules_.restitution_threshold);
   work.points_world =
       touching_points(shape_a, pose_a, shape_b, pose_b, work.gap,
                       {world_.world().bodies[a].inertia.inverse_mass,

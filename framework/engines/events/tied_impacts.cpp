@@ -6,7 +6,7 @@
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/impact_law.h"
-#include "framework/engines/contact/normal_watch.h"
+#include "framework/engines/contact/impact_normal.h"
 
 namespace tumble::engines {
 namespace {
@@ -122,16 +122,18 @@ void TiedImpacts::look_at_normal(const EventStamp& key, const FlightOf& before,
     return;
   const Body one = world_.body_at(a, before(a), key.time),
              two = world_.body_at(b, before(b), key.time);
-  const MeetingBodies bodies{world_.world().bodies[a],
-                             world_.world().bodies[b],
-                             world_.shape(a),
-                             world_.shape(b),
-                             {one.com_world, one.world_from_body},
-                             {two.com_world, two.world_from_body}};
+  const MeetingBodies bodies{
+      world_.world().bodies[a],
+      world_.world().bodies[b],
+      world_.shape(a),
+      world_.shape(b),
+      {{one.com_world, one.world_from_body}, one.velocity_world, one.omega_world},
+      {{two.com_world, two.world_from_body}, two.velocity_world, two.omega_world}};
   if (bodies.shape_a.is_ball() || bodies.shape_b.is_ball()) return;
-  const collision::Gap gap =
-      collision::compute_gap(bodies.shape_a, bodies.pose_a, bodies.shape_b, bodies.pose_b);
-  if (approach(a, b, key.time, before)) watch_normal(key.time, bodies, gap, watch);
+  const collision::Gap gap = collision::compute_gap(bodies.shape_a, bodies.motion_a.pose,
+                                                    bodies.shape_b, bodies.motion_b.pose);
+  watch_normal(key.time, bodies, gap, normal_of_impact(bodies, gap, rules_.restitution_threshold),
+               watch);
 }
 
 void TiedImpacts::look(const EventStamp& key, const FlightOf& before, RunWatch& watch) {

@@ -24,7 +24,7 @@ class TiedImpacts {
       : world_(world), laws_(laws), rules_(rules) {}
 
   /// Says once a run where the opposite order gives another result, and where an impact has more
-  /// than one normal (contact/normal_watch.h).
+  /// than one normal (contact/impact_normal.h).
   /// @param key     of an impact that is committed
   /// @param before  the flights of all bodies before that instant
   void look(const EventStamp& key, const FlightOf& before, RunWatch& watch);
