@@ -79,7 +79,7 @@ figure img, figure video { max-width: 100%; height: auto; display: block;
 .film video { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain;
   object-position: top; background: #1c2733; box-sizing: border-box; }
 figure .film .in-print { display: block; visibility: hidden; }
-.wide:focus-visible, .plot-figure:focus-visible, summary:focus-visible, a:focus-visible {
+.wide:focus-visible, summary:focus-visible, a:focus-visible {
   outline: 2px solid var(--link); outline-offset: 2px; }
 ul { margin: .4rem 0; padding-left: 1.4rem; }
 .thumbs { display: grid; gap: .7rem; grid-template-columns: repeat(auto-fill, minmax(9rem, 1fr)); }
@@ -104,7 +104,9 @@ figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tile span { color: var(--soft); font-size: .86rem; }
 .plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; }
 .plot-figure.small { max-width: 30rem; }
-svg.plot { width: 100%; height: auto; display: block; }
+svg.plot { width: 100%; height: auto; display: block; } svg.plot.narrow { display: none; }
+@media screen and (max-width: 38rem) { svg.plot.narrow { display: block; max-width: 30rem; }
+  .both > svg.plot:not(.narrow) { display: none; } }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft);
   font-size: .8rem; overflow-wrap: anywhere; }
 @media screen and (prefers-color-scheme: dark) { :root { --paper: #161d24; --ink: #e4eaf0;
@@ -345,19 +347,21 @@ void Page::thumbnails(const std::vector<Figure>& figures) {
   body_ += "</div>\n";
 }
 
-// It may be wider than a phone: then it scrolls, also by the keyboard.
-void Page::figure(const std::string& svg, const std::string& caption, bool is_small) {
-  body_ += is_small ? "<figure class=\"plot-figure small\">" + svg
-                    : "<figure class=\"plot-figure\" tabindex=\"0\">" + svg;
+// Of a wide and a narrow drawing the one is shown that fits, so that letters can be read on a phone.
+void Page::figure(const std::string& svg, const std::string& narrow, const std::string& caption) {
+  body_ += narrow.empty() ? "<figure class=\"plot-figure small\">" + svg
+                          : "<figure class=\"plot-figure both\">" + svg + narrow;
   if (!caption.empty()) body_ += "<figcaption>" + html_escape(caption) + "</figcaption>";
   body_ += "</figure>\n";
 }
 
-void Page::plot(const Plot& plot) { figure(svg_of(plot), plot.caption, false); }
+void Page::plot(const Plot& plot) { figure(svg_of(plot), narrow_svg_of(plot), plot.caption); }
 void Page::plot(const StackedBars& bars) {
-  figure(svg_of(bars, ++charts_of_bars_), bars.caption, bars.is_small);
+  ++charts_of_bars_;
+  figure(svg_of(bars, charts_of_bars_), bars.is_small ? "" : narrow_svg_of(bars, charts_of_bars_),
+         bars.caption);
 }
-void Page::plot(const Arms& arms) { figure(svg_of(arms), arms.caption, true); }
+void Page::plot(const Arms& arms) { figure(svg_of(arms), "", arms.caption); }
 
 void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
   body_ += "<div class=\"tiles\">";

@@ -140,7 +140,7 @@ class Page {
   void write(const std::filesystem::path& file) const;
 
  private:
-  void figure(const std::string& svg, const std::string& caption, bool is_small);
+  void figure(const std::string& svg, const std::string& narrow, const std::string& caption);
 
   std::string title_, subtitle_, body_, record_, script_, style_;
   std::vector<const char*> open_;  // tags of parts without their end

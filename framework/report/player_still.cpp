@@ -72,7 +72,7 @@ std::string player_still(const std::vector<PlayedRun>& runs, const std::vector<P
             series, packed[r].times_s,
             series.name + (runs[r].label.empty() || runs.size() < 2 ? "" : ", " + runs[r].label)));
       }
-    html += "<figure>" + svg_of(plot) + "</figure>\n";
+    html += "<figure class=\"both\">" + svg_of(plot) + narrow_svg_of(plot) + "</figure>\n";
   }
   for (const PlayedRun& played : runs)
     if (!played.run.events.empty())

@@ -8,17 +8,18 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/report/curve_styles.h"
 #include "framework/report/html_text.h"
+#include "framework/report/ticks.h"
 
 namespace tumble::report {
 namespace {
 
-// Units of the drawing. Numbers are at the left of the frame, names below it.
-constexpr double kWidth = 640, kHeight = 360, kLeft = 78, kRight = 622, kTop = 34, kBottom = 306;
-constexpr std::size_t kMostPoints = 2000, kParts = 1000;
-constexpr std::size_t kLeastTicks = 3;  // numbers on an axis: fewer do not tell its scale
-constexpr double kTextHeight = 17;
-constexpr double kLetter = 0.64;  // mean width of a bold letter over its size
+constexpr double kTextHeight = 17, kTitleHeight = 16;
+// widths of letters: the mean, one that lines are broken by, of a bold title, of a figure at an axis
+constexpr double kMeanLetter = 6.6, kLetter = 7.2, kBoldLetter = 8.7, kFigure = 7.4;
+constexpr std::size_t kMarksOfLong = 6;  // per curve without marks, where colours repeat
+constexpr int kTicksOfWide = 6, kTicksOfNarrow = 4;  // along x
 // on a logarithmic axis: smaller values are rounding, drawn at the edge
 constexpr double kMostDecades = 40.0;
 // largest over smallest: below it values are drawn as equal
@@ -26,22 +27,17 @@ constexpr double kFlat = 1.001;
 // on a linear axis: length of the shortest over its largest value; numbers have six digits
 constexpr double kFlatShare = 1e-4;
 
-// From dark to light for print, distinguishable to colour-blind readers (after M. Okabe, K. Ito,
-// "Color universal design", 2008). More than eight colours are hard to distinguish: the second
-// eight curves repeat them with other dashes, thinner lines and hollow marks.
-struct Style {
-  const char *colour, *dashes;
+// Where things stand, in units of the drawing. Numbers are at the left of the frame, names below
+// it. In a narrow drawing the name of the upright axis stands above the frame.
+struct Sheet {
+  double width, left, right, top, bottom;
+  std::size_t parts;  // of a long curve: columns of a screen
+  bool is_narrow;
+
+  std::size_t letters(double each) const {  // in a line
+    return static_cast<std::size_t>((right - left) / each);
+  }
 };
-constexpr Style kStyles[] = {{"#00446b", ""},         {"#c14d00", "7 3"},
-                             {"#007a57", "2 2.5"},    {"#9a4f86", "9 3 2 3"},
-                             {"#3d8fc4", "4 2"},      {"#8a6d00", "1.5 4"},
-                             {"#222222", "12 4"},     {"#b5465f", "5 2 1.5 2 1.5 2"},
-                             {"#00446b", "3 5"},      {"#c14d00", ""},
-                             {"#007a57", "10 2 2 2"}, {"#9a4f86", "1 2"},
-                             {"#3d8fc4", "14 5"},     {"#8a6d00", "6 2 1 2 1 2 1 2"},
-                             {"#222222", "2 6"},      {"#b5465f", ""}};
-constexpr std::size_t kColours = 8;      // and shapes of marks
-constexpr std::size_t kMarksOfLong = 6;  // per curve without marks, where colours repeat
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(),
@@ -100,35 +96,28 @@ std::string words_of(const Axis& axis) {
   return fmt::format("{} [{}]", axis.name, axis.unit.empty() ? "-" : axis.unit);
 }
 
-std::string grid(const Axis& axis, const Scaled& at, bool across) {
+std::string grid(const Axis& axis, const Scaled& at, const Sheet& sheet, bool across) {
   std::string svg;
-  const std::vector<double> ticks = ticks_of(at.low, at.high, axis.scale);
-  const double spacing = ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
-  for (double tick : ticks) {
-    if (axis.scale == Scale::kLinear && std::abs(tick) < 1e-9 * spacing) tick = 0.0;
-    const double p = at(tick);
-    const double exponent = axis.scale == Scale::kLog ? std::round(std::log10(tick)) : 0.0;
-    const bool is_power =
-        axis.scale == Scale::kLog && std::abs(tick - std::pow(10.0, exponent)) < 1e-6 * tick;
-    const std::string number = is_power && (tick < 1e-3 || tick > 9999)
-                                   ? fmt::format("1e{:.0f}", exponent)
-                                   : fmt::format("{:.6g}", tick);
-    svg +=
-        across
-            ? line(kLeft, p, kRight, p, "class=\"grid\"") + text(kLeft - 7, p + 4, number, "end")
-            : line(p, kTop, p, kBottom, "class=\"grid\"") + text(p, kBottom + 17, number, "middle");
+  const int most = sheet.is_narrow && !across ? kTicksOfNarrow : kTicksOfWide;
+  const std::vector<double> ticks = ticks_of(at.low, at.high, axis.scale, most);
+  const std::vector<std::string> numbers = tick_words(ticks, axis.scale);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const double p = at(ticks[i]);
+    svg += across ? line(sheet.left, p, sheet.right, p, "class=\"grid\"") +
+                        text(sheet.left - 7, p + 4, numbers[i], "end")
+                  : line(p, sheet.top, p, sheet.bottom, "class=\"grid\"") +
+                        text(p, sheet.bottom + 17, numbers[i], "middle");
   }
   return svg;
 }
 
-// The minimum and maximum of each part in their order: all that a thousand columns of a screen can
-// show.
-Curve thinned(const Curve& curve) {
-  if (curve.x.size() <= kMostPoints) return curve;
+// The minimum and maximum of each part in their order: all that the columns of a screen can show.
+Curve thinned(const Curve& curve, std::size_t parts) {
+  if (curve.x.size() <= 2 * parts) return curve;
   Curve thin{curve.name, {}, {}, curve.marks};
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const std::size_t begin = part * curve.x.size() / kParts,
-                      end = (part + 1) * curve.x.size() / kParts;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t begin = part * curve.x.size() / parts,
+                      end = (part + 1) * curve.x.size() / parts;
     std::size_t least = begin;
     while (least + 1 < end && !std::isfinite(curve.y[least])) ++least;  // nothing compares with it
     std::size_t largest = least;
@@ -143,42 +132,6 @@ Curve thinned(const Curve& curve) {
     }
   }
   return thin;
-}
-
-const Style& style_of(std::size_t place) { return kStyles[place % std::size(kStyles)]; }
-bool is_hollow(std::size_t place) { return place % std::size(kStyles) >= kColours; }
-double width_of(std::size_t place) { return is_hollow(place) ? 1.2 : 1.8; }
-
-// Outlines in units of a mark's radius around its centre: a circle (empty), square, triangle,
-// diamond, inverted triangle, cross, star, hexagon.
-constexpr const char* kOutlines[kColours] = {
-    "",
-    "M-1 -1H1V1H-1z",
-    "M0 -1.3L1.2 0.9H-1.2z",
-    "M0 -1.4L1.1 0L0 1.4L-1.1 0z",
-    "M-1.2 -0.9H1.2L0 1.3z",
-    "M-1.3 -0.45H-0.45V-1.3H0.45V-0.45H1.3V0.45H0.45V1.3H-0.45V0.45H-1.3z",
-    "M0 -1.5L0.4 -0.4L1.5 0L0.4 0.4L0 1.5L-0.4 0.4L-1.5 0L-0.4 -0.4z",
-    "M-0.6 -1.1H0.6L1.2 0L0.6 1.1H-0.6L-1.2 0z"};
-
-std::string mark(double x, double y, std::size_t place) {
-  constexpr double r = 3.2;
-  const char* outline = kOutlines[place % kColours];
-  const std::string paint =
-      is_hollow(place)
-          ? fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.3\"", style_of(place).colour)
-          : fmt::format("fill=\"{}\"", style_of(place).colour);
-  if (*outline == '\0')
-    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" {}/>", x, y, r, paint);
-  return fmt::format(
-      "<path transform=\"translate({:.1f} {:.1f}) scale({})\" vector-effect=\"non-scaling-stroke\" "
-      "d=\"{}\" {}/>",
-      x, y, r, outline, paint);
-}
-
-std::string dashes_of(std::size_t place) {
-  const char* dashes = style_of(place).dashes;
-  return *dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", dashes);
 }
 
 // Interval between marked points of a curve; 0: no marks.
@@ -207,34 +160,40 @@ std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const 
   return fmt::format(
       "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
       "stroke-linejoin=\"round\"{}/>\n{}",
-      path, style_of(place).colour, width_of(place), dashes_of(place), marks);
+      path, colour_of(place), width_of(place), dashes_of(place), marks);
 }
 
-// Below the name of the axis, in rows.
-std::string legend(const Plot& plot, double& bottom) {
+// Below the name of the axis, in rows; a name too long for one goes on in the next.
+std::string legend(const Plot& plot, const Sheet& sheet, double& bottom) {
+  constexpr double kKey = 34, kGap = 10;
   std::string svg;
-  double x = kLeft, y = kBottom + 58;
+  double x = sheet.left, y = bottom + 22;
+  const double right = sheet.right;
+  const auto most = static_cast<std::size_t>((right - sheet.left - kKey) / kLetter);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     if (plot.curves[i].name.empty()) continue;
-    const double width = 44 + 6.6 * static_cast<double>(plot.curves[i].name.size());
-    if (x > kLeft && x + width > kRight) {
-      x = kLeft;
+    const std::vector<std::string> lines = wrapped(plot.curves[i].name, most);
+    const double width = kKey + kGap + kMeanLetter * static_cast<double>(plot.curves[i].name.size());
+    if (x > sheet.left && x + width > right) {
+      x = sheet.left;
       y += kTextHeight;
     }
     svg += line(x, y - 4, x + 28, y - 4,
-                fmt::format("stroke=\"{}\" stroke-width=\"{}\"{}", style_of(i).colour,
-                            width_of(i) + 0.6, dashes_of(i)));
+                fmt::format("stroke=\"{}\" stroke-width=\"{}\"{}", colour_of(i), width_of(i) + 0.6,
+                            dashes_of(i)));
     if (points_a_mark(plot.curves[i], plot) > 0) svg += mark(x + 14, y - 4, i);
-    svg += text(x + 34, y, plot.curves[i].name, "start");
+    svg += text(x + kKey, y, lines.front(), "start");
+    for (std::size_t k = 1; k < lines.size(); ++k)
+      svg += text(x + kKey, y += kTextHeight, lines[k], "start");
     x += width;
   }
-  bottom = y + 10;
+  if (!svg.empty()) bottom = y + 10;
   return svg;
 }
 
-// The frame of the plot's points, as drawn.
+// The ranges of the plot's points.
 struct PlotFrame {
-  Scaled x, y;
+  Range x, y;
   bool is_empty;
 };
 
@@ -251,10 +210,93 @@ PlotFrame frame_of(const Plot& plot) {
   const bool is_empty = !(xs.low <= xs.high);
   for (const Limit& limit : plot.limits)
     if (drawable(limit.y, plot.y.scale)) ys.hold(limit.y);
-  const Range across = widened(xs, plot.x.scale), up = widened(ys, plot.y.scale);
-  return {{plot.x.scale, across.low, across.high, kLeft, kRight},
-          {plot.y.scale, up.low, up.high, kBottom, kTop},
-          is_empty};
+  return {widened(xs, plot.x.scale), widened(ys, plot.y.scale), is_empty};
+}
+
+constexpr Sheet kWide = {640, 78, 622, 34, 306, 1000, false};
+constexpr double kNarrowWidth = 340, kNarrowHeight = 210;
+
+// As wide as numbers at the left need it, below its title and the name of the upright axis.
+Sheet narrow_sheet(const Plot& plot, const Range& up) {
+  std::size_t longest = 1;
+  for (const std::string& number :
+       tick_words(ticks_of(up.low, up.high, plot.y.scale, kTicksOfWide), plot.y.scale))
+    longest = std::max(longest, number.size());
+  constexpr double kMargin = 8;
+  Sheet sheet{kNarrowWidth, kMargin, kNarrowWidth - 18, 0, 0, 250, true};
+  sheet.top =
+      10 +
+      kTitleHeight * static_cast<double>(wrapped(plot.title, sheet.letters(kBoldLetter)).size()) +
+      kTextHeight * static_cast<double>(wrapped(words_of(plot.y), sheet.letters(kLetter)).size());
+  sheet.bottom = sheet.top + kNarrowHeight;
+  sheet.left = kMargin + kFigure * static_cast<double>(longest);
+  return sheet;
+}
+
+// Title and, where it stands above the frame, the name of the upright axis.
+std::string heading_of(const Plot& plot, const Sheet& sheet) {
+  Sheet page = sheet;
+  if (sheet.is_narrow) page.left = 8;
+  std::string svg;
+  double y = sheet.is_narrow ? 16 : 20;
+  for (const std::string& words : wrapped(plot.title, page.letters(kBoldLetter))) {
+    svg += text(page.left, y, words, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+    y += kTitleHeight;
+  }
+  if (!sheet.is_narrow)
+    return svg + text(0, 0, words_of(plot.y), "middle",
+                      fmt::format(" transform=\"translate(15 {}) rotate(-90)\"",
+                                  0.5 * (sheet.top + sheet.bottom)));
+  for (const std::string& words : wrapped(words_of(plot.y), page.letters(kLetter))) {
+    svg += text(page.left, y, words, "start");
+    y += kTextHeight;
+  }
+  return svg;
+}
+
+// Below everything: what covers what.
+std::string covering(const Plot& plot, const Sheet& sheet, double& bottom) {
+  std::string svg;
+  for (const std::string& names : coinciding(plot))
+    for (const std::string& words :
+         wrapped("One covers the other: " + names, sheet.letters(kLetter))) {
+      bottom += kTextHeight;
+      svg += text(sheet.left, bottom - 10, words, "start");
+    }
+  return svg;
+}
+
+std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& sheet) {
+  const double middle = 0.5 * (sheet.left + sheet.right);
+  const Scaled x{plot.x.scale, frame.x.low, frame.x.high, sheet.left, sheet.right};
+  const Scaled y{plot.y.scale, frame.y.low, frame.y.high, sheet.bottom, sheet.top};
+  std::string body = heading_of(plot, sheet);
+  body += grid(plot.y, y, sheet, true) + grid(plot.x, x, sheet, false);
+  body += fmt::format(
+      "<rect x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"none\" "
+      "stroke=\"#5b6875\"/>\n",
+      sheet.left, sheet.top, sheet.right - sheet.left, sheet.bottom - sheet.top);
+  for (const Limit& limit : plot.limits) {
+    if (!drawable(limit.y, plot.y.scale)) continue;
+    const double at = y(limit.y);
+    body += line(sheet.left, at, sheet.right, at,
+                 "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"");
+    body += text(sheet.right - 5, at > sheet.top + 20 ? at - 5 : at + 14, limit.name, "end",
+                 " fill=\"#a82c00\" class=\"halo\"");
+  }
+  for (std::size_t i = 0; i < plot.curves.size(); ++i)
+    body += draw(thinned(plot.curves[i], sheet.parts), i, plot, x, y);
+  if (frame.is_empty)
+    body += text(middle, 0.5 * (sheet.top + sheet.bottom), "nothing to draw", "middle");
+  double bottom = sheet.bottom + 19;
+  for (const std::string& words : wrapped(words_of(plot.x), sheet.letters(kLetter)))
+    body += text(middle, bottom += kTextHeight, words, "middle");
+  body += legend(plot, sheet, bottom);
+  body += covering(plot, sheet, bottom);
+  return fmt::format(
+      "<svg class=\"plot{}\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n"
+      "{}</svg>\n",
+      sheet.is_narrow ? " narrow" : "", sheet.width, bottom + 10, html_escape(plot.title), body);
 }
 
 // Whether nobody can see two curves apart.
@@ -285,7 +327,8 @@ Curve sorted_by_x(Curve curve) {
 }
 
 std::vector<std::string> coinciding(const Plot& plot) {
-  const Scaled y = frame_of(plot).y;
+  const Range up = frame_of(plot).y;
+  const Scaled y{plot.y.scale, up.low, up.high, kWide.bottom, kWide.top};
   std::vector<std::string> groups;
   std::vector<bool> is_named(plot.curves.size(), false);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
@@ -302,37 +345,6 @@ std::vector<std::string> coinciding(const Plot& plot) {
   return groups;
 }
 
-std::vector<double> ticks_of(double low, double high, Scale scale) {
-  require(low < high && std::isfinite(low) && std::isfinite(high) &&
-              (scale == Scale::kLinear || low > 0),
-          "report: a plot's axis needs low < high");
-  std::vector<double> ticks;
-  if (scale == Scale::kLog && high / low >= 20) {
-    const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-9)),
-              last = static_cast<int>(std::floor(std::log10(high) + 1e-9));
-    const int stride = std::max(1, (last - first + 6) / 7);
-    for (int power = first; power <= last; power += stride) ticks.push_back(std::pow(10.0, power));
-    if (ticks.size() >= kLeastTicks) return ticks;
-    ticks.clear();  // between the powers, too
-    for (int power = first - 1; power <= last; ++power)
-      for (const double part : {1.0, 2.0, 5.0}) {
-        const double tick = part * std::pow(10.0, power);
-        if (tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) ticks.push_back(tick);
-      }
-    return ticks;
-  }
-  const double rough = (high - low) / 6, power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double part = rough / power, spacing = (part > 5   ? 10
-                                                : part > 2 ? 5
-                                                : part > 1 ? 2
-                                                           : 1) *
-                                               power;
-  for (double tick = std::ceil(low / spacing - 1e-9) * spacing; tick <= high + 1e-9 * spacing;
-       tick += spacing)
-    ticks.push_back(tick);
-  return ticks;
-}
-
 const char* plot_style() {
   return R"(
 svg.plot { font: 11.5px "DejaVu Sans", Arial, sans-serif; fill: #1c2733; }
@@ -341,44 +353,11 @@ svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 )";
 }
 
-std::string svg_of(const Plot& plot) {
-  const auto [x, y, is_empty] = frame_of(plot);
-  const double room =
-      (kRight - kLeft) / (kLetter * std::max<double>(1.0, static_cast<double>(plot.title.size())));
-  std::string body =
-      text(kLeft, 20, plot.title, "start",
-           fmt::format(" font-weight=\"bold\" font-size=\"{:.3g}\"", std::min(13.5, room)));
-  body += grid(plot.y, y, true) + grid(plot.x, x, false);
-  body += fmt::format(
-      "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#5b6875\"/>\n",
-      kLeft, kTop, kRight - kLeft, kBottom - kTop);
-  for (const Limit& limit : plot.limits) {
-    if (!drawable(limit.y, plot.y.scale)) continue;
-    const double at = y(limit.y);
-    body += line(kLeft, at, kRight, at,
-                 "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"");
-    body += text(kRight - 5, at > kTop + 20 ? at - 5 : at + 14, limit.name, "end",
-                 " fill=\"#a82c00\" class=\"halo\"");
-  }
-  for (std::size_t i = 0; i < plot.curves.size(); ++i)
-    body += draw(thinned(plot.curves[i]), i, plot, x, y);
-  if (is_empty)
-    body += text(0.5 * (kLeft + kRight), 0.5 * (kTop + kBottom), "nothing to draw", "middle");
-  body += text(0.5 * (kLeft + kRight), kBottom + 36, words_of(plot.x), "middle");
-  body += text(0, 0, words_of(plot.y), "middle",
-               fmt::format(" transform=\"translate(15 {}) rotate(-90)\"", 0.5 * (kTop + kBottom)));
-  double bottom = kHeight;
-  body += legend(plot, bottom);
-  for (const std::string& names : coinciding(plot)) {
-    bottom += kTextHeight;
-    const std::string words = "One covers the other: " + names;
-    const double fits = (kRight - kLeft) / (kLetter * static_cast<double>(words.size()));
-    body += text(kLeft, bottom - 10, words, "start",
-                 fmt::format(" font-size=\"{:.3g}\"", std::min(11.5, fits)));
-  }
-  return fmt::format(
-      "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
-      kWidth, std::max(bottom, kBottom + 46.0), html_escape(plot.title), body);
+std::string svg_of(const Plot& plot) { return drawn_on(plot, frame_of(plot), kWide); }
+
+std::string narrow_svg_of(const Plot& plot) {
+  const PlotFrame frame = frame_of(plot);
+  return drawn_on(plot, frame, narrow_sheet(plot, frame.y));
 }
 
 }  // namespace tumble::report

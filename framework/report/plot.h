@@ -57,10 +57,11 @@ Curve sorted_by_x(Curve curve);
 /// are curves with the same x.
 std::vector<std::string> coinciding(const Plot& plot);
 
-/// The ticks of an axis: about 4 to 8 round numbers in [low, high]; powers of ten (or some of them)
-/// on a logarithmic axis, and numbers between them where there are fewer than three.
+/// The ticks of an axis: round numbers in [low, high], about as many as `most` says, from four on
+/// where it is 6; powers of ten (or some of them) on a logarithmic axis, and numbers between them
+/// where there are fewer than three.
 /// @pre low < high, finite; positive where logarithmic
-std::vector<double> ticks_of(double low, double high, Scale scale);
+std::vector<double> ticks_of(double low, double high, Scale scale, int most = 6);
 
 /// CSS rules that svg_of needs, once per page.
 const char* plot_style();
@@ -68,5 +69,9 @@ const char* plot_style();
 /// An <svg> element, 640 units wide; names curves that cover each other; says where nothing can be
 /// drawn. Of more than 2000 points are drawn the minimum and maximum of each of 1000 parts.
 std::string svg_of(const Plot& plot);
+
+/// The same for a column of a phone, 340 units wide: letters have the size that they have in the
+/// wide one. A page that has both shows the one that fits (class "narrow").
+std::string narrow_svg_of(const Plot& plot);
 
 }  // namespace tumble::report

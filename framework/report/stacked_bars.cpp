@@ -8,18 +8,28 @@
 
 #include "framework/core/error.h"
 #include "framework/report/html_text.h"
+#include "framework/report/ticks.h"
 
 namespace tumble::report {
 namespace {
 
-// Units of the drawing, with the width of plot.cpp; names are at the left.
-constexpr double kTop = 34, kRow = 24, kBar = 17, kTextHeight = 17, kMargin = 18;
-struct Sides {
-  double left, right;  // of the bars
-};
-Sides sides_of(const StackedBars& bars) { return bars.is_small ? Sides{96, 342} : Sides{214, 622}; }
+constexpr double kBar = 17, kTextHeight = 17;
 constexpr double kLetter = 6.2;  // mean width of a letter
-constexpr double kLegendLetter = 6.6;
+constexpr double kLegendLetter = 6.6, kTitleLetter = 8.7;
+
+// Where things stand, in units of the drawing, with the width of plot.cpp: names at the left of
+// their bars, or above them where the drawing is narrow.
+struct BarSheet {
+  double margin, width;  // of the drawing
+  double left, right;    // of the bars
+  double row;                  // height
+  bool is_narrow;
+};
+BarSheet sheet_of(const StackedBars& bars) {
+  if (bars.is_small) return {18, 360, 96, 342, 24, false};
+  return {18, 640, 214, 622, 24, false};
+}
+constexpr BarSheet kNarrowBars = {8, 340, 8, 318, 42, true};
 constexpr double kRoomForNumber = 30;  // a narrower part shows no number
 
 // Neighbours differ in lightness, and parts of equal lightness in hatching, so that they are
@@ -36,13 +46,13 @@ constexpr Paint kPaints[] = {
 
 const Paint& paint_of(std::size_t part) { return kPaints[part % std::size(kPaints)]; }
 
-std::string fill_of(std::size_t part, int number) {
+std::string fill_of(std::size_t part, const std::string& number) {
   return *paint_of(part).lines == '\0'
              ? fmt::format("fill=\"{}\"", paint_of(part).ground)
              : fmt::format("fill=\"url(#bar{}-{})\"", number, part % std::size(kPaints));
 }
 
-std::string hatches(std::size_t parts, int number) {
+std::string hatches(std::size_t parts, const std::string& number) {
   std::string defs;
   for (std::size_t part = 0; part < std::min(parts, std::size(kPaints)); ++part) {
     const Paint& paint = paint_of(part);
@@ -62,8 +72,10 @@ std::string text(double x, double y, const std::string& words, const char* ancho
                      anchor, more, html_escape(words));
 }
 
-/// In a font small enough to fit at the left of its bar.
-std::string name_of(const StackedBars::Row& row, double y, double left) {
+/// At the left of its bar in a font small enough to fit, or above it.
+std::string name_of(const StackedBars::Row& row, double y, const BarSheet& sheet) {
+  if (sheet.is_narrow) return text(sheet.left, y - 5, row.name, "start");
+  const double left = sheet.left;
   const double size =
       std::min(11.5, 11.5 * (left - 12) /
                          (kLetter * std::max<double>(1.0, static_cast<double>(row.name.size()))));
@@ -71,13 +83,13 @@ std::string name_of(const StackedBars::Row& row, double y, double left) {
               fmt::format(" font-size=\"{:.3g}\"", size));
 }
 
-std::string bar(const StackedBars::Row& row, double y, double longest, const Sides& sides,
-                int number) {
-  std::string svg = name_of(row, y, sides.left);
-  double x = sides.left;
+std::string bar(const StackedBars::Row& row, double y, double longest, const BarSheet& sheet,
+                const std::string& number) {
+  std::string svg = name_of(row, y, sheet);
+  double x = sheet.left;
   for (std::size_t part = 0; part < row.values.size(); ++part) {
     const double wide =
-        longest > 0.0 ? row.values[part] / longest * (sides.right - sides.left) : 0.0;
+        longest > 0.0 ? row.values[part] / longest * (sheet.right - sheet.left) : 0.0;
     if (wide <= 0.0) continue;
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" {} stroke=\"#fff\" "
@@ -96,13 +108,14 @@ std::string bar(const StackedBars::Row& row, double y, double longest, const Sid
   return svg;
 }
 
-std::string legend(const StackedBars& bars, double& y, int number) {
+std::string legend(const StackedBars& bars, double& y, const BarSheet& sheet,
+                   const std::string& number) {
   std::string svg;
-  double x = kMargin;
+  double x = sheet.margin;
   for (std::size_t part = 0; part < bars.parts.size(); ++part) {
     const double wide = 32 + kLegendLetter * static_cast<double>(bars.parts[part].size());
-    if (x > kMargin && x + wide > sides_of(bars).right) {
-      x = kMargin;
+    if (x > sheet.margin && x + wide > sheet.right) {
+      x = sheet.margin;
       y += kTextHeight;
     }
     svg += fmt::format(
@@ -115,10 +128,7 @@ std::string legend(const StackedBars& bars, double& y, int number) {
   return svg;
 }
 
-}  // namespace
-
-std::string svg_of(const StackedBars& bars, int number) {
-  const Sides sides = sides_of(bars);
+double longest_of(const StackedBars& bars) {
   double longest = 0.0;
   for (const StackedBars::Row& row : bars.rows) {
     require(row.values.size() == bars.parts.size(),
@@ -128,32 +138,69 @@ std::string svg_of(const StackedBars& bars, int number) {
               "report: a part of a bar must be finite and not negative");
     longest = std::max(longest, std::accumulate(row.values.begin(), row.values.end(), 0.0));
   }
-  const double bottom = kTop + kRow * static_cast<double>(bars.rows.size());
-  std::string body =
-      hatches(bars.parts.size(), number) +
-      text(kMargin, 20, bars.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
-  if (longest > 0.0)
-    for (const double tick : ticks_of(0.0, longest, Scale::kLinear)) {
-      const double x = sides.left + tick / longest * (sides.right - sides.left);
-      // the first may be -0
-      body +=
-          fmt::format(
-              "<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>\n", x,
-              kTop, bottom) +
-          text(x, bottom + 15, fmt::format("{:.6g}", std::abs(tick)), "middle");
+  return longest;
+}
+
+// Upright lines with their numbers, and the name of the axis.
+std::string axis_of(const StackedBars& bars, const BarSheet& sheet, double longest, double top,
+                    double bottom) {
+  std::string svg;
+  if (longest > 0.0) {
+    const std::vector<double> ticks =
+        ticks_of(0.0, longest, Scale::kLinear, sheet.is_narrow ? 4 : 6);
+    const std::vector<std::string> numbers = tick_words(ticks, Scale::kLinear);
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      const double x = sheet.left + ticks[i] / longest * (sheet.right - sheet.left);
+      svg += fmt::format(
+                 "<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>\n",
+                 x, top, bottom) +
+             text(x, bottom + 15, numbers[i], "middle");
     }
+  }
+  return svg +
+         text(0.5 * (sheet.left + sheet.right), bottom + 34,
+              fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit),
+              "middle");
+}
+
+// @param number  what makes the ids of this drawing differ from those of others
+std::string bars_on(const StackedBars& bars, const BarSheet& sheet, const std::string& number) {
+  const double longest = longest_of(bars);
+  std::string body = hatches(bars.parts.size(), number);
+  double top = 34;
+  if (sheet.is_narrow) {
+    top = 0;
+    for (const std::string& words :
+         wrapped(bars.title, static_cast<std::size_t>((sheet.right - sheet.margin) / kTitleLetter)))
+      body +=
+          text(sheet.margin, top += 16, words, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+    top += 6;
+  } else {
+    body += text(sheet.margin, 20, bars.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+  }
+  const double bottom = top + sheet.row * static_cast<double>(bars.rows.size());
+  body += axis_of(bars, sheet, longest, top, bottom);
+  const double above = sheet.is_narrow ? sheet.row - kBar - 3 : 0.5 * (sheet.row - kBar);
   for (std::size_t i = 0; i < bars.rows.size(); ++i)
-    body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest,
-                sides, number);
-  body +=
-      text(0.5 * (sides.left + sides.right), bottom + 34,
-           fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit),
-           "middle");
+    body +=
+        bar(bars.rows[i], top + sheet.row * static_cast<double>(i) + above, longest, sheet, number);
   double y = bottom + 58;
-  body += legend(bars, y, number);
+  body += legend(bars, y, sheet, number);
   return fmt::format(
-      "<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
-      sides.right + kMargin, y + 10, html_escape(bars.title), body);
+      "<svg class=\"plot{}\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n"
+      "{}</svg>\n",
+      sheet.is_narrow ? " narrow" : "", sheet.width, y + 10, html_escape(bars.title),
+      body);
+}
+
+}  // namespace
+
+std::string svg_of(const StackedBars& bars, int number) {
+  return bars_on(bars, sheet_of(bars), std::to_string(number));
+}
+
+std::string narrow_svg_of(const StackedBars& bars, int number) {
+  return bars_on(bars, kNarrowBars, std::to_string(number) + "n");
 }
 
 }  // namespace tumble::report

@@ -32,4 +32,7 @@ struct StackedBars {
 /// @pre every row has one finite value >= 0 for each part
 std::string svg_of(const StackedBars& bars, int number = 1);
 
+/// The same for a column of a phone, 340 units wide, with names above their bars.
+std::string narrow_svg_of(const StackedBars& bars, int number = 1);
+
 }  // namespace tumble::report

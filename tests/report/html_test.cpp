@@ -150,19 +150,29 @@ TEST(Page, AVideoHasRoomForItsControlsBelowThePicture) {
   EXPECT_NE(html.find("alt=\"A fall\"></div>"), std::string::npos);
 }
 
-// A plot is wider than a phone, and scrolls there: by the keyboard, too.
-TEST(Page, AWidePlotTakesTheKeyboardAndASmallOneFits) {
+// Letters of a wide drawing would have 7 px on a phone: it has a narrow drawing beside it, and the
+// style of the page shows one of them. None scrolls, and none is a stop of the keyboard.
+TEST(Page, AWidePlotHasANarrowOneBesideItAndASmallOneFits) {
   Page page("T");
   Plot wide;
   wide.title = "wide";
   page.plot(wide);
-  StackedBars bars{.title = "small", .axis = {"n"}, .parts = {"one"}, .rows = {{"a", {1.0}}}};
+  StackedBars bars{.title = "bars", .axis = {"n"}, .parts = {"one"}, .rows = {{"a", {1.0}}}};
+  page.plot(bars);
   bars.is_small = true;
   page.plot(bars);
   const std::string html = page.html();
-  EXPECT_NE(html.find("<figure class=\"plot-figure\" tabindex=\"0\">"), std::string::npos);
+  std::size_t narrow = 0;
+  const std::string kNarrow = "</svg>\n<svg class=\"plot narrow\" viewBox=\"0 0 340 ";
+  for (auto at = html.find(kNarrow); at != html.npos; at = html.find(kNarrow, at + 1)) ++narrow;
+  EXPECT_EQ(narrow, 2u);
+  EXPECT_NE(html.find("<figure class=\"plot-figure both\"><svg class=\"plot\" viewBox=\"0 0 640 "),
+            std::string::npos);
   EXPECT_NE(html.find("<figure class=\"plot-figure small\"><svg class=\"plot\" viewBox=\"0 0 360 "),
             std::string::npos);
+  EXPECT_EQ(html.find("<figure class=\"plot-figure\" tabindex"), std::string::npos);
+  EXPECT_NE(html.find("svg.plot.narrow { display: none; }"), std::string::npos);
+  EXPECT_NE(html.find(".both > svg.plot:not(.narrow) { display: none; }"), std::string::npos);
 }
 
 }  // namespace

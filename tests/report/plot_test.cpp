@@ -1,5 +1,6 @@
 // Plots: ticks are round numbers, undrawable points break a line, text is escaped, limits are
 // drawn.
+#include <algorithm>
 #include <cmath>
 
 #include <set>
@@ -11,6 +12,8 @@
 #include "framework/core/error.h"
 #include "framework/report/html.h"
 #include "framework/report/plot.h"
+#include "framework/report/stacked_bars.h"
+#include "framework/report/ticks.h"
 
 namespace tumble::testing {
 namespace {
@@ -44,6 +47,66 @@ TEST(Ticks, AreRoundNumbersWithinTheAxis) {
 TEST(Ticks, OfAnAxisWithoutLengthBreakAPrecondition) {
   EXPECT_THROW(ticks_of(1.0, 1.0, Scale::kLinear), PreconditionError);
   EXPECT_THROW(ticks_of(0.0, 1.0, Scale::kLog), PreconditionError);
+}
+
+// The numbers of an axis are all plain or all powers of ten.
+TEST(Ticks, HaveOneStyleAnAxis) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(tick_words({5000, 1e4, 2e4, 5e4}, Scale::kLog), (Words{"5e3", "1e4", "2e4", "5e4"}));
+  EXPECT_EQ(tick_words({1, 100, 1e4, 1e6}, Scale::kLog), (Words{"1e0", "1e2", "1e4", "1e6"}));
+  EXPECT_EQ(tick_words({1e-4, 1e-2, 1}, Scale::kLog), (Words{"1e-4", "1e-2", "1e0"}));
+  EXPECT_EQ(tick_words({0.01, 0.1, 1, 10}, Scale::kLog), (Words{"0.01", "0.1", "1", "10"}));
+  EXPECT_EQ(tick_words({0, 5e-5, 1e-4, 1.5e-4}, Scale::kLinear),
+            (Words{"0", "0.5e-4", "1e-4", "1.5e-4"}));
+  EXPECT_EQ(tick_words({0, 5e5, 1e6}, Scale::kLinear), (Words{"0", "0.5e6", "1e6"}));
+  // 0.1 - 0.1 as rounding leaves it
+  EXPECT_EQ(tick_words({-0.2, -0.1, -1.4e-17, 0.1}, Scale::kLinear),
+            (Words{"-0.2", "-0.1", "0", "0.1"}));
+}
+
+TEST(Lines, AreBrokenAtBlanksAndHoldAllWords) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(wrapped("one two three", 7), (Words{"one two", "three"}));
+  EXPECT_EQ(wrapped("one", 2), (Words{"one"}));
+  EXPECT_EQ(wrapped("reference rk4", 4), (Words{"reference", "rk4"}));
+  EXPECT_EQ(wrapped("", 5), (Words{""}));
+}
+
+/// The rightmost end of a drawing's words, where a letter is as wide as 0.62 of its size; words
+/// that are turned are left out.
+double right_end_of_words(const std::string& svg) {
+  double end = 0.0;
+  for (std::size_t at = svg.find("<text x="); at != svg.npos; at = svg.find("<text x=", at + 1)) {
+    const std::string element = svg.substr(at, svg.find("</text>", at) - at);
+    if (element.find("rotate") != element.npos) continue;
+    const double x = std::stod(element.substr(9)),
+                 letter = 0.62 * (element.find("bold") == element.npos ? 11.5 : 13.5),
+                 width = letter * static_cast<double>(element.size() - element.find('>') - 1);
+    end = std::max(end, element.find("\"start\"") != element.npos    ? x + width
+                        : element.find("\"middle\"") != element.npos ? x + 0.5 * width
+                                                                     : x);
+  }
+  return end;
+}
+
+// A phone shows 360 px: what is drawn in 340 units has letters of 11 px there.
+TEST(Plots, OfAPhoneHoldAllWordsInLettersOfFullSize) {
+  Plot plot{"What accuracy costs: the largest error of all bodies over work",
+            {"evaluations of the derivative of the state of all bodies", ""},
+            {"largest error of a body over all samples of the run", "m", Scale::kLog},
+            {{"reference rk4_step, with a step of 1/240 s and halvings of it", {1, 2}, {1e-9, 1e3}},
+             {"a curve of the same values, which covers the first one", {1, 2}, {1e-9, 1e3}}},
+            {}};
+  const std::string svg = narrow_svg_of(plot);
+  EXPECT_NE(svg.find("viewBox=\"0 0 340 "), std::string::npos);
+  EXPECT_LE(right_end_of_words(svg), 340.0) << svg;
+  EXPECT_EQ(count(svg, "font-size"), count(svg, "font-size=\"13.5\"")) << "none is made smaller";
+  EXPECT_EQ(count(svg_of(plot), "font-size"), count(svg_of(plot), "font-size=\"13.5\""));
+  const StackedBars bars{"Where the time of a run went, in parts",
+                         {"share", "%"},
+                         {"detect", "integrate"},
+                         {{"Runge-Kutta, a step of 1/60 s", {30, 70}}}};
+  EXPECT_LE(right_end_of_words(narrow_svg_of(bars)), 340.0);
 }
 
 TEST(Plots, BreakALineAtUndrawablePoints) {
@@ -153,13 +216,13 @@ TEST(Plots, KeepWhatFollowsAMissingValueOfALongCurve) {
 TEST(Plots, NumbersAtTheAxisOfALargeConstantDiffer) {
   const std::string svg = svg_of(Plot{
       "t", {"time", "s"}, {"momentum", "kg m/s"}, {{"c", {1, 2, 3}, {1e6, 1e6 + 0.01, 1e6}}}, {}});
-  EXPECT_EQ(count(svg, ">1e+06<"), 1u) << svg;
+  EXPECT_EQ(count(svg, ">1e6<"), 1u) << svg;
 }
 
 TEST(Plots, AreInAPageWithTheirCaption) {
   Page page("t");
   page.plot(Plot{"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
-  EXPECT_EQ(count(page.html(), "<svg"), 1u);
+  EXPECT_EQ(count(page.html(), "<svg"), 2u);  // wide and narrow
   EXPECT_NE(page.html().find("<figcaption>what to see</figcaption>"), std::string::npos);
 }
 

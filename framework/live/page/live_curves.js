@@ -17,7 +17,7 @@ class GrowingPlot {
     this.values = about.curves.map(() => html('b'));
     this.keys = about.curves.map((_, i) => element('line', { x1: 0, x2: 28, y1: 4, y2: 4, 'stroke-width': 2.4, 'stroke-dasharray': kStyles[i][1] }));
     const keyOf = i => { const key = element('svg', { viewBox: '0 0 28 8', class: 'key', 'aria-hidden': 'true' }); key.append(this.keys[i]); return key; };
-    this.box = html('figure', { className: 'plot' }, html('h3', {}, `${about.title} [${about.unit}]`), this.canvas,
+    this.box = html('figure', { className: 'plot' }, html('h2', { className: 'minor' }, `${about.title} [${about.unit}]`), this.canvas,
       html('figcaption', {}, ...about.curves.map(([, name], i) => html('span', {}, keyOf(i), `${name} `, this.values[i]))));
   }
 
@@ -45,20 +45,21 @@ class GrowingPlot {
     g.font = '11px "DejaVu Sans", Arial, sans-serif';
     g.lineWidth = 1;
     g.textAlign = 'right';
-    const ups = ticksOf(low, high, 4), step = ups.length > 1 ? ups[1] - ups[0] : 1;
-    for (const v of ups) {
+    const ups = ticksOf(low, high, 4), upWords = tickWords(ups, false);
+    ups.forEach((v, i) => {
       g.fillStyle = line;
       g.fillRect(left, y(v), right - left, 1);
       g.fillStyle = ink;
-      g.fillText(Math.abs(v) < 1e-9 * step ? '0' : short(v, 5), left - 5, y(v) + 4);
-    }
+      g.fillText(upWords[i], left - 5, y(v) + 4);
+    });
     g.textAlign = 'center';
-    for (const s of ticksOf(0, end, 6)) {
+    const across = ticksOf(0, end, 6), acrossWords = tickWords(across, false);
+    across.forEach((s, i) => {
       g.fillStyle = line;
       g.fillRect(x(s), top, 1, bottom - top);
       g.fillStyle = ink;
-      g.fillText(short(s, 4), x(s), bottom + 13);
-    }
+      g.fillText(acrossWords[i], x(s), bottom + 13);
+    });
     runs.slice().reverse().forEach(one => {
       g.globalAlpha = one === former ? 0.5 : 1;
       g.lineWidth = one === former ? 1 : 1.7;

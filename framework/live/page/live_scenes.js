@@ -85,7 +85,7 @@ class ScenesPane {
     const own = canRun.filter(scene => this.own && scene.home === this.own), needing = canRun.filter(scene => !own.includes(scene) && this.own && scene.needs.includes(this.own)), others = canRun.filter(scene => !own.includes(scene) && !needing.includes(scene));
     this.box.textContent = '';
     this.box.append(html('p', { className: 'soft' }, 'A scene that is chosen begins at once, with the same code. What was done to this one by hand is kept for when you come back. What a scene asks is said here once it has run.'));
-    const group = (title, scenes) => { if (scenes.length > 0) this.box.append(html('h3', {}, title), html('ul', {}, ...scenes.map(scene => this.entry(scene)))); };
+    const group = (title, scenes) => { if (scenes.length > 0) this.box.append(html('h2', { className: 'minor' }, title), html('ul', {}, ...scenes.map(scene => this.entry(scene)))); };
     group(`Scenes of ${this.own}`, own);
     group(`Others that run on ${this.own}`, needing);
     group(own.length + needing.length > 0 ? 'All others that can run' : 'Scenes', others);

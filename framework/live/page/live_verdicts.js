@@ -101,7 +101,7 @@ class VerdictPane {
     if (wrong.length > 0) box.append(html('label', {}, 'Stories ', choice));
     for (const [name, tests] of this.groups(wrong)) {
       const points = short(this.pointsOf(tests));
-      box.append(html('h3', {}, `${name} (${tests.length} test${tests.length === 1 ? '' : 's'}, ${points} point${points === '1' ? '' : 's'})`));
+      box.append(html('h2', { className: 'minor' }, `${name} (${tests.length} test${tests.length === 1 ? '' : 's'}, ${points} point${points === '1' ? '' : 's'})`));
       for (const test of tests) box.append(this.story(test, v, open));
     }
     if (right.length > 0) {

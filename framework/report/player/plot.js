@@ -6,7 +6,7 @@ const panelKinds = {};
 
 const kStyles = [['#00446b', ''], ['#c14d00', '7 3'], ['#007a57', '2 2.5'], ['#9a4f86', '9 3 2 3'], ['#3d8fc4', '4 2'], ['#8a6d00', '1.5 4']];
 const kRunDashes = ['', '6 4'];
-const kFrame = { width: 480, height: 190, left: 66, right: 470, top: 10, bottom: 152 };
+const kFrame = { width: 480, height: 190, left: 66, margin: 14, top: 10, bottom: 152 };   // of a pane at least as wide; in a narrower one letters keep their size and the frame is narrower
 
 function element(name, attributes = {}, text) {
   const made = document.createElementNS('http://www.w3.org/2000/svg', name);
@@ -27,6 +27,18 @@ function ticksOf(low, high, most = 6) {
   const spacing = (part > 5 ? 10 : part > 2 ? 5 : part > 1 ? 2 : 1) * power, ticks = [];
   for (let i = Math.ceil(low / spacing - 1e-9); i * spacing <= high + 1e-9 * spacing; ++i) ticks.push(i * spacing);
   return ticks;
+}
+
+// The numbers of an axis, all in one style: plain, or, where one would be long, with powers of ten; of a linear axis all with the power of the largest.
+function tickWords(ticks, isLog) {
+  const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : 0, sizes = ticks.map(v => Math.abs(v)), largest = Math.max(...sizes), least = Math.min(...sizes);
+  const needsPowers = largest > 0 && (largest >= (isLog ? 1e4 : 1e6) * (1 - 1e-9) || (isLog ? least : largest) < 1e-3 * (1 - 1e-9)), exponentOf = v => Math.floor(Math.log10(v) + 1e-9);
+  return ticks.map((v, i) => {
+    if (v === 0 || (!isLog && sizes[i] < 1e-9 * step)) return '0';
+    if (!needsPowers) return String(Number(v.toPrecision(7)));
+    const exponent = exponentOf(isLog ? sizes[i] : largest);
+    return `${Number((v / Math.pow(10, exponent)).toPrecision(7))}e${exponent}`;
+  });
 }
 
 function decadesOf(low, high) {
@@ -75,7 +87,8 @@ class TimePlot {
     this.box = html('figure', { className: 'curve' });
     this.readouts = [];
     this.styles = stylesOf(plot.curves);
-    this.svg = element('svg', { viewBox: `0 0 ${kFrame.width} ${kFrame.height}`, class: 'plot', role: 'img', 'aria-label': plot.title });
+    this.width = kFrame.width;
+    this.svg = element('svg', { class: 'plot', role: 'img', 'aria-label': plot.title });
     // The cursors are elements above the drawing: moving them repaints nothing.
     this.cursor = html('div', { className: 'cursor' });
     this.hover = html('div', { className: 'cursor hover', hidden: true });
@@ -83,8 +96,9 @@ class TimePlot {
     const holder = html('div', { className: 'holder' }, this.svg, this.cursor, this.hover, this.tip);
     const legend = html('figcaption', { className: 'legend' });
     plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, i)));
-    this.box.append(html('h3', {}, plot.heading || plot.title), holder, legend);
+    this.box.append(html('h2', { className: 'minor' }, plot.heading || plot.title), holder, legend);
     this.draw();
+    new ResizeObserver(() => this.fit()).observe(this.svg);
     this.svg.addEventListener('pointerdown', event => { this.svg.setPointerCapture(event.pointerId); seek(this.timeAt(event)); });
     this.svg.addEventListener('pointermove', event => { if (event.buttons) seek(this.timeAt(event)); this.tell(event); });
     for (const name of ['pointerleave', 'pointercancel']) this.svg.addEventListener(name, () => { this.hover.hidden = this.tip.hidden = true; });
@@ -92,9 +106,19 @@ class TimePlot {
     this.svg.addEventListener('dblclick', () => zoom(Infinity));
   }
 
+  get right() { return this.width - kFrame.margin; }
+
+  // A narrow pane has a narrow drawing, not small letters.
+  fit() {
+    const wide = this.svg.clientWidth, width = wide > 0 ? Math.min(kFrame.width, wide) : kFrame.width;
+    if (width === this.width) return;
+    this.width = width;
+    this.draw();
+  }
+
   timeAt(event) {
-    const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * kFrame.width;
-    return this.from + Math.min(1, Math.max(0, (x - kFrame.left) / (kFrame.right - kFrame.left))) * (this.until - this.from);
+    const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * this.width;
+    return this.from + Math.min(1, Math.max(0, (x - kFrame.left) / (this.right - kFrame.left))) * (this.until - this.from);
   }
 
   // The part of time that is drawn.
@@ -106,9 +130,10 @@ class TimePlot {
 
   draw() {
     this.svg.textContent = '';
+    this.svg.setAttribute('viewBox', `0 0 ${this.width} ${kFrame.height}`);
     this.find();
     this.drawFrame();
-    const { left, right, top, bottom } = kFrame, size = { x: left, y: top, width: right - left, height: bottom - top };
+    const { left, top, bottom } = kFrame, right = this.right, size = { x: left, y: top, width: right - left, height: bottom - top };
     this.curves = element('svg', { ...size, viewBox: `${left} ${top} ${size.width} ${size.height}` });   // cuts off what is outside
     this.plot.curves.forEach((curve, i) => { if (!this.hidden.has(i)) this.drawCurve(curve, this.styles[i]); });
     this.svg.append(this.curves);
@@ -141,7 +166,7 @@ class TimePlot {
     }
   }
 
-  x(t) { return kFrame.left + (t - this.from) / (this.until - this.from) * (kFrame.right - kFrame.left); }
+  x(t) { return kFrame.left + (t - this.from) / (this.until - this.from) * (this.right - kFrame.left); }
 
   y(v) {
     const part = this.plot.isLog ? Math.log(Math.max(v, this.low) / this.low) / Math.log(this.high / this.low) : (v - this.low) / (this.high - this.low);
@@ -149,17 +174,15 @@ class TimePlot {
   }
 
   drawFrame() {
-    const { left, right, top, bottom } = kFrame, ups = this.plot.isLog ? decadesOf(this.low, this.high) : ticksOf(this.low, this.high, 5);
-    const step = ups.length > 1 ? ups[1] - ups[0] : 1;
-    for (const v of ups) {
-      const y = this.y(v), isTiny = !this.plot.isLog && Math.abs(v) < 1e-9 * step;
-      this.svg.append(element('line', { x1: left, x2: right, y1: y, y2: y, class: 'grid' }),
-        element('text', { x: left - 6, y: y + 4, 'text-anchor': 'end' }, isTiny ? '0' : this.plot.isLog ? (v < 1e-3 || v > 9999 ? `1e${Math.round(Math.log10(v))}` : short(v)) : short(v, 6)));
-    }
-    for (const t of ticksOf(this.from, this.until, 6)) {
-      this.svg.append(element('line', { x1: this.x(t), x2: this.x(t), y1: top, y2: bottom, class: 'grid' }),
-        element('text', { x: this.x(t), y: bottom + 15, 'text-anchor': 'middle' }, short(t, 7)));
-    }
+    const { left, top, bottom } = kFrame, right = this.right, ups = this.plot.isLog ? decadesOf(this.low, this.high) : ticksOf(this.low, this.high, 5), words = tickWords(ups, this.plot.isLog);
+    ups.forEach((v, i) => {
+      const y = this.y(v);
+      this.svg.append(element('line', { x1: left, x2: right, y1: y, y2: y, class: 'grid' }), element('text', { x: left - 6, y: y + 4, 'text-anchor': 'end' }, words[i]));
+    });
+    const across = ticksOf(this.from, this.until, this.width < 420 ? 4 : 6), times = tickWords(across, false);
+    across.forEach((t, i) => {
+      this.svg.append(element('line', { x1: this.x(t), x2: this.x(t), y1: top, y2: bottom, class: 'grid' }), element('text', { x: this.x(t), y: bottom + 15, 'text-anchor': 'middle' }, times[i]));
+    });
     this.svg.append(element('rect', { x: left, y: top, width: right - left, height: bottom - top, fill: 'none', stroke: '#5b6875' }),
       element('text', { x: (left + right) / 2, y: bottom + 31, 'text-anchor': 'middle' }, 'time [s]'),
       element('text', { transform: `translate(12 ${(top + bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, `${this.plot.axis} [${this.plot.unit}]`));
@@ -220,7 +243,7 @@ class TimePlot {
     });
     this.hover.hidden = this.tip.hidden = lines.length === 0;
     if (lines.length === 0) return;
-    const share = this.x(at) / kFrame.width, isRight = share > 0.55;
+    const share = this.x(at) / this.width, isRight = share > 0.55;
     this.hover.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
     this.tip.replaceChildren(html('div', {}, `${short(at, 6)} s`), ...lines.slice(0, 8));
     this.tip.style.left = isRight ? '' : `calc(${(100 * share).toFixed(2)}% + .5rem)`;
@@ -230,7 +253,7 @@ class TimePlot {
   // @param isFull  updates the numbers too, not only the cursor
   follow(t, isFull) {
     this.cursor.hidden = t < this.from - 1e-9 || t > this.until + 1e-9;
-    this.cursor.style.transform = `translateX(${(100 * this.x(t) / kFrame.width).toFixed(3)}%)`;
+    this.cursor.style.transform = `translateX(${(100 * this.x(t) / this.width).toFixed(3)}%)`;
     if (!isFull) return;
     this.plot.curves.forEach((curve, i) => {
       this.readouts[i].textContent = `${valueInWords(curve, curve.frameAt(t))} ${this.plot.unit}`;
