@@ -18,6 +18,7 @@
 #include "framework/cli/json_output.h"
 #include "framework/cli/kept_at_stop.h"
 #include "framework/core/files.h"
+#include "framework/core/text.h"
 #include "framework/report/tables_json.h"
 #include "framework/sampling/sampler.h"
 
@@ -39,7 +40,7 @@ void print(const report::CostPage& page) {
     fmt::print("{:<{}} {:>6}  {:<32}", curve.name, width,
                std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
                least == nullptr ? "does not reach the end"
-                                : fmt::format("{:.1e}{} at {}", least->error,
+                                : fmt::format("{}{} at {}", few_digits(least->error),
                                               page.error_unit.empty() ? "" : " " + page.error_unit,
                                               least->fineness));
     for (const double mark : page.marks) {

@@ -16,6 +16,7 @@
 #include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/report/html.h"
 #include "framework/report/peer_rows.h"
 #include "framework/report/tables_json.h"
@@ -50,7 +51,8 @@ std::string why_not(const report::CostPage& page, double mark) {
       best = &curve;
     }
   if (page.error_unit.empty()) return best == nullptr ? "nothing was run" : best->reading;
-  return std::isfinite(least) ? fmt::format("least {:.1e} m", least) : "nothing gets through";
+  return std::isfinite(least) ? fmt::format("least {} m", few_digits(least))
+                              : "nothing gets through";
 }
 
 /// The least cost of an error, and its method.

@@ -10,6 +10,7 @@
 #include "framework/cli/record.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/dynamics/root_methods.h"
 #include "framework/engines/truths/impact_problem.h"
 #include "framework/engines/truths/memory_scene.h"
@@ -84,7 +85,7 @@ report::CostCurve curve_of(const Problems& problems, const std::string& name,
     curve.points.push_back(point_of(problems, find, tolerance));
     fmt::print(stderr, "{:<28} {:<20} {}\n", name, curve.points.back().fineness,
                curve.points.back().stopped_by.empty()
-                   ? fmt::format("error {:.1e} s", curve.points.back().error)
+                   ? fmt::format("error {} s", few_digits(curve.points.back().error))
                    : curve.points.back().stopped_by);
   }
   const report::CostPoint* best = nullptr;
@@ -92,12 +93,12 @@ report::CostCurve curve_of(const Problems& problems, const std::string& name,
     if (point.stopped_by.empty() && (best == nullptr || point.error < best->error)) best = &point;
   if (best == nullptr)
     curve.reading =
-        fmt::format("{} finds no impact: {}.", name,
+        fmt::format("{} finds no impact: {}.", capitalised(name),
                     curve.points.empty() ? "nothing was run" : curve.points.back().stopped_by);
   else
     curve.reading = fmt::format(
-        "{} reaches {:.1e} s at {}, with {:.1f} gap evaluations per search, for {}.", name,
-        best->error, best->fineness, best->evaluations, report::price_of(best->cpu_s));
+        "{} reaches {} s at {}, with {:.1f} gap evaluations per search, for {}.", capitalised(name),
+        few_digits(best->error), best->fineness, best->evaluations, report::price_of(best->cpu_s));
   return curve;
 }
 
@@ -118,9 +119,9 @@ report::CostCurve curve_of_closed_forms(const Problems& problems) {
   point.cpu_s = (cpu_seconds() - begun) / std::max(1, searches);
   curve.points.push_back(point);
   curve.reading = fmt::format(
-      "{} has an error of {:.1e} s and no tolerance to choose; it evaluates no gap, and costs {} "
+      "{} has an error of {} s and no tolerance to choose; it evaluates no gap, and costs {} "
       "with the case's numbers read each time.",
-      curve.name, point.error, report::price_of(point.cpu_s));
+      capitalised(curve.name), few_digits(point.error), report::price_of(point.cpu_s));
   return curve;
 }
 
@@ -156,9 +157,9 @@ report::CostPage cost_of_impacts(const Context& context, const CostWords& words)
   page.counted = "gaps looked at";
   page.truth = "files computed to 60 digits";
   page.what_error_is = fmt::format(
-      "Errors are the largest over these cases, against {}; double precision itself forces {:.1e} "
+      "Errors are the largest over these cases, against {}; double precision itself forces {} "
       "s on the latest of them (t = {:.3g} s). Grazing impacts are double roots and left out.",
-      page.truth, problems.floor, problems.latest);
+      page.truth, few_digits(problems.floor), problems.latest);
   page.what_price_is =
       "CPU time is that of one search, the average over the cases. On this machine, in this run: "
       "only ratios matter.";

@@ -11,6 +11,7 @@
 #include "framework/cli/record.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -61,8 +62,7 @@ struct Refinement {
 };
 
 std::string fineness_of(const CostResult& result) {
-  if (std::isfinite(result.tolerance))
-    return fmt::format("tolerance\u00a0{:.0e}", result.tolerance);
+  if (std::isfinite(result.tolerance)) return "tolerance\u00a0" + few_digits(result.tolerance);
   if (!std::isfinite(result.step_s)) return "no step";
   return 1.0 / result.step_s >= 10 ? fmt::format("1/{:.0f}\u00a0s", 1.0 / result.step_s)
                                    : fmt::format("{:.3g} s", result.step_s);
@@ -134,11 +134,11 @@ std::string what_error_is(const CostReference& reference) {
         "A run that exceeds a tolerance of 0 has no such error and is not drawn.",
         reference.why_by_numbers);
   return fmt::format(
-      "Errors are against {}: {:.2g} m. The error of a body is the distance of its centre of mass "
+      "Errors are against {}: {} m. The error of a body is the distance of its centre of mass "
       "from the reference, plus the angle of its rotation error times its radius of gyration; the "
-      "largest over all movable bodies and samples counts. An error of {:.2g} m, the size of the "
+      "largest over all movable bodies and samples counts. An error of {} m, the size of the "
       "motion, is no answer, and is not drawn.",
-      reference.what, reference.floor_m, reference.scale_m);
+      reference.what, few_digits(reference.floor_m), few_digits(reference.scale_m));
 }
 
 bool any_gets_through(const Refinement& refinement) {
@@ -208,7 +208,7 @@ class Refinements {
         [&](const CostResult& result) {
           const std::string found =
               result.stopped_by.empty()
-                  ? fmt::format("error {:.1e}{}, {}", result.error_m,
+                  ? fmt::format("error {}{}, {}", few_digits(result.error_m),
                                 reference_.by_numbers ? " of the tolerance" : " m",
                                 report::price_of(result.cpu_s))
                   : "stopped";
@@ -520,8 +520,8 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked, const 
           "judged by its numbers, over {:.3g} s: the worst of them over its tolerance [-]",
           reference.duration_s);
     else
-      measured.against = fmt::format("error: against {}: {:.2g} m, over {:.3g} s", reference.what,
-                                     reference.floor_m, reference.duration_s);
+      measured.against = fmt::format("error: against {}: {} m, over {:.3g} s", reference.what,
+                                     few_digits(reference.floor_m), reference.duration_s);
     measured.duration_s = reference.duration_s;
     measured.asked_s = reference.asked_s;
     const auto unwritten = [](const Refinement& refinement) {

@@ -12,6 +12,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/events/trace.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -107,8 +108,8 @@ std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
                                     : "positions within 1 mm to the end";
   // one of the two resolves impacts within steps, and records none
   if (compared == 0) return places;
-  return fmt::format("{}; first {} collisions of each body within {:.1e} s ({} compared{})", places,
-                     kFirstCollisions, farthest, compared,
+  return fmt::format("{}; first {} collisions of each body within {} s ({} compared{})", places,
+                     kFirstCollisions, few_digits(farthest), compared,
                      missing > 0 ? fmt::format(", {} in one only", missing) : "");
 }
 

@@ -72,10 +72,13 @@ void run_engines(Context& context, const EnginesWords& words) {
   const std::size_t all = engines_named(words.engines).size() *
                           (words.sizes.size() + static_cast<std::size_t>(runs_own_size));
   std::size_t done = 0;
+  // the table is of the last size that is run
+  const scene::Scene shown =
+      runs_own_size ? scene : find_scene(context, words.scene, words.sizes.back());
   const auto keep = [&](const std::vector<EngineRow>& so_far) {
     stop.keep(++done, all, page.string(), [&] {
-      report::write_engines_page(scene.title, scene.about, so_far, ladder,
-                                 record_of(context, scene), page);
+      report::write_engines_page(shown.title, shown.about, so_far, ladder,
+                                 record_of(context, shown), page);
     });
   };
   for (const int n : words.sizes) {
@@ -86,19 +89,19 @@ void run_engines(Context& context, const EnginesWords& words) {
   }
   const std::vector<EngineRow> rows =
       runs_own_size ? run_all(context, scene, chosen, words, keep) : ladder.back();
-  report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene),
+  report::write_engines_page(shown.title, shown.about, rows, ladder, record_of(context, shown),
                              page);
   if (words.json) {
     nlohmann::ordered_json sizes = nlohmann::ordered_json::array();
     for (const std::vector<EngineRow>& of_size : ladder)
       sizes.push_back({{"n", of_size.front().bodies}, {"engines", report::json_of(of_size)}});
     print_json(context, {{"scene", scene.name},
-                         {"title", scene.title},
+                         {"title", shown.title},
                          {"engines", report::json_of(rows)},
                          {"sizes", std::move(sizes)},
                          {"page", page.string()}});
   } else {
-    fmt::print("{}\n  {}\n", scene.title, fmt::join(authors_of_laws(scene, chosen.laws), " · "));
+    fmt::print("{}\n  {}\n", shown.title, fmt::join(authors_of_laws(scene, chosen.laws), " · "));
     print_rows(rows);
     fmt::print("{}\n", page.string());
   }

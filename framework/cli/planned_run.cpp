@@ -11,6 +11,7 @@
 #include "framework/cli/cost_methods.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
+#include "framework/core/text.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
@@ -77,7 +78,7 @@ std::string fineness_of(const CostChoice& choice) {
                                ? fmt::format("steps of 1/{:.0f} s", 1.0 / choice.result.step_s)
                                : fmt::format("steps of {:.3g} s", choice.result.step_s);
   return choice.method.controlled
-             ? fmt::format("tolerance {:.1e}, within {}", choice.tolerance, step)
+             ? fmt::format("tolerance {}, within {}", few_digits(choice.tolerance), step)
              : step;
 }
 
@@ -107,18 +108,19 @@ std::string flags_of(const CostChoice& choice) {
         "Give it that, or a shorter --duration-s.");
   throw UserError(
       asked_of(words),
-      fmt::format("no method reaches it{}: the closest is {:.1e} m by {}, for {}; the reference "
-                  "solution is known to {:.1e} m",
+      fmt::format("no method reaches it{}: the closest is {} m by {}, for {}; the reference "
+                  "solution is known to {} m",
                   found.was_cut_short ? fmt::format(" in a search of {:.0f} s", kMostSearch) : "",
-                  found.closest->result.error_m, name, price_of(*found.closest), reference.floor_m),
-      fmt::format("Request {:.1e}, or less time with --duration-s.",
-                  found.closest->result.error_m));
+                  few_digits(found.closest->result.error_m), name, price_of(*found.closest),
+                  few_digits(reference.floor_m)),
+      fmt::format("Request {}, or less time with --duration-s.",
+                  few_digits(found.closest->result.error_m)));
 }
 
 /// Errors below the floor of the reference solution are reported as that floor.
 std::string told_error(double error, const PlannedRun::Search& search) {
   return error <= search.reference.floor_m ? "the error floor of the reference solution"
-                                           : fmt::format("an error of {:.1e} m", error);
+                                           : fmt::format("an error of {} m", few_digits(error));
 }
 
 std::string choice_in_words(const PlannedRun::Search& search) {
@@ -142,12 +144,12 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
   search.reference = engines::find_reference(scene, chosen.laws, options);
   check_with_files(context, scene, chosen.laws, search.reference);
   if (words.accuracy_m && search.reference.floor_m > *words.accuracy_m)
-    throw UserError(
-        asked_of(words),
-        fmt::format("the reference solution is known to {:.1e} m only, over {:.3g} s ({})",
-                    search.reference.floor_m, search.reference.duration_s, search.reference.what),
-        fmt::format("Request {:.0e} or more, or less time with --duration-s.",
-                    2.0 * search.reference.floor_m));
+    throw UserError(asked_of(words),
+                    fmt::format("the reference solution is known to {} m only, over {:.3g} s ({})",
+                                few_digits(search.reference.floor_m), search.reference.duration_s,
+                                search.reference.what),
+                    fmt::format("Request {} or more, or less time with --duration-s.",
+                                few_digits(2.0 * search.reference.floor_m)));
   const double most = words.accuracy_m
                           ? kMostSearch
                           : std::max(kLeastPlannedSearch, kSearchOverBudget * *words.budget_s),
@@ -157,7 +159,7 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
       options, [&](const CostChoice& trial) {
         const std::string result =
             trial.result.stopped_by.empty()
-                ? fmt::format("error {:.1e} m, {}", trial.result.error_m, price_of(trial))
+                ? fmt::format("error {} m, {}", few_digits(trial.result.error_m), price_of(trial))
                 : "does not reach the end";
         fmt::print(stderr, "  {:<32} {:<40} {:<28} at most {:.0f} s of search left\n",
                    trial.method.name, fineness_of(trial), result,
@@ -286,7 +288,8 @@ std::string search_in_words(const PlannedRun::Search& search, const Trajectory& 
                                        *search.goal.error_m)
                          : fmt::format("  asked    the least error for {} of CPU time\n",
                                        report::price_of(*search.goal.price_s));
-  text += fmt::format("  truth    {}: {:.1e} m\n", search.reference.what, search.reference.floor_m);
+  text += fmt::format("  truth    {}: {} m\n", search.reference.what,
+                      few_digits(search.reference.floor_m));
   text += fmt::format("  chosen   {}\n", choice_in_words(search));
   if (search.goal.price_s && choice.result.error_m <= 3.0 * search.reference.floor_m)
     text +=

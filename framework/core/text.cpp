@@ -1,7 +1,9 @@
 #include "framework/core/text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <string_view>
 
 namespace tumble {
@@ -54,9 +56,10 @@ std::string sentences(const std::string& first, const std::string& second) {
   return sentence(first) + (first.empty() || second.empty() ? "" : " ") + sentence(second);
 }
 
-std::string three_digits(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x == 0.0 ? 0.0 : x);
+std::string few_digits(double x, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, x == 0.0 ? 0.0 : x);
+  std::snprintf(text, sizeof text, "%.6g", std::strtod(text, nullptr));
   std::string shown = text;
   // "1e-09", "1e+06"
   const std::size_t power = shown.find('e');
@@ -64,6 +67,16 @@ std::string three_digits(double x) {
   while (power + 3 < shown.size() && shown[power + 2] == '0') shown.erase(power + 2, 1);
   if (shown[power + 1] == '+') shown.erase(power + 1, 1);
   return shown;
+}
+
+std::string three_digits(double x) { return few_digits(x, 3); }
+
+std::string capitalised(std::string text) {
+  const std::size_t end = std::min(text.find_first_of(" ,:"), text.size());
+  const bool is_word = end > 2 && std::all_of(text.begin(), text.begin() + static_cast<long>(end),
+                                              [](char c) { return (c >= 'a' && c <= 'z'); });
+  if (is_word) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 std::string without_middle(const std::string& text, std::size_t width) {

@@ -20,8 +20,16 @@ std::string sentence(std::string text);
 /// Both, with a blank between them where neither is empty.
 std::string sentences(const std::string& first, const std::string& second);
 
-/// Three digits, and no zeros that say nothing: "0.323", "1e-9", never "-0".
+/// A number in so many digits as a sentence has it: 0.08, 120, 6.2e-5; powers of ten below 1e-4 and
+/// from 1e6 on, and no zeros that say nothing, never "-0".
+std::string few_digits(double x, int digits = 2);
+
+/// The same with three digits.
 std::string three_digits(double x);
+
+/// The text with a capital letter at its beginning where that is a word of more than two letters:
+/// "Midpoint", and not the name of an engine ("ca"), a function ("rk4_step") or a method ("RK4").
+std::string capitalised(std::string text);
 
 /// At most `width` bytes: a longer text loses its middle, "begin..end".
 std::string without_middle(const std::string& text, std::size_t width);

@@ -1,4 +1,5 @@
 #include "framework/sampling/answers.h"
+#include "framework/core/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,13 +113,13 @@ std::vector<std::string> doubts(const Answers& answers, std::size_t chains) {
   else if (r_hat > kApart)
     all.push_back(fmt::format(
         "The chains have not met (R-hat {:.2f}): do not trust these answers, nor their errors. "
-        "Take about {:.2g} times as many samples; if that does not help, other steps.",
-        r_hat, longer));
+        "Take about {} times as many samples; if that does not help, other steps.",
+        r_hat, few_digits(longer)));
   else if (r_hat > kMet)
     all.push_back(fmt::format(
-        "The chains nearly agree (R-hat {:.3f}, wanted {}): errors are rough. About {:.2g} times "
+        "The chains nearly agree (R-hat {:.3f}, wanted {}): errors are rough. About {} times "
         "as many samples would do.",
-        r_hat, kMet, longer));
+        r_hat, kMet, few_digits(longer)));
   const double wanted = 2.0 * kFewEffective * static_cast<double>(chains);
   if (!(answers.least_effective >= wanted))
     all.push_back(fmt::format(

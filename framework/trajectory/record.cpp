@@ -17,9 +17,12 @@ std::string scene_in_words(const std::string& name, const std::string& digest,
                            const std::vector<std::uint64_t>& seeds) {
   // 64 bits: enough that two scenes do not share them by chance
   constexpr std::size_t kShownDigits = 16;
+  // a scene with a size has its name in front: "atoms n=300"
+  const std::string known =
+      digest.starts_with(name + ' ') ? digest.substr(name.size() + 1) : digest;
   std::string words =
       name.empty() ? ""
-                   : "scene " + name + (digest.empty() ? "" : " " + digest.substr(0, kShownDigits));
+                   : "scene " + name + (known.empty() ? "" : " " + known.substr(0, kShownDigits));
   for (std::size_t i = 0; i < seeds.size(); ++i)
     words += (i > 0 ? ", " : seeds.size() > 1 ? ", seeds " : ", seed ") + std::to_string(seeds[i]);
   return words;

@@ -115,10 +115,10 @@ void add_figures(const PaperScene& paper, const Compared& runs, Chapter& chapter
     chapter.figures.push_back({scene + ": CA / TW", ca_over, true, paper.goal_ca, tw.w_h(),
                                tw.bodies, note + why(tw, ca)});
   }
-  chapter.bars.push_back(bars_of(scene + ": where the time went",
-                                 {{"RD", &rd}, {"CA", &ca}, {"TW", &tw}},
-                                 "All but who may meet and scheduling is physics, done by the same "
-                                 "functions for all engines."));
+  chapter.bars.push_back(
+      bars_of(scene + ": where the time went", {{"RD", &rd}, {"CA", &ca}, {"TW", &tw}},
+              "All but pairs that may meet and scheduling is physics, done by the same "
+              "functions for all engines."));
 }
 
 Chapter paper_scenes() {

@@ -63,7 +63,7 @@ TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
   const Said said = type("cost toi --tolerances 1e-3,1e-9");
   EXPECT_EQ(said.code, 0) << said.err;
   for (const char* words : {"bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches",
-                            "closed form (ball, plane) has an error of"})
+                            "Closed form (ball, plane) has an error of"})
     EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
   EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));
 }
@@ -112,7 +112,7 @@ TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
       "cost double_pendulum --modules reference --methods none --solvers gradients --duration-s "
       "0.5 --tolerances 1e-1,1e-6 --budget-s 2");
   EXPECT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(holds(said.out, "links by conjugate gradients gets to")) << said.out;
+  EXPECT_TRUE(holds(said.out, "Links by conjugate gradients gets to")) << said.out;
   // of steps, where no method has one
   EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"),
                      "nothing to draw"));
@@ -190,7 +190,7 @@ TEST_F(CommandLine, CostOfAnAssignmentReadsItsMethods) {
       "1e-6 --budget-s 1");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(std::regex_search(
-      said.out, std::regex("your rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
+      said.out, std::regex("Your rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
       << said.out;
   EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "your rk4"));
 }

@@ -42,5 +42,22 @@ TEST(ThreeDigits, HaveNoZerosThatSayNothing) {
   EXPECT_EQ(three_digits(-0.0), "0");
 }
 
+// 0.08 m is plain, 8.0e-02 m is not.
+TEST(FewDigits, HaveAPowerOfTenOnlyWhereTheyWouldBeLong) {
+  EXPECT_EQ(few_digits(0.08), "0.08");
+  EXPECT_EQ(few_digits(0.885), "0.89");
+  EXPECT_EQ(few_digits(123.0), "120");
+  EXPECT_EQ(few_digits(6.2e-5), "6.2e-5");
+  EXPECT_EQ(few_digits(1e-7, 1), "1e-7");
+  EXPECT_EQ(few_digits(2.5e6), "2.5e6");
+}
+
+TEST(Capitalised, IsAWordAndNoNameOfTheProgram) {
+  EXPECT_EQ(capitalised("symplectic Euler, order 1"), "Symplectic Euler, order 1");
+  EXPECT_EQ(capitalised("midpoint"), "Midpoint");
+  for (const char* name : {"ca, RK4", "rk4_step is called", "RK4", ""})
+    EXPECT_EQ(capitalised(name), name);
+}
+
 }  // namespace
 }  // namespace tumble

@@ -52,6 +52,8 @@ TEST(Cost, RefinementsShowTheOrderOfTheirMethod) {
     EXPECT_NE(engines::read_refinement(method, results, reference, true).find("as it should"),
               std::string::npos)
         << engines::read_refinement(method, results, reference, true);
+    // a sentence begins with a capital letter: "Midpoint converges"
+    EXPECT_TRUE(std::isupper(engines::read_refinement(method, results, reference, true).front()));
   }
 }
 

@@ -87,6 +87,13 @@ TEST(Doubts, AreNoneWhereChainsHaveMet) {
   EXPECT_TRUE(can_be_used(good_answers()));
 }
 
+TEST(Doubts, SayNumbersAsSentencesDo) {
+  Answers apart = good_answers();
+  apart.worst_r_hat = 1.76;  // (1.76^2 - 1) / (1.01^2 - 1) = 104
+  EXPECT_NE(doubts_of(apart).find("about 100 times as many"), std::string::npos)
+      << doubts_of(apart);
+}
+
 TEST(Doubts, NameWhatSpeaksAgainstTheAnswers) {
   Answers apart = good_answers(), nearly = good_answers(), few = good_answers(),
           none = good_answers(), broken = good_answers(), unknown = good_answers();

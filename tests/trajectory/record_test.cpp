@@ -23,6 +23,14 @@ TEST(Record, NamesCommandVersionSceneAndSeeds) {
       "tumble run bowl · Tumble 0.1.0 (25ccc19a01) · scene bowl 0123456789abcdef, seeds 7, 11");
 }
 
+TEST(Record, OfASceneWithASizeHasItsNameOnce) {
+  TrajectoryInfo info;
+  info.scene_name = "atoms";
+  info.scene_digest = "atoms n=300";
+  info.seeds = {12};
+  EXPECT_EQ(record_of(info), "scene atoms n=300, seed 12");
+}
+
 TEST(Record, SaysNothingOfWhatIsNotThere) {
   TrajectoryInfo info;
   info.scene_name = "drop";

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
+
 namespace tumble::engines {
 namespace {
 
@@ -44,9 +46,9 @@ bool stays(const std::vector<CostResult>& results) {
 /// For a method without an order because its errors are at the floor.
 std::string of_exact(const CostMethod& method, double least, const CostReference& reference) {
   if (least > kRoundOff * reference.scale_m)
-    return fmt::format("{} reaches the error floor of the reference solution: {:.2g} m.",
-                       method.name, least);
-  return fmt::format("{} is exact here, to round-off: {:.2g} m.", method.name, least);
+    return fmt::format("{} reaches the error floor of the reference solution: {} m.", method.name,
+                       few_digits(least));
+  return fmt::format("{} is exact here, to round-off: {} m.", method.name, few_digits(least));
 }
 
 std::string of_stopped(const CostMethod& method, const std::vector<CostResult>& results) {
@@ -78,16 +80,16 @@ std::string of_numbers(const CostMethod& method, const std::vector<CostResult>& 
     return fmt::format("{} is wrong at every {}; at best {}.", method.name,
                        method.controlled ? "tolerance" : "step", worst);
   const std::string from = std::isfinite(coarsest->tolerance)
-                               ? fmt::format("tolerance {:.0e}", coarsest->tolerance)
+                               ? "tolerance " + few_digits(coarsest->tolerance)
                                : fmt::format("1/{:.0f} s", 1.0 / coarsest->step_s);
   return fmt::format("{} is right by all numbers at {}; at best {}.", method.name, from, worst);
 }
 
 std::string of_wrong_limit(const CostMethod& method, double least) {
   return fmt::format(
-      "{} does not converge: its error stays at {:.2g} m however small the step. It computes "
+      "{} does not converge: its error stays at {} m however small the step. It computes "
       "another motion (a wrong law, or a missing term).",
-      method.name, least);
+      method.name, few_digits(least));
 }
 
 std::string of_order(const CostMethod& method, const FittedOrder& fit, bool smooth) {
@@ -138,50 +140,54 @@ bool keeps_promise(const CostMethod& method, const std::vector<CostResult>& resu
   return std::isnan(method.order) || fit->order >= method.order - kAsPromised;
 }
 
-std::string read_refinement(const CostMethod& method, const std::vector<CostResult>& results,
-                            const CostReference& reference, bool smooth) {
+static std::string reading_of(const CostMethod& method, const std::vector<CostResult>& results,
+                              const CostReference& reference, bool smooth) {
   if (reference.by_numbers) return of_numbers(method, results);
   const double least = least_error(results);
+  const std::string shown = few_digits(least);
   if (!std::isfinite(least)) return of_stopped(method, results);
   if (!method.has_refinement && least <= reference.floor_m)
     return fmt::format(
         "{} has no step to choose: its error is at the floor of the reference solution.",
         method.name);
   if (!method.has_refinement)
-    return fmt::format("{} has no step to choose: its error is {:.2g} m.", method.name, least);
+    return fmt::format("{} has no step to choose: its error is {} m.", method.name, shown);
   const std::optional<FittedOrder> fit = order_of(method, results, reference);
-  if (!fit && method.controlled) return fmt::format("{} gets to {:.2g} m.", method.name, least);
+  if (!fit && method.controlled) return fmt::format("{} gets to {} m.", method.name, shown);
   if (!fit && least <= kWrongLimit * reference.floor_m) return of_exact(method, least, reference);
   if (!method.controlled && stays(results) && least > kWrongLimit * reference.floor_m &&
       least < kStaysBelow * reference.scale_m)
     return of_wrong_limit(method, least);
   if (!fit && least > kNoMotion * reference.scale_m)
     return fmt::format(
-        "{} does not find the motion: its error is still {:.2g} m at the finest {}, where bodies "
-        "move {:.2g} m. Either a law is wrong, or the steps are far too long.",
-        method.name, least, method.controlled ? "tolerance" : "step", reference.scale_m);
+        "{} does not find the motion: its error is still {} m at the finest {}, where bodies "
+        "move {} m. Either a law is wrong, or the steps are far too long.",
+        method.name, shown, method.controlled ? "tolerance" : "step",
+        few_digits(reference.scale_m));
   if (!fit)
-    return fmt::format(
-        "{} shows no order yet: its error is still {:.2g} m where bodies move {:.2g} m.",
-        method.name, least, reference.scale_m);
+    return fmt::format("{} shows no order yet: its error is still {} m where bodies move {} m.",
+                       method.name, shown, few_digits(reference.scale_m));
   if (method.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope))
-    return fmt::format("{} gets to {:.2g} m.", method.name, least);
+    return fmt::format("{} gets to {} m.", method.name, shown);
   if (method.controlled)
-    return fmt::format(
-        "{} gets to {:.2g} m; ten times the evaluations divide its error by 10^{:.1f}.",
-        method.name, least, fit->order);
+    return fmt::format("{} gets to {} m; ten times the evaluations divide its error by 10^{:.1f}.",
+                       method.name, shown, fit->order);
   if (fit->order < kNoOrder && least <= kWrongLimit * reference.floor_m)
     return of_exact(method, least, reference);
   if (fit->pairs < 2)
-    return fmt::format("{} gets to {:.2g} m; too few resolutions to show an order.", method.name,
-                       least);
+    return fmt::format("{} gets to {} m; too few resolutions to show an order.", method.name,
+                       shown);
   if (fit->order < kNoOrder && least > kWrongLimit * reference.floor_m)
     return of_wrong_limit(method, least);
   if (fit->spread > kSettled)
-    return fmt::format(
-        "{} gets to {:.2g} m; its order has not settled ({:.1f}, slopes {:.1f} apart).",
-        method.name, least, fit->order, fit->spread);
+    return fmt::format("{} gets to {} m; its order has not settled ({:.1f}, slopes {:.1f} apart).",
+                       method.name, shown, fit->order, fit->spread);
   return of_order(method, *fit, smooth);
+}
+
+std::string read_refinement(const CostMethod& method, const std::vector<CostResult>& results,
+                            const CostReference& reference, bool smooth) {
+  return capitalised(reading_of(method, results, reference, smooth));
 }
 
 }  // namespace tumble::engines

@@ -8,6 +8,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -183,9 +184,9 @@ long steps_a_sample(const scene::Scene& scene, const Window& window) {
 
 std::string two_steps_in_words(long steps, const Window& window) {
   return fmt::format(
-      "a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its error floor is the "
+      "a run by Fehlberg 7(8) with tolerance {} at steps of 1/{:.0f} s; its error floor is the "
       "difference to twice the step",
-      kSolverRounding, static_cast<double>(steps * window.samples) / window.duration_s);
+      few_digits(kSolverRounding), static_cast<double>(steps * window.samples) / window.duration_s);
 }
 
 Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& window) {
@@ -198,9 +199,9 @@ Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& wi
                  window, steps, {});
   if (is_smooth(scene))
     pair.what = fmt::format(
-        "a run by Fehlberg 7(8) with tolerance {:.0e}; its error floor is the difference to "
+        "a run by Fehlberg 7(8) with tolerance {}; its error floor is the difference to "
         "Bulirsch-Stoer with twice the step",
-        kSolverRounding);
+        few_digits(kSolverRounding));
   return pair;
 }
 
@@ -251,9 +252,9 @@ std::string why_not(const Pair& pair, const CostReference& reference) {
   if (const std::string stopped = pair.run.stopped_by + pair.other.stopped_by; !stopped.empty())
     return stopped;
   return fmt::format(
-      "two fine runs of it diverge ({:.1e} m apart at the end): errors grow too fast in it, or "
+      "two fine runs of it diverge ({} m apart at the end): errors grow too fast in it, or "
       "rounding decides an impact",
-      farthest(pair.other.frames, pair.run.frames, reference.radii));
+      few_digits(farthest(pair.other.frames, pair.run.frames, reference.radii)));
 }
 
 const std::string kNoTruthRemedy =
@@ -419,8 +420,8 @@ void check_reference(const scene::Scene& scene, const Laws& laws,
   }
   if (instants == 0) return;
   reference.floor_m = std::max(reference.floor_m, off);
-  reference.what += fmt::format(", or the difference to {} ({} instant{}: {:.1e} m)", source,
-                                instants, instants == 1 ? "" : "s", off);
+  reference.what += fmt::format(", or the difference to {} ({} instant{}: {} m)", source, instants,
+                                instants == 1 ? "" : "s", few_digits(off));
 }
 
 CostReference by_numbers(const scene::Scene& scene, const CostOptions& options,

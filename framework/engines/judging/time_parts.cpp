@@ -22,7 +22,7 @@ const std::vector<StackSamples::Part>& time_parts() {
       {"search for impacts",
        {"tumble::collision::", "tumble::engines::find_impact",
         "tumble::engines::FlightImpactDetection::", "tumble::engines::ImpactDetection::"}},
-      {"who may meet",
+      {"pairs that may meet",
        {"tumble::collision::overlapping_pairs", "tumble::collision::NearBoxes::",
         "tumble::engines::ActivePairs::", "tumble::engines::ImpactDetection::candidates"}},
   };

@@ -178,10 +178,10 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   CostSection section;
   section.scene = scene.title;
   section.truth = fmt::format(
-      "Errors are against {}: {:.2g} m; the error is the distance of a body's centre of mass from "
+      "Errors are against {}: {} m; the error is the distance of a body's centre of mass from "
       "its reference position, plus the angle between its orientations times its radius of "
       "gyration.",
-      reference.what, reference.floor_m);
+      reference.what, few_digits(reference.floor_m));
   for (const Measured& measured : all) section.lines.push_back(line_of(measured, reference));
   if (reference_module) {
     const Laws whole = laws_around(course, kind, reference_module, "reference", scene);
