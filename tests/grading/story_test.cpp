@@ -52,7 +52,13 @@ TEST(Told, NothingIsSubtractedFromWhatIsNoNumber) {
     EXPECT_FALSE(holds(text, "-nan")) << text;
     EXPECT_TRUE(holds(text, "nan")) << text;
   }
-  EXPECT_TRUE(holds(told_by([] { expect_near(1.5, 1.0, 0.0, "s", {}); }), "off by:   0.5"));
+  EXPECT_TRUE(
+      holds(told_by([] { expect_near(1.5, 1.0, 0.0, "s", {}); }), "off by:   0.5 s (allowed 0 s)"));
+  EXPECT_TRUE(
+      holds(told_by([] { expect_near(1.5, 1.0, 0.0, "", {}); }), "off by:   0.5 (allowed 0)"));
+  EXPECT_TRUE(holds(
+      told_by([] { expect_near(Eigen::Vector2d(0, 2), Eigen::Vector2d(0, 1), 0.5, "m", {}); }),
+      "off by:   1 m (allowed 0.5 m)"));
 }
 
 // An error of float's size is what many methods leave: only bits of float show float.

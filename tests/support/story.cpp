@@ -26,11 +26,11 @@ bool is_float(const Values& values) {
 
 // A tolerance in two digits, with the reason that its size gives it: what is left of 16 digits
 // after the roundings of a formula, or what the test allows a method.
-std::string allowance(double tolerance, double scale) {
+std::string allowance(double tolerance, double scale, const std::string& with_unit) {
   constexpr double kRoundings = 1e-10;  // of the scale: a thousand times what a long formula loses
   std::ostringstream text;
   text.precision(2);
-  text << " (allowed " << tolerance;
+  text << " (allowed " << tolerance << with_unit;
   if (tolerance > 0 && scale > 0 && tolerance <= kRoundings * scale) text << ", for rounding";
   text << ')';
   return text.str();
@@ -110,9 +110,12 @@ Mistake slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected
 
 namespace {
 
-// "1e-3 (allowed 1e-9)"; empty where nothing can be subtracted.
-std::string off_by(double difference, double tolerance, double scale) {
-  return std::isfinite(difference) ? show(difference) + allowance(tolerance, scale) : "";
+// "1e-3 m (allowed 1e-9 m)"; empty where nothing can be subtracted.
+std::string off_by(double difference, double tolerance, double scale, const std::string& unit) {
+  const std::string with_unit = unit.empty() ? "" : ' ' + unit;
+  return std::isfinite(difference)
+             ? show(difference) + with_unit + allowance(tolerance, scale, with_unit)
+             : "";
 }
 
 bool is_told(const ::testing::TestResult& result, const std::string& told) {
@@ -146,7 +149,7 @@ void expect_near(double found, double expected, double tolerance, const std::str
   if (difference <= tolerance) return;
   const Mistake seen = slip_in_the_digits({&found, 1, 1}, {&expected, 1, 1}, tolerance, story);
   report_failure(tell(with_slip(story, seen), show(expected), show(found), unit,
-                      off_by(difference, tolerance, std::abs(expected))));
+                      off_by(difference, tolerance, std::abs(expected), unit)));
 }
 
 void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, double tolerance,
@@ -161,8 +164,8 @@ void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, 
       same_size
           ? with_slip(given, slip_in_the_digits(found_numbers, expected_numbers, tolerance, given))
           : given;
-  const std::string off =
-      off_by(difference, tolerance, expected.size() > 0 ? expected.cwiseAbs().maxCoeff() : 0.0);
+  const std::string off = off_by(difference, tolerance,
+                                 expected.size() > 0 ? expected.cwiseAbs().maxCoeff() : 0.0, unit);
   constexpr Eigen::Index kReadable = 16;  // numbers in a line
   if (same_size && expected.size() > kReadable && found.allFinite()) {
     Eigen::Index row = 0, column = 0;
