@@ -31,11 +31,15 @@ local function panel(element)
   explores = true
   return pandoc.RawBlock('html', '<div class="explore" data-panel="' .. name .. '"></div>')
 end
-local function scripts(document)
-  if not explores then return nil end
-  local file = assert(io.open(PANDOC_SCRIPT_FILE:match '^(.*/)' .. 'explore.js'))
+local function script(document, name)
+  local file = assert(io.open(PANDOC_SCRIPT_FILE:match '^(.*/)' .. name))
   table.insert(document.blocks, pandoc.RawBlock('html', '<script>\n' .. file:read 'a' .. '</script>'))
   file:close()
+end
+local function scripts(document)
+  if latex then return nil end
+  if explores then script(document, 'explore.js') end
+  script(document, 'scrollers.js')
   return document
 end
 

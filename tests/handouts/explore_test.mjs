@@ -27,6 +27,18 @@ const told = async (tab, panel, ...values) => {
 const tests = [];
 const test = (name, run) => tests.push({ name, run });
 
+test('what is wider than the column of a phone scrolls and is a stop of the keyboard; a wide screen holds everything', async () => {
+  for (const name of readdirSync(folder).filter(file => /^(a\d_\w+|notation)\.html$/.test(file)).map(file => file.replace('.html', '')))
+    for (const width of [1400, 400]) {
+      const tab = await browser.open(`file://${join(folder, `${name}.html`)}`, { width, height: 900 });
+      await tab.until("document.readyState === 'complete'", name);
+      const wide = JSON.parse(await tab.value(`JSON.stringify([...document.querySelectorAll('body *')].filter(e => e.scrollWidth > e.clientWidth + 2 && ['auto', 'scroll'].includes(getComputedStyle(e).overflowX)).map(e => ({ tab: e.tabIndex, words: e.textContent.slice(0, 40) })))`));
+      if (width === 1400) expect(wide.length === 0, `${name}: wider than the column of a wide screen: ${wide.map(e => e.words)}`);
+      else expect(wide.length > 0 && wide.every(e => e.tab >= 0), `${name}: scrolls without a stop of the keyboard: ${wide.filter(e => e.tab < 0).map(e => e.words)}`);
+      await tab.send('Page.close');
+    }
+});
+
 test('every panel is drawn and says something, at 1400 and 400 pixels, light and dark, and nothing scrolls sideways', async () => {
   for (const [name, panels] of Object.entries(kPanels))
     for (const [width, dark] of [[1400, false], [400, true]]) {
