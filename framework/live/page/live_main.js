@@ -191,7 +191,8 @@ let opened = 0;
 const isOpen = title => tabs[opened][0] === title, openTabOf = title => openTab(tabs.findIndex(tab => tab[0] === title));
 
 function addTab([title, box], i) {
-  const tab = html('button', {}, title), pane = html('div', { className: 'pane', tabIndex: 0 }, box);
+  const tab = html('button', { id: `tab${i}` }, title), pane = html('div', { className: 'pane', tabIndex: 0 }, box);
+  pane.setAttribute('aria-labelledby', tab.id);
   tab.setAttribute('role', 'tab');
   pane.setAttribute('role', 'tabpanel');
   tab.addEventListener('click', () => openTab(i));
@@ -365,6 +366,8 @@ function listen() {
 
 tabs.forEach(addTab);
 openTab(0);
+oneStop(byId('tabs'), 'aria-selected');
+oneStop(document.querySelector('[role=radiogroup]'), 'aria-checked');
 addOptions();
 addControls();
 try {

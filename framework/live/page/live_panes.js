@@ -60,7 +60,9 @@ class ChangePane {
     return select;
   }
 
-  show(run, changes, chosen) {
+  show(run, changes, chosen) { keepFocus(this.box, () => this.build(run, changes, chosen)); }
+
+  build(run, changes, chosen) {
     const facts = run.facts, bodies = run.about.bodies, movable = bodies.map((_, i) => i).filter(i => !bodies[i].immovable), form = html('div', { className: 'form' });
     const row = (text, ...inputs) => form.append(html('label', {}, text), html('span', { className: 'three' }, ...inputs));
     const gravity = facts.gravity_m_s2 || [0, 0, 0];

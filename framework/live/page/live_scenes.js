@@ -80,7 +80,9 @@ class ScenesPane {
     return html('li', {}, button);
   }
 
-  show() {
+  show() { keepFocus(this.box, () => this.build()); }
+
+  build() {
     const at = this.box.parentElement ? this.box.parentElement.scrollTop : 0, canRun = this.scenes.filter(scene => scene.unwritten.length === 0 || scene.name === this.current), waiting = this.scenes.filter(scene => !canRun.includes(scene));
     const own = canRun.filter(scene => this.own && scene.home === this.own), needing = canRun.filter(scene => !own.includes(scene) && this.own && scene.needs.includes(this.own)), others = canRun.filter(scene => !own.includes(scene) && !needing.includes(scene));
     this.box.textContent = '';

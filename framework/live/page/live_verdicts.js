@@ -59,7 +59,9 @@ class VerdictPane {
     return `The file of ${id} as it was saved last does not compile: no test of it ran.${before}`;
   }
 
-  show() {
+  show() { keepFocus(this.box, () => this.build()); }
+
+  build() {
     const open = new Set([...this.box.querySelectorAll('details[open]')].map(details => details.dataset.test));
     this.box.textContent = '';
     this.box.append(this.asked);

@@ -137,7 +137,7 @@ class BodyFinder {
     this.list.replaceChildren(...found.slice(0, kMostFound).map(i => {
       const button = html('button', {}, this.player.about.bodies[i].name);
       button.setAttribute('aria-pressed', String(i === this.player.chosen));
-      button.addEventListener('click', () => { this.player.choose(i); this.show(); });
+      button.addEventListener('click', () => keepFocus(this.list, () => { this.player.choose(i); this.show(); }));
       return button;
     }));
     if (this.field.value.trim()) this.list.append(html('span', { className: 'count' }, found.length === 0 ? 'no body has this in its name' : found.length > kMostFound ? `${found.length - kMostFound} more` : ''));

@@ -200,6 +200,7 @@ function addTabs(player) {
     if (panelKinds[panel.kind]) panes.push([panel.title, box => { const made = panelKinds[panel.kind](box, panel.data, player); return { follow: (t, isFull) => isFull && made.at(t) }; }]);
   const tabs = panes.map(([title, make], i) => {
     const tab = html('button', { role: 'tab', id: `tab${i}` }, title), box = html('div', { role: 'tabpanel', className: 'pane', tabIndex: 0 });
+    box.setAttribute('aria-labelledby', `tab${i}`);
     tab.setAttribute('role', 'tab');
     byId('tabs').append(tab);
     byId('panes').append(box);
@@ -224,6 +225,7 @@ function addTabs(player) {
   tabs.forEach((entry, i) => entry.tab.addEventListener('click', () => open(i)));
   player.listeners.push(update);
   open(0);
+  oneStop(byId('tabs'), 'aria-selected');
   const find = () => {
     open(1);
     tabs[1].pane.finder.field.focus();

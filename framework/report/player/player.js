@@ -174,6 +174,7 @@ class Controls {
     this.addSavingAndKeys();
     this.addDifference();
     window.addEventListener('keydown', event => this.key(event));
+    document.addEventListener('pointerdown', event => { if (!byId('player').contains(event.target) && getComputedStyle(byId('options')).position === 'absolute') byId('more').open = false; });
     new ResizeObserver(() => this.drawMarks()).observe(byId('marks'));
     player.listeners.push(() => this.show());
     this.show();
@@ -232,13 +233,15 @@ class Controls {
   }
 
   key(event) {
+    if (event.key === 'Escape' && byId('more').open) { byId('more').open = false; byId('more').querySelector('summary').focus(); }
     const inText = event.target instanceof Element && event.target.closest('select, input[type=text], input[type=search]');
     if (inText || event.ctrlKey || event.metaKey || event.altKey) return;
-    const player = this.player, onButton = event.target instanceof Element && event.target.closest('button, summary'), names = Object.keys(kLooks);
+    const player = this.player, at = event.target instanceof Element ? event.target : document.body, onButton = at.closest('button, summary, input[type=checkbox]'), inPane = at.closest('#panes, #options'), names = Object.keys(kLooks);
     const acts = { ' ': onButton ? null : () => player.toggle(), ArrowRight: () => player.step(event.shiftKey ? 10 : 1), ArrowLeft: () => player.step(event.shiftKey ? -10 : -1),
       ArrowUp: () => player.faster(1), ArrowDown: () => player.faster(-1), Home: () => player.goTo(0), End: () => player.goTo(player.end), n: () => player.jump(1), p: () => player.jump(-1),
       f: () => player.follow(player.followed < 0), r: () => this.picture && this.picture.reset(), '+': () => player.zoom(0.5), '-': () => player.zoom(2), '/': () => this.find() };
     names.forEach((name, i) => { if (i < 6) acts[String(i + 1)] = () => this.picture && this.picture.look(name); });
+    if (inPane) for (const key of ['ArrowUp', 'ArrowDown', 'Home', 'End']) delete acts[key];   // these scroll it
     const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     act();

@@ -22,6 +22,34 @@ function html(name, attributes = {}, ...children) {
   return made;
 }
 
+// Of tabs, or of buttons of which one holds, one is a stop of the keyboard; arrows go to the others.
+// @param word  the attribute that says which one holds: aria-selected, aria-checked
+function oneStop(list, word) {
+  const all = () => [...list.children], mark = () => { for (const one of all()) one.tabIndex = one.getAttribute(word) === 'true' ? 0 : -1; };
+  list.addEventListener('keydown', event => {
+    const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key], at = all().indexOf(document.activeElement);
+    if (!way || at < 0 || event.ctrlKey || event.metaKey || event.altKey) return;
+    const next = all()[(at + way + all().length) % all().length];
+    next.click();
+    next.focus();
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  new MutationObserver(mark).observe(list, { subtree: true, childList: true, attributes: true, attributeFilter: [word] });
+  mark();
+}
+
+// What is built anew below an element keeps the keyboard where it was: at the control of the same name.
+function keepFocus(box, build) {
+  const at = document.activeElement, kControls = 'button, input, select, summary, a, pre';
+  const nameOf = e => [e.tagName, e.closest('[data-test]')?.dataset.test, e.ariaLabel || (e.tagName === 'SUMMARY' ? '' : e.textContent)].join();
+  const isInside = Boolean(at && at !== box && box.contains(at)), name = isInside ? nameOf(at) : '';
+  build();
+  if (!isInside || document.activeElement === at) return;
+  const same = at.isConnected ? at : [...box.querySelectorAll(kControls)].find(e => nameOf(e) === name);
+  if (same) same.focus({ preventScroll: true });
+}
+
 function ticksOf(low, high, most = 6) {
   const rough = (high - low) / most, power = Math.pow(10, Math.floor(Math.log10(rough))), part = rough / power;
   const spacing = (part > 5 ? 10 : part > 2 ? 5 : part > 1 ? 2 : 1) * power, ticks = [];
