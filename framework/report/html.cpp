@@ -123,6 +123,7 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   .box { padding: .1rem .7rem .8rem; }
   .story table, .story tbody, .story tr, .story td,
   .blocks, .blocks tbody, .blocks tr, .blocks td { display: block; }
+  .blocks caption, .story caption { display: block; } .blocks td:empty { display: none; }
   .blocks thead { display: none; } .blocks tr { padding: .35rem 0; }
   .blocks td { border: 0; padding: .1rem .4rem; overflow-wrap: anywhere; }
   .blocks td.number { text-align: left; }

@@ -173,7 +173,8 @@ std::string legend(const Plot& plot, const Sheet& sheet, double& bottom) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     if (plot.curves[i].name.empty()) continue;
     const std::vector<std::string> lines = wrapped(plot.curves[i].name, most);
-    const double width = kKey + kGap + kMeanLetter * static_cast<double>(plot.curves[i].name.size());
+    const double width =
+        kKey + kGap + kMeanLetter * static_cast<double>(plot.curves[i].name.size());
     if (x > sheet.left && x + width > right) {
       x = sheet.left;
       y += kTextHeight;
@@ -276,16 +277,18 @@ std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& shee
       "<rect x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"none\" "
       "stroke=\"#5b6875\"/>\n",
       sheet.left, sheet.top, sheet.right - sheet.left, sheet.bottom - sheet.top);
+  std::string names;  // above the curves
   for (const Limit& limit : plot.limits) {
     if (!drawable(limit.y, plot.y.scale)) continue;
     const double at = y(limit.y);
     body += line(sheet.left, at, sheet.right, at,
                  "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"");
-    body += text(sheet.right - 5, at > sheet.top + 20 ? at - 5 : at + 14, limit.name, "end",
-                 " fill=\"#a82c00\" class=\"halo\"");
+    names += text(sheet.right - 5, at > sheet.top + 20 ? at - 5 : at + 14, limit.name, "end",
+                  " fill=\"#a82c00\" class=\"halo\"");
   }
   for (std::size_t i = 0; i < plot.curves.size(); ++i)
     body += draw(thinned(plot.curves[i], sheet.parts), i, plot, x, y);
+  body += names;
   if (frame.is_empty)
     body += text(middle, 0.5 * (sheet.top + sheet.bottom), "nothing to draw", "middle");
   double bottom = sheet.bottom + 19;
