@@ -69,8 +69,8 @@ void expect_complementary(const Contacts& contacts, const std::string& scene) {
   expect_true(product <= allowed * std::max(1.0, f.maxCoeff()), "f . a = 0",
               "f a = " + show(product) + " N m/s^2 at one contact",
               {.scene = where,
-               .slip = "without complementarity: a force acts where the bodies part; who lets go "
-                       "changes what the others must do",
+               .slip = "without complementarity: a force acts where the bodies part; a "
+                       "contact that lets go changes what the others must do",
                .handout = equation(9)});
 }
 

@@ -57,7 +57,7 @@ TEST(ContactForces, ChooseWhoPushesAmongThree) {
                         "middle one of which parts as the outer ones are held",
                .slip = found.size() == 3 && found.allFinite() && found.minCoeff() < 0
                            ? "negative forces: a contact pushes, it never pulls"
-                           : "who pushes: f >= 0, A f + b >= 0 and f . a = 0, all three",
+                           : "which contacts push: f >= 0, A f + b >= 0 and f . a = 0, all three",
                .handout = equation(9)});
 }
 
@@ -83,7 +83,7 @@ TEST(ContactForces, CarryAStackOfTen) {
   const VectorXd found = forces_of(stack.A, stack.b);
   expect_near(found.head(4).sum(), 10 * kGravity, 1e-9 * kGravity, "N",
               {.scene = "ten boxes of 1 kg on each other: the four contacts at the bottom",
-               .slip = "an iteration that stops too early, or who pushes",
+               .slip = "an iteration that stops too early, or the wrong contacts push",
                .handout = equation(9)});
 }
 
@@ -108,7 +108,8 @@ TEST(ContactForces, CarryAHeavyBoxOnALightOne) {
       Vector2d(f.head(4).sum(), f.tail(4).sum()), Vector2d(weight, kHeavy * kGravity),
       1e-8 * weight, "N (sum of the lower four, of the upper four)",
       {.scene = "a box of 1,000 kg on a box of 10 g on the floor, four contacts each",
-       .slip = "an iteration that stops too early: find who pushes, and solve for them directly",
+       .slip = "an iteration that stops too early: find which contacts push, and solve directly"
+               " for their forces",
        .handout = equation(9),
        .no_number = "redundant contacts: A is singular, and a pivot of 0 is divided by",
        .iterates = true});

@@ -42,7 +42,7 @@ TEST(ContactGroups, KnowBodiesByTheirNumbers) {
                   {.scene = "bodies 7, 12, 100 and 4000; 12 touches 4000, 7 and 100 lie on wall " +
                             std::to_string(floor),
                    .slip = "the number of a body is not its place in the list, and a wall is "
-                           "whoever is not in it, whatever its number",
+                           "what is not in it, whatever its number",
                    .handout = equation(4)});
 }
 

@@ -17,8 +17,8 @@ void expect_before(const Stamp& first, const Stamp& second, const std::string& s
 
 TEST(ComesBefore, TheEarlierTimeIsFirst) {
   const std::string slip =
-      "not the order of time: whoever came into the queue first, or has the lower number, is not "
-      "first for it";
+      "not the order of time: the entry that came into the queue first, or has the lower number, "
+      "is not first for that";
   expect_before(impact(0.25, C, D), impact(0.5, A, B), slip);
   expect_before({0.25, 7, WorkKind::kRedraw, -1, -1}, {0.25000001, 0, WorkKind::kCallback, A, -1},
                 slip);
@@ -27,7 +27,7 @@ TEST(ComesBefore, TheEarlierTimeIsFirst) {
 TEST(ComesBefore, TimesAreComparedAsTheyAre) {
   const std::string slip =
       "a tolerance in the order: it is no order any more (x = y and y = z, but x before z), and "
-      "what is committed depends on who compared with whom";
+      "what is committed depends on which two were compared";
   expect_before(impact(just_before(1.0), C, D, 3), impact(1.0, A, B), slip);
   expect_before(impact(1e-12, C, D), impact(2e-12, A, B), slip);
 }

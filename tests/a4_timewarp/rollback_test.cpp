@@ -56,8 +56,8 @@ TEST(PlanRollback, FollowsTheChain) {
        back(D, impact(1.25, C, D))},
       {.scene =
            "A hit B at 0.75 s, then B hit C at 1 s, then C hit D at 1.25 s; A goes back to 0.5 s",
-       .slip = "a forgotten anti-message: whoever goes back unsends in turn, each only as far as "
-               "the message that reached it",
+       .slip = "a forgotten anti-message: a body that goes back unsends in turn, each only as far "
+               "as the message that reached it",
        .handout = equation(8)});
 }
 

@@ -62,7 +62,7 @@ TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
 TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
   const Said said = type("cost toi --tolerances 1e-3,1e-9");
   EXPECT_EQ(said.code, 0) << said.err;
-  for (const char* words : {"bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches",
+  for (const char* words : {"Bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches",
                             "Closed form (ball, plane) has an error of"})
     EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
   EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));

@@ -71,6 +71,8 @@ TEST(Story, EachSceneStandsByItself) {
   ASSERT_NE(first, std::string::npos) << html;
   EXPECT_LT(first, xray);
   EXPECT_LT(xray, second);
+  // in the list of the story's fields, so that it begins where they begin
+  EXPECT_LT(html.rfind("<dl", xray), html.find("<dt>scene</dt>"));
   // what is only to be looked at is no mistake that was seen
   EXPECT_NE(html.find("<dt>to check</dt><dd>the sign"), std::string::npos);
   EXPECT_NE(html.find("<dt>likely mistake</dt><dd>the factor"), std::string::npos);

@@ -112,7 +112,8 @@ namespace {
 
 // "1e-3 m (allowed 1e-9 m)"; empty where nothing can be subtracted.
 std::string off_by(double difference, double tolerance, double scale, const std::string& unit) {
-  const std::string with_unit = unit.empty() ? "" : ' ' + unit;
+  // "(unit)" and the like are words about the numbers, and no unit
+  const std::string with_unit = unit.empty() || unit.front() == '(' ? "" : ' ' + unit;
   return std::isfinite(difference)
              ? show(difference) + with_unit + allowance(tolerance, scale, with_unit)
              : "";

@@ -145,7 +145,8 @@ std::string number_first(const std::string& equation) {
          equation.substr(end);
 }
 
-void add_xray(report::Page& page, const StoryParts& parts) {
+// The terms of the equation, and a drawing of them. The equation itself is a field of the story.
+void add_terms(report::Page& page, const StoryParts& parts) {
   report::Table table{"", {{""}, {""}, {""}}, {}};
   for (const StoryTerm& term : parts.terms)
     table.rows.push_back({{term.name}, {term.value}, {term.mark, "", report::Look::kBad}});
@@ -156,7 +157,6 @@ void add_xray(report::Page& page, const StoryParts& parts) {
     for (auto& row : table.rows) row.pop_back();
   }
   if (const auto arms = arms_of(parts.terms)) page.plot(*arms);
-  page.fields({{std::string(kXray), number_first(parts.equation)}});
   if (!table.rows.empty()) page.table(table);
 }
 
@@ -220,11 +220,13 @@ void add_story(report::Page& page, const std::string& story, const PageView& vie
   page.begin(report::Part::kStory);
   if (!parts.before.empty()) page.preformatted(parts.before, links);
   // the x-ray is of the first failure, and stands with it
-  const auto cases = cases_of(parts.fields);
+  auto cases = cases_of(parts.fields);
+  if (!parts.equation.empty())
+    cases.front().push_back({std::string(kXray), number_first(parts.equation)});
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (cases.size() > 1) page.heading(fmt::format("Case {} of {}", i + 1, cases.size()), 4);
     if (!cases[i].empty()) page.fields(cases[i]);
-    if (i == 0 && !parts.equation.empty()) add_xray(page, parts);
+    if (i == 0 && !parts.equation.empty()) add_terms(page, parts);
   }
   page.end();
 }
