@@ -128,9 +128,10 @@ void add_scenes(report::Page& page, const Graded& graded) {
 void write_index(const Context& context, const std::vector<Graded>& all,
                  const DemoOptions& options) {
   const fs::path out = fs::absolute(options.out);
-  const std::string scenes = options.scenes > 0
+  const std::string scenes = options.scenes > 1
                                  ? fmt::format("the first {} scenes of each", options.scenes)
-                                 : "every scene";
+                             : options.scenes == 1 ? "the first scene of each"
+                                                   : "every scene";
   report::Page page("Tumble", "three submissions of each assignment, graded; " + scenes +
                                   ", submission beside reference");
   std::vector<report::Cell> links{{"Scores", "#scores"}};

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/report/engines_model.h"
 
 namespace tumble::report {
@@ -390,7 +391,8 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
   std::vector<Cell> links{
       {"All scenes", "#all"}, {"The slides' tables", "#slides"}, {"The model of cost", "#model"}};
   if (!index.ghosts.empty() || !index.pong.empty()) links.push_back({"Pong", "#pong_ladder"});
-  for (const EnginesScene& scene : index.scenes) links.push_back({scene.name, "#" + scene.name});
+  for (const EnginesScene& scene : index.scenes)
+    links.push_back({capitalised(scene.name), "#" + scene.name});
   page.links(links);
   if (const std::string sentence = headline(index.ladder); !sentence.empty())
     page.paragraph(sentence, Look::kGood);

@@ -151,6 +151,8 @@ TEST_F(MendFirst, APictureStandsBesideTheOneCauseThatActsInItsScene) {
   grade.causes.push_back(other);
   EXPECT_EQ(box().find("media/boxes.png"), std::string::npos);
   EXPECT_NE(box().find("boxes</a> (cause 2 may act in it, too)"), std::string::npos) << box();
+  grade.causes.push_back(other);
+  EXPECT_NE(box().find("boxes</a> (causes 2, 3 may act in it, too)"), std::string::npos) << box();
 }
 
 // A cause that is no known slip gives something to act on, too.

@@ -11,7 +11,7 @@ import { Browser } from './browser.mjs';
 
 const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
 function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
-const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // four tests of seconds; all take minutes
+const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // five tests of seconds; all take minutes
 try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
 if (!existsSync(tumble)) skip(`${tumble} is not built`);
 const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
@@ -47,7 +47,7 @@ class Live {
   }
 }
 
-const tests = [], kQuick = ['a push', 'another origin', 'judges nobody', 'of a save is said'];
+const tests = [], kQuick = ['a push', 'the keyboard', 'another origin', 'judges nobody', 'of a save is said'];
 const test = (name, run, needsReference = true) => tests.push({ name, run, needsReference });
 const browser = new Browser();
 
@@ -84,6 +84,56 @@ test('a run on the reference judges nobody', async () => {
   await page.until('document.body.innerText.includes("This run asks a1 (reference) for")', 'what the reference is asked');
   await sleep(3000);   // verdicts of a starter's file take 2 s
   expect(!await page.value('document.body.dataset.verdicts'), 'the file beside the reference was judged');
+  await live.stop();
+});
+
+test('the keyboard reaches every control, in the order of the page and with a ring, and stays at what is built anew', async () => {
+  const live = await Live.start('drop_a_box', '--modules', 'reference'), page = await browser.open(live.address);
+  const kKeys = { Tab: 9, Enter: 13, Escape: 27, ArrowRight: 39 };
+  const press = async key => {
+    for (const type of ['keyDown', 'keyUp']) await page.send('Input.dispatchKeyEvent', { type, key, code: key, windowsVirtualKeyCode: kKeys[key], ...(type === 'keyDown' && key === 'Enter' ? { text: '\r' } : {}) });
+  };
+  await page.until('tumble.run && tumble.run.length > 5', 'the motion');
+  await page.value('document.getElementById("go").click()');
+  await page.until('tumble.paused', 'that it is paused');
+  await page.value('document.activeElement.blur()');
+  const kStops = '[...document.querySelectorAll("button, input, select, summary, a, [tabindex]")].filter(e => e.tabIndex >= 0 && !e.disabled && e.checkVisibility({ visibilityProperty: true }))';
+  const stops = await page.value(`${kStops}.length`), places = [];
+  for (let i = 0; i <= stops; ++i) {
+    await press('Tab');
+    if (await page.value('document.activeElement === document.body')) break;
+    places.push(await page.value(`${kStops}.indexOf(document.activeElement)`));
+    expect(await page.value('(() => { const s = getComputedStyle(document.activeElement); return s.outlineStyle !== "none" && parseFloat(s.outlineWidth) > 0; })()'), `${await page.value('document.activeElement.outerHTML.slice(0, 60)')} shows no ring`);
+  }
+  expect(places.length === stops && places.every((place, i) => place === i), `${stops} stops are taken as ${places}`);
+  // Tabs and tools: one stop each, arrows go on.
+  await page.value('document.querySelector("#tabs button").focus()');
+  for (let i = 0; i < 3; ++i) await press('ArrowRight');
+  expect(await page.value('document.activeElement.textContent === "Change" && document.activeElement.getAttribute("aria-selected") === "true"'), 'arrows go through the tabs');
+  await page.value('document.getElementById("toolPush").focus()');
+  await press('ArrowRight');
+  expect(await page.value('document.activeElement.id === "toolPull" && tumble.tool === "pull"'), 'arrows go through the tools');
+  // A change begins the run anew, and the form with it.
+  await page.value('[...document.querySelectorAll("#panes button")].find(b => b.textContent === "Earth").focus()');
+  await page.value('window.runBefore = tumble.run, 1');
+  await press('Enter');
+  await page.until('tumble.run !== runBefore', 'the run with the change');
+  expect(await page.value('document.activeElement.textContent') === 'Earth', `after a change the keyboard is at ${await page.value('document.activeElement.outerHTML.slice(0, 60)')}`);
+  await page.value('document.querySelector("#show summary").focus()');
+  await press('Enter');
+  await press('Escape');
+  expect(await page.value('!document.getElementById("show").open && document.activeElement.tagName === "SUMMARY"'), 'Escape closes what is shown');
+  const levels = await page.value('[...document.querySelectorAll("h1, h2, h3")].filter(e => e.checkVisibility()).map(e => Number(e.tagName[1]))');
+  expect(levels.every((level, i) => i === 0 || level <= levels[i - 1] + 1), `levels of headings: ${levels}`);
+  // On a phone the words over the picture stand below each other, however long they are.
+  await page.value('document.getElementById("go").click()');
+  const phone = await browser.open(live.address, { width: 400, height: 900 });
+  await phone.until('tumble.run && tumble.run.length > 5 && tumble.hadStage', 'the motion');
+  const over = await phone.value('(() => { document.getElementById("hint").textContent = "The run has ended, because it lasts 120 s: start over, or go back to an earlier instant."; document.getElementById("scales").textContent = "contact forces: 5 N are 0.25 m long"; return document.getElementById("scales").getBoundingClientRect().top - document.getElementById("hint").getBoundingClientRect().bottom; })()');
+  expect(over >= 0, `the scales lie over the hint by ${-over} pixels`);
+  await phone.value('document.getElementById("show").open = true');
+  const covered = await phone.value('(() => { const box = document.getElementById("options").getBoundingClientRect(); return [...document.querySelectorAll("#bar button, #bar select, #bar input[type=range]")].filter(e => { const r = e.getBoundingClientRect(); return r.height > 0 && r.right > box.left && r.left < box.right && r.bottom > box.top && r.top < box.bottom; }).map(e => e.id); })()');
+  expect(covered.length === 0, `what is drawn covers ${covered}`);
   await live.stop();
 });
 

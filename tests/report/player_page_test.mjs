@@ -12,7 +12,7 @@ let failed = 0;
 function expect(holds, what) { if (!holds) { failed = 1; console.log(`  WRONG: ${what}`); } }
 
 // Numbers of an axis have one style; this needs no browser.
-const words = new Script(`${readFileSync(join(root, 'framework/report/player/plot.js'), 'utf8')}\ntickWords;`).runInNewContext({});
+const words = new Script(`${readFileSync(join(root, 'framework/report/player/plot.js'), 'utf8')}\ntypeof tickWords === 'function' ? tickWords : () => [];`).runInNewContext({});
 for (const [ticks, isLog, said] of [[[5000, 1e4, 2e4], true, '5e3 1e4 2e4'], [[0.01, 1, 100], true, '0.01 1 100'], [[0, 5e-4, 1e-3, 1.5e-3], false, '0 0.0005 0.001 0.0015'], [[-4e-4, -2e-4, -1e-20], false, '-4e-4 -2e-4 0']])
   expect(words(ticks, isLog).join(' ') === said, `${ticks}: ${words(ticks, isLog)}`);
 

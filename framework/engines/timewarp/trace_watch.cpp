@@ -65,7 +65,7 @@ void TraceWatch::event(const Event& event) {
   if (is_judged && events_ >= reference_.events.size())
     throw StoppedRun(
         fmt::format("committed event {} is not the ordered reference's: expected nothing more; "
-                    "found {}. Likely: it should have been rolled back",
+                    "found {}. Likely: the rollback that takes it back was left out",
                     events_ + 1, in_words(event)));
   if (is_judged && !same_event(reference_.events[events_], event)) {
     const Event& expected = reference_.events[events_];

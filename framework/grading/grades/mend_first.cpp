@@ -193,7 +193,9 @@ void add_scenes(report::Page& page, std::size_t index, const Grade& grade,
     if (links.size() == kMost) continue;
     const std::string title = plain_name(scene.title);
     text += (text.empty() ? "" : "\n") + title;
-    if (!others.empty()) text += fmt::format(" (cause {} may act in it, too)", others);
+    if (!others.empty())
+      text += fmt::format(" (cause{} {} may act in it, too)",
+                          others.find(',') == others.npos ? "" : "s", others);
     links.push_back({title, "#" + anchor_of_scene(scene.scene)});
   }
   if (!text.empty()) fields.push_back({"scenes", text, links});
