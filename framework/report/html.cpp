@@ -348,7 +348,8 @@ void Page::thumbnails(const std::vector<Figure>& figures) {
   body_ += "</div>\n";
 }
 
-// Of a wide and a narrow drawing the one is shown that fits, so that letters can be read on a phone.
+// Of a wide and a narrow drawing the one is shown that fits, so that letters can be read on a
+// phone.
 void Page::figure(const std::string& svg, const std::string& narrow, const std::string& caption) {
   body_ += narrow.empty() ? "<figure class=\"plot-figure small\">" + svg
                           : "<figure class=\"plot-figure both\">" + svg + narrow;

@@ -16,7 +16,8 @@ namespace tumble::report {
 namespace {
 
 constexpr double kTextHeight = 17, kTitleHeight = 16;
-// widths of letters: the mean, one that lines are broken by, of a bold title, of a figure at an axis
+// widths of letters: the mean, one that lines are broken by, of a bold title, of a figure at an
+// axis
 constexpr double kMeanLetter = 6.6, kLetter = 7.2, kBoldLetter = 8.7, kFigure = 7.4;
 constexpr std::size_t kMarksOfLong = 6;  // per curve without marks, where colours repeat
 constexpr int kTicksOfWide = 6, kTicksOfNarrow = 4;  // along x

@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "framework/report/ticks.h"
+
 namespace tumble::report {
 
 /// From this curve on, the colours of the first eight are repeated with other dashes, thinner lines
 /// and hollow marks: for a reference beside the curves compared with it.
 inline constexpr std::size_t kReferenceStyles = 8;
-
-enum class Scale { kLinear, kLog };
 
 struct Axis {
   std::string name;       // "time", "error of the top rod's tension"
@@ -56,12 +56,6 @@ Curve sorted_by_x(Curve curve);
 /// Names of curves that cover each other, the width of a line apart at most: "A and B". Compared
 /// are curves with the same x.
 std::vector<std::string> coinciding(const Plot& plot);
-
-/// The ticks of an axis: round numbers in [low, high], about as many as `most` says, from four on
-/// where it is 6; powers of ten (or some of them) on a logarithmic axis, and numbers between them
-/// where there are fewer than three.
-/// @pre low < high, finite; positive where logarithmic
-std::vector<double> ticks_of(double low, double high, Scale scale, int most = 6);
 
 /// CSS rules that svg_of needs, once per page.
 const char* plot_style();

@@ -22,7 +22,7 @@ constexpr double kLegendLetter = 6.6, kTitleLetter = 8.7;
 struct BarSheet {
   double margin, width;  // of the drawing
   double left, right;    // of the bars
-  double row;                  // height
+  double row;            // height
   bool is_narrow;
 };
 BarSheet sheet_of(const StackedBars& bars) {
@@ -189,8 +189,7 @@ std::string bars_on(const StackedBars& bars, const BarSheet& sheet, const std::s
   return fmt::format(
       "<svg class=\"plot{}\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n"
       "{}</svg>\n",
-      sheet.is_narrow ? " narrow" : "", sheet.width, y + 10, html_escape(bars.title),
-      body);
+      sheet.is_narrow ? " narrow" : "", sheet.width, y + 10, html_escape(bars.title), body);
 }
 
 }  // namespace
