@@ -92,7 +92,7 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
 .story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
 .story td.bad { min-width: 13rem; }
 .story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
-.story td:nth-child(2) { white-space: pre-wrap; font-family: "DejaVu Sans Mono", Menlo, Consolas,
+.story td:nth-child(2) { white-space: pre; font-family: "DejaVu Sans Mono", Menlo, Consolas,
   monospace; font-size: .92em; }
 .story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
@@ -131,7 +131,7 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
     font-weight: 400; }
   .story tr { padding: .2rem 0; }
   .story td { padding: 0; border: 0; }
-  .story td:first-child { color: var(--soft); }
+  .story td:nth-child(2) { white-space: pre-wrap; } .story td:first-child { color: var(--soft); }
   .story { padding: .5rem .6rem; } .fields { gap: .15rem .6rem; font-size: .93rem; }
   .story .plot-figure { float: none; margin: .4rem auto; }
   .thumbs { grid-template-columns: repeat(auto-fill, minmax(7rem, 1fr)); } }

@@ -1,4 +1,6 @@
 // A story taken apart for a page: named values, terms, arms.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "framework/grading/grades/story_section.h"
@@ -76,6 +78,22 @@ TEST(Story, EachSceneStandsByItself) {
   // what is only to be looked at is no mistake that was seen
   EXPECT_NE(html.find("<dt>to check</dt><dd>the sign"), std::string::npos);
   EXPECT_NE(html.find("<dt>likely mistake</dt><dd>the factor"), std::string::npos);
+}
+
+// A row of many numbers does not make its table wider than the page.
+TEST(Story, ALongTermIsBrokenIntoLines) {
+  report::Page page("T");
+  std::string numbers = "(0.5";
+  for (int i = 1; i < 20; ++i) numbers += ", 0.692449";
+  add_story(page, "  scene:    one\n  x-ray:    y = x\n            x   " + numbers + ") m", {});
+  const std::string html = page.html();
+  const std::size_t from = html.find("(0.5, "), end = html.find(") m", from);
+  ASSERT_NE(from, std::string::npos) << html;
+  for (std::size_t at = from; at < end;) {
+    const std::size_t next = std::min(html.find('\n', at), end);
+    EXPECT_LE(next - at, 64u) << html.substr(at, next - at);
+    at = next + 1;
+  }
 }
 
 // "mistake: what is right" is one line in a terminal; in a page what is right stands apart.

@@ -188,6 +188,13 @@ TEST(StackedBars, EightPartsHaveEightFills) {
   EXPECT_EQ(fills.size(), 8u);
 }
 
+// A mark of a curve covers no word.
+TEST(Plots, NamesOfLimitsLieAboveTheCurves) {
+  const Plot plot{"t", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}, true}}, {{1.5, "band"}}};
+  for (const std::string& svg : {svg_of(plot), narrow_svg_of(plot)})
+    EXPECT_GT(svg.find(">band<"), svg.find("<path d=\"M")) << svg;
+}
+
 TEST(Plots, EscapeAllText) {
   const std::string svg =
       svg_of(Plot{"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});

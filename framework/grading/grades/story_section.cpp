@@ -9,10 +9,12 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "framework/core/math.h"
 #include "framework/grading/verdicts/mend_order.h"
 #include "framework/grading/verdicts/plain_text.h"
+#include "framework/report/ticks.h"
 
 namespace tumble::grading {
 namespace {
@@ -147,9 +149,13 @@ std::string number_first(const std::string& equation) {
 
 // The terms of the equation, and a drawing of them. The equation itself is a field of the story.
 void add_terms(report::Page& page, const StoryParts& parts) {
+  constexpr std::size_t kLetters = 64;  // of a line, with a mark beside it
   report::Table table{"", {{""}, {""}, {""}}, {}};
   for (const StoryTerm& term : parts.terms)
-    table.rows.push_back({{term.name}, {term.value}, {term.mark, "", report::Look::kBad}});
+    table.rows.push_back(
+        {{term.name},
+         {fmt::format("{}", fmt::join(report::wrapped(term.value, kLetters), "\n"))},
+         {term.mark, "", report::Look::kBad}});
   // a column of marks only where there is one
   if (std::all_of(parts.terms.begin(), parts.terms.end(),
                   [](const StoryTerm& term) { return term.mark.empty(); })) {
