@@ -41,7 +41,7 @@ struct SceneLine {
 
 /// The reason why no run reaches an error.
 std::string why_not(const report::CostPage& page, double mark) {
-  if (page.floor > mark) return fmt::format("truth known to {:.0e} m", page.floor);
+  if (page.floor > mark) return fmt::format("truth known to {} m", few_digits(page.floor, 1));
   double least = std::numeric_limits<double>::infinity();
   const report::CostCurve* best = page.curves.empty() ? nullptr : &page.curves.front();
   for (const report::CostCurve& curve : page.curves)
@@ -110,7 +110,7 @@ std::string least_of(const std::vector<PeerRow>& rows, const std::string& bench,
   for (const PeerRow& row : rows)
     if (row.bench == bench && (row.engine == kOurs) != of_others && row.done)
       least = std::min(least, row.error);
-  return std::isfinite(least) ? fmt::format("\u2013 (least {:.0e})", least)
+  return std::isfinite(least) ? fmt::format("\u2013 (least {})", few_digits(least, 1))
                               : "\u2013 (does not finish)";
 }
 

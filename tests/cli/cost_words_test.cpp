@@ -65,6 +65,7 @@ TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
   for (const char* words : {"Bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches",
                             "Closed form (ball, plane) has an error of"})
     EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
+  EXPECT_FALSE(holds(said.out, "e-0")) << said.out;  // 1e-9, not 1e-09
   EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));
 }
 
