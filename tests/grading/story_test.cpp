@@ -54,6 +54,10 @@ TEST(Told, NothingIsSubtractedFromWhatIsNoNumber) {
   }
   EXPECT_TRUE(
       holds(told_by([] { expect_near(1.5, 1.0, 0.0, "s", {}); }), "off by:   0.5 s (allowed 0 s)"));
+  EXPECT_TRUE(holds(told_by([] { expect_near(2.0, 1.0, 0.0, "calls of the gap", {}); }),
+                    "off by:   1 (allowed 0)"));
+  EXPECT_TRUE(holds(told_by([] { expect_near(1.5, 1.0, 0.0, "N (sum)", {}); }),
+                    "off by:   0.5 N (allowed 0 N)"));
   EXPECT_TRUE(holds(told_by([] { expect_near(1.5, 1.0, 0.0, "(unit)", {}); }),
                     "off by:   0.5 (allowed 0)"));
   EXPECT_TRUE(

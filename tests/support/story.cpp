@@ -1,5 +1,7 @@
 #include "tests/support/story.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -110,10 +112,22 @@ Mistake slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected
 
 namespace {
 
+// What symbols of a unit there are: "N" of "N (sum of the lower four)", none of "calls of the gap".
+std::string symbols_of(const std::string& unit) {
+  constexpr int kSymbol = 3;  // letters: kg, rad
+  const std::string symbols = unit.substr(0, std::min(unit.find(" ("), unit.size()));
+  if (symbols.starts_with('(')) return "";
+  int letters = 0;
+  for (const char c : symbols) {
+    letters = std::isalpha(static_cast<unsigned char>(c)) != 0 ? letters + 1 : 0;
+    if (letters > kSymbol) return "";
+  }
+  return symbols;
+}
+
 // "1e-3 m (allowed 1e-9 m)"; empty where nothing can be subtracted.
 std::string off_by(double difference, double tolerance, double scale, const std::string& unit) {
-  // "(unit)" and the like are words about the numbers, and no unit
-  const std::string with_unit = unit.empty() || unit.front() == '(' ? "" : ' ' + unit;
+  const std::string symbols = symbols_of(unit), with_unit = symbols.empty() ? "" : ' ' + symbols;
   return std::isfinite(difference)
              ? show(difference) + with_unit + allowance(tolerance, scale, with_unit)
              : "";
