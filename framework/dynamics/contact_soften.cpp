@@ -3,6 +3,7 @@
 #include "framework/dynamics/contact_newton.h"
 
 #include <cmath>
+#include <limits>
 
 #include "framework/dynamics/contact_cone.h"
 
@@ -175,7 +176,8 @@ bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, P
   bool there = false;
   for (int i = 0; i < kMostSteps && !there; ++i) {
     const std::vector<Vector6d> gradient = problem.gradient(y, &matrix);
-    there = dot(gradient, gradient) <= kSmall * kSmall * (dot(y, y) + 1e-30);
+    there = dot(gradient, gradient) <=
+            kSmall * kSmall * (dot(y, y) + std::numeric_limits<double>::min());
     if (there || !matrix.factorise()) break;
     ++progress.factorisations;
     std::vector<Vector6d> direction = gradient;
