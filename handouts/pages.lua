@@ -64,6 +64,40 @@ local function one_of_each_id(document)
   end }
 end
 
+-- A browser may break a line on either side of a formula: its brackets, quotes and full stop stay with it.
+local function beside_formulas(inlines)
+  if latex then return nil end
+  local kept, i = pandoc.List {}, 1
+  local opens = function(text) return text:match '[%(%[]$' or text:match '\u{201c}$' or text:match '\u{2018}$' end
+  local closes = function(text) return text:match '^[%.,:;!%?%)%]]' or text:match '^\u{201d}' or text:match '^\u{2019}' end
+  while i <= #inlines do
+    local first, run = i, pandoc.List {}
+    if inlines[i].t == 'Str' and opens(inlines[i].text) and inlines[i + 1] and inlines[i + 1].t == 'Math' then i = i + 1 end
+    if inlines[i].t == 'Math' and inlines[i].mathtype == 'InlineMath' and inlines[i + 1] and inlines[i + 1].t == 'Str' and
+       closes(inlines[i + 1].text) then i = i + 1 end
+    for k = first, i do run:insert(inlines[k]) end
+    kept:extend(#run > 1 and { pandoc.Span(run, { class = 'together' }) } or run)
+    i = i + 1
+  end
+  return kept
+end
+
+-- Nor is an option broken behind its hyphens; a name breaks behind an underscore, a path behind a slash.
+local function escaped(text) return (text:gsub('[&<>]', { ['&'] = '&amp;', ['<'] = '&lt;', ['>'] = '&gt;' })) end
+local function whole_options(text)
+  return (escaped(text):gsub('%-%-%w[%w-]*', '\1%0\2'))
+end
+local function spans(text) return (text:gsub('\1', '<span class="together">'):gsub('\2', '</span>')) end
+local function command(element)
+  if latex or (#element.text < 12 and not element.text:match '%-%-%w') then return nil end
+  local text = whole_options(element.text):gsub('[/_]', '%0<wbr>'):gsub('::', '%0<wbr>')
+  return pandoc.RawInline('html', '<code>' .. spans(text) .. '</code>')
+end
+local function commands(element)
+  if latex or #element.classes > 0 or not element.text:match '%-%-%w' then return nil end
+  return pandoc.RawBlock('html', '<pre><code>' .. spans(whole_options(element.text)) .. '</code></pre>')
+end
+
 -- A long command or path may break where a reader would break it.
 local kEscapes = { ['\\'] = '\\textbackslash{}', ['{'] = '\\{', ['}'] = '\\}', ['$'] = '\\$', ['&'] = '\\&', ['%'] = '\\%', ['#'] = '\\#', ['_'] = '\\_', ['^'] = '\\^{}', ['~'] = '\\textasciitilde{}', ['-'] = '-{}' }
 local function code(element)
@@ -76,6 +110,15 @@ end
 local function columns(element)
   if not latex then
     for i, spec in ipairs(element.colspecs) do element.colspecs[i] = { spec[1], nil } end
+    for _, body in ipairs(element.bodies) do
+      for _, row in ipairs(body.body) do
+        for _, cell in ipairs(row.cells or row[2]) do   -- on a phone a sentence is wider than a word, "1, 2, 2, 4" is one line
+          local words = pandoc.utils.stringify(pandoc.Div(cell.contents or cell[5] or {}))
+          local letters, classes = utf8.len(words) or #words, (cell.attr or cell[1]).classes
+          if letters > 24 then classes:insert 'long' elseif letters <= 12 then classes:insert 'short' end
+        end
+      end
+    end
     return element
   end
   local longest = {}
@@ -100,6 +143,7 @@ return {
       alone = meta.alone ~= nil
     end },
   { RawInline = anchor, RawBlock = function(element) return panel(element) or anchor(element) end, Link = link, Table = columns },
+  { Inlines = beside_formulas, Code = command, CodeBlock = commands },
   { Code = code },   -- after the columns, which count its letters
   { Pandoc = title },
   { Pandoc = one_of_each_id },

@@ -30,6 +30,9 @@ for handout in "$root"/handouts/*.md; do
   wide=$(awk '/^```/ { in_code = !in_code; next } in_code && length($0) > 122 { print FILENAME ":" NR }' "$handout")   # what a line of the PDF holds
   [ -z "$wide" ] || fail "code runs over the margin of the page: $wide"
   if grep -Eq '<(img|script|link)[^>]*(src|href)="(https?:)?//' "$page"; then fail "$page asks for something from the network"; fi
+  loose=$({ grep -Eo '</math>[].,:;!?)][^ <]*(</span>)?' "$page" || true; } | grep -v '</span>$' | head -1 || true)
+  [ -z "$loose" ] || fail "$page may break a line between a formula and what follows it: $loose"
+  if grep -Eq '<code>[^<]*--[a-z]' "$page"; then fail "$page may break a line behind the hyphens of an option"; fi
   for anchor in $(grep -o '<a id="[^"]*"' "$handout" | cut -d'"' -f2); do
     grep -q "id=\"$anchor\"" "$page" || fail "$page has lost #$anchor"
   done
