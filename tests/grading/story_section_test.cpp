@@ -36,6 +36,17 @@ TEST(Story, IsTakenApart) {
   EXPECT_EQ(parts.terms[5].value, "6 N s");
 }
 
+// A terminal pads numbers to stand below each other; in a table they are as elsewhere on the page.
+TEST(Story, ItsRowsHaveNoBlanksThatAlignNumbers) {
+  const StoryParts parts = parts_of_story(
+      "  x-ray:    y = x\n            y, expected               (  3,   4, -10) m\n"
+      "            y, found                  (-12, 0.5,   1) m   <- the first wrong line");
+  ASSERT_EQ(parts.terms.size(), 2u);
+  EXPECT_EQ(parts.terms[0].value, "(3, 4, -10) m");
+  EXPECT_EQ(parts.terms[1].value, "(-12, 0.5, 1) m");
+  EXPECT_EQ(parts.terms[1].mark, "the first wrong line");
+}
+
 TEST(Story, KeepsLinesWithoutAName) {
   const StoryParts crash = parts_of_story("SIGSEGV, in f\n  called with: {1, 2}\nyours: 3");
   EXPECT_EQ(crash.before, "SIGSEGV, in f\n");

@@ -45,6 +45,14 @@ report::Field field_in(const std::string& line) {
 }
 
 // Name and value have two blanks between them, and a mark its arrow.
+// "(  3,   4) m": blanks that put numbers below each other in a terminal. Rows of a table have none.
+std::string unpadded(const std::string& value) {
+  std::string text;
+  for (const char letter : value)
+    if (letter != ' ' || text.empty() || (text.back() != ' ' && text.back() != '(')) text += letter;
+  return text;
+}
+
 StoryTerm term_in(const std::string& line) {
   StoryTerm term;
   std::string text = bare(line);
@@ -54,7 +62,7 @@ StoryTerm term_in(const std::string& line) {
   }
   const std::size_t gap = text.find("  ");
   term.name = text.substr(0, gap);
-  if (gap != text.npos) term.value = bare(text.substr(gap));
+  if (gap != text.npos) term.value = unpadded(bare(text.substr(gap)));
   return term;
 }
 
