@@ -96,6 +96,7 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
   monospace; font-size: .92em; }
 .story .plot-figure { float: right; width: 15rem; margin: .2rem 0 .2rem 1rem; }
 figure .label { font-weight: 600; margin: 0 0 .3rem; }
+.unbroken { white-space: nowrap; }
 figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tiles { display: flex; flex-wrap: wrap; gap: 1rem; }
 .tile { border: 1px solid var(--line); border-top: 4px solid var(--ink); padding: .6rem 1.1rem;
@@ -246,7 +247,7 @@ void Page::heading(std::string_view text, int level, std::string_view id) {
 }
 
 void Page::paragraph(std::string_view text, Look look) {
-  body_ += "<p" + class_attribute(look) + '>' + html_escape(text) + "</p>\n";
+  body_ += "<p" + class_attribute(look) + '>' + html_sentence(text) + "</p>\n";
 }
 
 void Page::links(const std::vector<Cell>& links) {
@@ -314,7 +315,7 @@ void Page::table(const Table& table) {
   body_ += "<div class=\"wide\" tabindex=\"0\"><table" +
            (classes.empty() ? "" : " class=\"" + classes + '"') + '>';
   if (!table.caption.empty())
-    body_ += "<caption><span>" + html_escape(table.caption) + "</span></caption>";
+    body_ += "<caption><span>" + html_sentence(table.caption) + "</span></caption>";
   const bool has_head = std::any_of(table.columns.begin(), table.columns.end(),
                                     [](const Column& column) { return !column.name.empty(); });
   if (has_head) body_ += "<thead><tr>";
@@ -353,7 +354,7 @@ void Page::thumbnails(const std::vector<Figure>& figures) {
 void Page::figure(const std::string& svg, const std::string& narrow, const std::string& caption) {
   body_ += narrow.empty() ? "<figure class=\"plot-figure small\">" + svg
                           : "<figure class=\"plot-figure both\">" + svg + narrow;
-  if (!caption.empty()) body_ += "<figcaption>" + html_escape(caption) + "</figcaption>";
+  if (!caption.empty()) body_ += "<figcaption>" + html_sentence(caption) + "</figcaption>";
   body_ += "</figure>\n";
 }
 

@@ -2,6 +2,7 @@
 #include "framework/report/html_text.h"
 
 #include <cstdint>
+#include <regex>
 
 namespace tumble::report {
 namespace {
@@ -64,6 +65,11 @@ void append_escaped(std::string& html, std::string_view character) {
 }
 
 }  // namespace
+
+std::string html_sentence(std::string_view text) {
+  static const std::regex with_exponent("[0-9.]+e-[0-9]+");
+  return std::regex_replace(html_escape(text), with_exponent, "<span class=\"unbroken\">$&</span>");
+}
 
 std::string html_escape(std::string_view text) {
   std::string html;

@@ -175,5 +175,15 @@ TEST(Page, AWidePlotHasANarrowOneBesideItAndASmallOneFits) {
   EXPECT_NE(html.find(".both > svg.plot:not(.narrow) { display: none; }"), std::string::npos);
 }
 
+// A browser may break a line after any hyphen, so that 9.4e-15 would read 9.4e and -15.
+TEST(Page, ANumberWithAnExponentIsKeptTogetherInASentence) {
+  Page page("T");
+  page.paragraph("off by 9.4e-15 m, <a1> one-2");
+  const std::string html = page.html();
+  EXPECT_NE(html.find("off by <span class=\"unbroken\">9.4e-15</span> m, &lt;a1&gt; one-2"),
+            std::string::npos);
+  EXPECT_NE(html.find(".unbroken { white-space: nowrap; }"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tumble::report
