@@ -103,7 +103,7 @@ report::CostCurve curve_of(const Refinement& refinement, const CostReference& re
   curve.reading =
       engines::read_refinement(refinement.method, refinement.results, reference, smooth);
   curve.counted = counted_in_words(refinement.method.counted);
-  curve.is_subject = refinement.method.name.starts_with("your ");
+  curve.is_subject = refinement.method.is_subject;
   const auto fit = engines::order_of(refinement.method, refinement.results, reference);
   if (fit && !refinement.method.controlled) curve.order = fit->order;
   double closest = std::numeric_limits<double>::infinity();

@@ -218,9 +218,12 @@ void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject)
     subject.methods.push_back(method_by_engine(word, laws, in_closed_form));
 }
 
+/// How a module's methods are called: the reference is nobody's own.
+std::string whose(const std::string& word) { return word == "reference" ? "reference" : "your"; }
+
 /// A module's own methods of integration, each with these laws.
 void add_methods(const Context& context, const modules::ModuleKind& kind, const std::string& word,
-                 const std::string& whose, const Laws& laws, CostSubject& subject) {
+                 bool is_subject, const Laws& laws, CostSubject& subject) {
   modules::AnyModule module;
   if (word == "student" || word == "reference") {
     module = load_word(context, kind, word);
@@ -232,7 +235,8 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
   }
   for (const modules::NamedMethod& named : kind.methods) {
     CostMethod method;
-    method.name = fmt::format("{} {}", whose, named.name);
+    method.name = fmt::format("{} {}", whose(word), named.name);
+    method.is_subject = is_subject;
     method.word = named.name;
     method.step_function = [step = named.step(module)](double) { return step; };
     method.order = named.order;
@@ -244,24 +248,26 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
 
 /// A module's own methods of integration, where it has some; else the scene run by all its laws.
 void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word,
-                const std::string& whose, const Laws& laws, const scene::Scene& scene,
+                bool is_subject, const Laws& laws, const scene::Scene& scene,
                 CostSubject& subject) {
   if (kind.methods.empty()) {
     const ChosenLaws chosen =
         choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
     CostMethod method = method_by_integrator(method_named("rk4"), chosen.laws);
-    method.name = fmt::format("{} {}", whose, kind.id);
+    method.name = fmt::format("{} {}", whose(word), kind.id);
+    method.is_subject = is_subject;
     subject.methods.push_back(std::move(method));
     subject.connections.insert(subject.connections.end(), chosen.connections.begin(),
                                chosen.connections.end());
     return;
   }
-  add_methods(context, kind, word, whose, laws, subject);
+  add_methods(context, kind, word, is_subject, laws, subject);
   // Steps alone do not test the module's other laws of motion: the derivative, the renormalisation.
   const ChosenLaws chosen =
       choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
   CostMethod whole;
-  whole.name = fmt::format("{} whole {}", whose, kind.id);
+  whole.name = fmt::format("{} whole {}", whose(word), kind.id);
+  whole.is_subject = is_subject;
   whole.word = kind.id;
   whole.order = kind.methods.back().order;
   whole.laws = chosen.laws;
@@ -287,8 +293,7 @@ void add_named_methods(const Context& context, const CostWords& words, const Law
   const ModuleWords named = parse_module_words(words.modules, context.registry);
   for (const modules::ModuleKind* kind : context.registry.all()) {
     const std::string word = kind->methods.empty() ? "" : named_motion(named, *kind);
-    if (!word.empty())
-      add_methods(context, *kind, word, word == "reference" ? "reference" : "your", laws, subject);
+    if (!word.empty()) add_methods(context, *kind, word, word != "reference", laws, subject);
   }
 }
 
@@ -365,9 +370,9 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
     subject.note =
         "This module runs in the sandbox, where each call and each derivative costs some "
         "microseconds more: compare its force evaluations, not its CPU time.";
-  add_module(context, kind, word, "your", right.laws, subject.scene, subject);
+  add_module(context, kind, word, true, right.laws, subject.scene, subject);
   if (has_reference && word != "reference")
-    add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
+    add_module(context, kind, "reference", false, right.laws, subject.scene, subject);
   if (!kind.methods.empty())
     subject.methods.push_back(method_by_integrator(method_named("dopri5"), right.laws));
   return subject;

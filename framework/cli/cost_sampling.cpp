@@ -104,17 +104,17 @@ Sampling functions_of(const Context& context, const modules::ModuleKind& kind,
   return sampler.functions(sandboxed.search.module);
 }
 
-std::vector<Trial> ways_of(const Sampling& yours) {
+std::vector<Trial> ways_of(const Sampling& yours, const std::string& whose) {
   std::vector<Trial> ways(5);
   for (Trial& way : ways) way.by = yours;
-  ways[0].name = "your chain, tempered, mixed proposal";
-  ways[1].name = "your chain, tempered, plain proposal";
+  ways[0].name = whose + " chain, tempered, mixed proposal";
+  ways[1].name = whose + " chain, tempered, plain proposal";
   ways[1].has_wide_steps = false;
-  ways[2].name = "your chain, tempered, mixed, steps of a third";
+  ways[2].name = whose + " chain, tempered, mixed, steps of a third";
   ways[2].step_factor = kFewerSteps;
-  ways[3].name = "your chain, tempered, mixed, three times the steps";
+  ways[3].name = whose + " chain, tempered, mixed, three times the steps";
   ways[3].step_factor = kLargerSteps;
-  ways[4].name = "your chain, hard, plain proposal";
+  ways[4].name = whose + " chain, hard, plain proposal";
   ways[4].has_wide_steps = false;
   ways[4].is_hard = true;
   return ways;
@@ -234,7 +234,7 @@ std::vector<std::string> readings_of(const std::vector<Trial>& ways, const Answe
   const Trial& brute = ways.back();
   const Trial* best = nullptr;
   for (const Trial& way : ways)
-    if (way.name.starts_with("your") && !way.points.empty() &&
+    if (way.is_chain() && !way.points.empty() &&
         (best == nullptr ||
          sampling::price_of(way.points, kMark) < sampling::price_of(best->points, kMark)))
       best = &way;
@@ -309,7 +309,7 @@ void cost_of_sampling(Context& context, const modules::ModuleKind& kind, const C
       std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   // Errors are judged by right functions where there are some.
   const Sampling judge = has_reference ? functions_of(context, kind, "reference", subject) : yours;
-  std::vector<Trial> ways = ways_of(yours);
+  std::vector<Trial> ways = ways_of(yours, word == "reference" ? "reference" : "your");
   if (has_reference && word != "reference") {
     ways.emplace_back();
     ways.back().name = "reference, tempered, mixed proposal";

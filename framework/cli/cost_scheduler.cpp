@@ -166,7 +166,7 @@ std::vector<Way> methods_of(const Context& context, const modules::ModuleKind& k
   const std::string word = words.modules.empty() ? "student" : words.modules;
   const bool has_reference =
       std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
-  std::vector<Way> ways{{{"your scheduler", false, {}, {}},
+  std::vector<Way> ways{{{word == "reference" ? "reference scheduler" : "your scheduler", false, {}, {}},
                          kind.id + "=" + word,
                          "tw",
                          word != "student" && word != "reference"}};

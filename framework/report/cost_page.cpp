@@ -74,10 +74,11 @@ Plot plot_of_energy(const CostPage& page) {
   return plot;
 }
 
-/// With hyphens that do not break: "tolerance 1e-08" stays on one line.
+/// With hyphens and blanks that do not break: "tolerance 1e-08" and "1/240 s" stay on one line.
 std::string unbroken(const std::string& fineness) {
   std::string kept;
-  for (const char letter : fineness) kept += letter == '-' ? "\u2011" : std::string(1, letter);
+  for (const char letter : fineness)
+    kept += letter == '-' ? "\u2011" : letter == ' ' ? "\u00a0" : std::string(1, letter);
   return kept;
 }
 

@@ -191,9 +191,12 @@ TEST_F(CommandLine, CostOfAnAssignmentReadsItsMethods) {
       "1e-6 --budget-s 1");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(std::regex_search(
-      said.out, std::regex("Your rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
+      said.out,
+      std::regex("Reference rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
       << said.out;
-  EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "your rk4"));
+  EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "reference rk4"))
+      << "the reference is nobody's own, and its sentence is at the head";
+  EXPECT_FALSE(holds(said.out, "our rk4")) << said.out;
 }
 
 TEST_F(CommandLine, CostOfChainsReadsEachProposalBesideBruteForce) {
