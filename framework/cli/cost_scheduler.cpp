@@ -166,7 +166,8 @@ std::vector<Way> methods_of(const Context& context, const modules::ModuleKind& k
   const std::string word = words.modules.empty() ? "student" : words.modules;
   const bool has_reference =
       std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
-  std::vector<Way> ways{{{word == "reference" ? "reference scheduler" : "your scheduler", false, {}, {}},
+  const char* subject = word == "reference" ? "reference scheduler" : "your scheduler";
+  std::vector<Way> ways{{{subject, false, {}, {}},
                          kind.id + "=" + word,
                          "tw",
                          word != "student" && word != "reference"}};

@@ -89,6 +89,7 @@ ul { margin: .4rem 0; padding-left: 1.4rem; }
 .fields { display: grid; grid-template-columns: minmax(4.7rem, max-content) minmax(0, 1fr);
   gap: .15rem .9rem; margin: 0; } .fields dt { color: var(--soft); }
 .fields dd { margin: 0; white-space: pre-wrap; overflow-wrap: anywhere; }
+.fields dd a { white-space: normal; }
 .story .wide { margin: .4rem 0 0; } .story table { font-size: .88rem; }
 .story td.bad { min-width: 13rem; }
 .story td { padding: .18rem .6rem .18rem 0; } .story td:first-child { white-space: nowrap; }
@@ -120,7 +121,7 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; }
   /* a table wider than the page scrolls, and its caption stays */
   caption span { display: inline-block; position: sticky; left: 0; max-width: calc(100vw - 3rem); }
-  th, td { padding: .3rem .5rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
+  th, td { padding: .3rem .35rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; }
   .story table, .story tbody, .story tr, .story td,
   .blocks, .blocks tbody, .blocks tr, .blocks td { display: block; }
@@ -175,7 +176,7 @@ std::string linked_within(std::string_view text, const std::vector<Cell>& links)
     for (const Cell& link : links)
       if (const auto found = text.find(link.text); !link.text.empty() && found < at)
         at = found, next = &link;
-    html += html_escape(text.substr(0, at));
+    html += html_sentence(text.substr(0, at));
     if (next != nullptr) html += linked(*next);
     text.remove_prefix(next == nullptr ? at : at + next->text.size());
   }
@@ -243,7 +244,7 @@ void Page::heading(std::string_view text, int level, std::string_view id) {
   require(level >= 2 && level <= 4, "report: a heading's level is 2, 3 or 4");
   const std::string tag = "h" + std::to_string(level);
   body_ += '<' + tag + (id.empty() ? "" : " id=\"" + html_escape(id) + '"') + '>' +
-           html_escape(text) + "</" + tag + ">\n";
+           html_heading(text) + "</" + tag + ">\n";
 }
 
 void Page::paragraph(std::string_view text, Look look) {

@@ -71,6 +71,19 @@ std::string html_sentence(std::string_view text) {
   return std::regex_replace(html_escape(text), with_exponent, "<span class=\"unbroken\">$&</span>");
 }
 
+std::string html_heading(std::string_view text) {
+  constexpr std::size_t kLetters = 24;  // of a heading on a phone
+  std::string html, word;
+  for (const char letter : html_escape(text) + ' ') {
+    word += letter;
+    if (letter != ' ') continue;
+    if (word.size() > kLetters) word = std::regex_replace(word, std::regex("_"), "_<wbr>");
+    html += word;
+    word.clear();
+  }
+  return html.substr(0, html.size() - 1);
+}
+
 std::string html_escape(std::string_view text) {
   std::string html;
   html.reserve(text.size());

@@ -15,6 +15,9 @@ std::string html_escape(std::string_view text);
 /// The same for a sentence: a number such as 9.4e-15 is not broken at its hyphen.
 std::string html_sentence(std::string_view text);
 
+/// The same for a heading: a name too long for the line of a phone breaks behind an underscore.
+std::string html_heading(std::string_view text);
+
 /// A file's path, relative to the page, as a link: every byte outside [A-Za-z0-9._~/-] as %XX.
 std::string link_to(const std::filesystem::path& relative);
 

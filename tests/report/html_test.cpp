@@ -183,6 +183,17 @@ TEST(Page, ANumberWithAnExponentIsKeptTogetherInASentence) {
   EXPECT_NE(html.find("off by <span class=\"unbroken\">9.4e-15</span> m, &lt;a1&gt; one-2"),
             std::string::npos);
   EXPECT_NE(html.find(".unbroken { white-space: nowrap; }"), std::string::npos);
+  Page story("T");
+  story.fields({{"off by", "2 N s (allowed 3e-14 N s)"}});
+  EXPECT_NE(story.html().find("<span class=\"unbroken\">3e-14</span> N s"), std::string::npos);
+}
+
+TEST(Page, ALongNameBreaksBehindAnUnderscoreInAHeading) {
+  Page page("T");
+  page.heading("In collision_impulse_without_rotation: e, in rk4_step too", 3);
+  EXPECT_NE(page.html().find("<h3>In collision_<wbr>impulse_<wbr>without_<wbr>rotation: e, in "
+                             "rk4_step too</h3>"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ report::Field field_in(const std::string& line) {
 }
 
 // Name and value have two blanks between them, and a mark its arrow.
-// "(  3,   4) m": blanks that put numbers below each other in a terminal. Rows of a table have none.
+// "(  3,   4) m": blanks that put numbers below each other in a terminal. Rows of a table have
+// none.
 std::string unpadded(const std::string& value) {
   std::string text;
   for (const char letter : value)
