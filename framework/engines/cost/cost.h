@@ -38,8 +38,8 @@ inline constexpr double kGrowth = 2.2, kLeastGrowth = 1.2;
 
 /// One curve: all choices about a run except its resolution.
 struct CostMethod {
-  std::string name;  // "RK4"
-  std::string word;  // its word in a flag
+  std::string name;         // "RK4"
+  std::string word;         // its word in a flag
   bool is_subject = false;  // of the module that is measured, whoever wrote it
   std::string engine = "rd", propagator = "laws";
   // in place of the laws' integration; empty: theirs, or a closed form
