@@ -109,11 +109,11 @@ class LiveRun final : public TrajectorySink {
   void send(RecordKind kind, std::string_view bytes) const {
     if (!write_record(records_, kind, bytes)) throw PageIsGone{};
   }
+  void send_asked(bool is_now);
 
  private:
   void send_head(const Frame& first);
   void send_times(const VirtualTimes& times, std::size_t from);
-  void send_asked(bool is_now);
   void keep_pace(double time);
   void obey_waiting();
   void obey(const std::string& line);
@@ -431,6 +431,7 @@ void simulate(Simulation& simulation, int commands, int records) {
                                               {"problem", error.problem()},
                                               {"remedy", error.remedy()}}));
     } catch (const NotImplemented& missing) {
+      run.send_asked(true);  // for that function, too
       run.send(RecordKind::kRefused, line_of({{"where", missing.function()},
                                               {"problem", missing.what()},
                                               {"remedy", ""},

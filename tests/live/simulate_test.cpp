@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
 #include "framework/live/history.h"
 #include "framework/live/recipe.h"
 #include "framework/live/records.h"
@@ -74,11 +75,13 @@ class Running {
  public:
   explicit Running(const live::Recipe& recipe, double speed = 1e30, bool paused = false,
                    std::shared_ptr<const VirtualTimes> times = nullptr,
-                   std::function<std::string()> asked = {}) {
+                   std::function<std::string()> asked = {},
+                   const std::function<void(Laws&)>& change = {}) {
     simulation_.times = std::move(times);
     simulation_.asked = std::move(asked);
     simulation_.scene = scene::parse_scene(live::document_of(recipe), "two_boxes.json");
     simulation_.laws = laws_for_hands();
+    if (change) change(simulation_.laws);
     simulation_.options.engine = "rd";
     simulation_.speed = speed;
     simulation_.is_paused = paused;
@@ -413,6 +416,26 @@ TEST(LiveRun, WhatItHasAskedOfTheModulesIsSentWhenItChangesAndAtTheEnd) {
     last = record->bytes;
   }
   EXPECT_EQ(last, "[8]");
+}
+
+// Else the page says that the run asks nothing of the assignment, beside the name of the function
+// that is yet to be written.
+TEST(LiveRun, AFunctionThatEndsItBecauseItIsYetToBeWrittenWasAskedFor) {
+  const auto calls = std::make_shared<std::atomic<int>>(0);
+  Running run(
+      recipe_with({}), 1e30, false, nullptr, [calls] { return "[" + std::to_string(*calls) + "]"; },
+      [calls](Laws& laws) {
+        laws.renormalize = [calls](const Quaterniond& q) {
+          if (++*calls == 3) throw NotImplemented("renormalize", "a2_integration.md");
+          return q;
+        };
+      });
+  std::string last;
+  while (auto record = run.next()) {
+    if (record->kind == RecordKind::kRefused) break;
+    if (record->kind == RecordKind::kAsked) last = record->bytes;
+  }
+  EXPECT_EQ(last, "[3]");
 }
 
 }  // namespace
