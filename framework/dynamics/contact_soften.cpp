@@ -3,7 +3,6 @@
 #include "framework/dynamics/contact_newton.h"
 
 #include <cmath>
-#include <limits>
 
 #include "framework/dynamics/contact_cone.h"
 
@@ -159,6 +158,17 @@ void take_over(const SoftProblem& problem, const std::vector<Vector6d>& y, const
   goal.measure(progress);
 }
 
+/// What rounding leaves of the gradient where impulses of this size cancel in y, as in a pile at
+/// rest. In units of y.
+double gradient_rounding(const System& system, const Impulses& impulses) {
+  double squares = 0;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i)
+    squares += system.contacts[i].inverse_effective_mass * impulses.contacts[i].squaredNorm();
+  for (std::size_t i = 0; i < system.rows.size(); ++i)
+    squares += system.rows[i].inverse_effective_mass * impulses.rows[i] * impulses.rows[i];
+  return rounding_of(std::sqrt(squares));
+}
+
 }  // namespace
 
 bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress) {
@@ -173,11 +183,12 @@ bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, P
     if (system.contacts[i].is_frictional())
       problem.shifts[i] =
           system.contacts[i].friction * contact_velocity(system.contacts[i], y).tail<2>().norm();
+  const double rounding = gradient_rounding(system, progress.impulses);
   bool there = false;
   for (int i = 0; i < kMostSteps && !there; ++i) {
     const std::vector<Vector6d> gradient = problem.gradient(y, &matrix);
-    there = dot(gradient, gradient) <=
-            kSmall * kSmall * (dot(y, y) + std::numeric_limits<double>::min());
+    const double left = dot(gradient, gradient);
+    there = left <= kSmall * kSmall * dot(y, y) || left <= rounding * rounding;
     if (there || !matrix.factorise()) break;
     ++progress.factorisations;
     std::vector<Vector6d> direction = gradient;
