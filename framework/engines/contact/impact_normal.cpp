@@ -22,8 +22,8 @@ Vector3d normal_of_impact(const MeetingBodies& bodies, const collision::Gap& gap
       normals.begin(), normals.end(), [&](const Vector3d& n) { return rate.dot(n) < -threshold; });
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& n : normals) sum += n;
-  constexpr double kNone =
-      0.1;  // of two directions that are opposite, of a plate without thickness
+  // of a plate without thickness two opposite directions keep the bodies apart
+  constexpr double kNone = 0.1;
   if (normals.empty() || !all_approach || !(sum.norm() > kNone)) return gap.normal_b_to_a_world;
   return sum.normalized();
 }

@@ -140,8 +140,10 @@ bool keeps_promise(const CostMethod& method, const std::vector<CostResult>& resu
   return std::isnan(method.order) || fit->order >= method.order - kAsPromised;
 }
 
-static std::string reading_of(const CostMethod& method, const std::vector<CostResult>& results,
-                              const CostReference& reference, bool smooth) {
+namespace {
+
+std::string reading_of(const CostMethod& method, const std::vector<CostResult>& results,
+                       const CostReference& reference, bool smooth) {
   if (reference.by_numbers) return of_numbers(method, results);
   const double least = least_error(results);
   const std::string shown = few_digits(least);
@@ -184,6 +186,8 @@ static std::string reading_of(const CostMethod& method, const std::vector<CostRe
                        method.name, shown, fit->order, fit->spread);
   return of_order(method, *fit, smooth);
 }
+
+}  // namespace
 
 std::string read_refinement(const CostMethod& method, const std::vector<CostResult>& results,
                             const CostReference& reference, bool smooth) {

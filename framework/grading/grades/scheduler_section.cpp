@@ -186,7 +186,7 @@ report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
     for (const auto* sequence : {&curve.by_step, &curve.by_size})
       for (const SchedulerRun& run : *sequence) {
         std::vector<report::Cell> cells{
-            {curve.is_reference ? "reference" : "yours"},
+            {curve.name},
             {std::to_string(run.processes)},
             {fmt::format("{:.3g}", run.step_s)},
             {fmt::format("{} of {}", run.committed, run.due), "",
