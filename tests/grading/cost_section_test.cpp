@@ -1,5 +1,7 @@
 // The cost section of a graded report: sentences, counts, and the time for a module that hangs.
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 
@@ -10,6 +12,7 @@
 #include "framework/grading/course/build_submission.h"
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/grades/measure_cost.h"
+#include "framework/grading/grades/scheduler_section.h"
 
 namespace tumble::grading {
 namespace {
@@ -141,6 +144,23 @@ TEST_F(CostInAReport, EulerStepHasOrderOne) {  // the lecture's formula, which i
   EXPECT_TRUE(section.lines[0].is_right) << section.lines[0].reading;
   EXPECT_NE(section.lines[0].reading.find("as it should (1)"), std::string::npos)
       << section.lines[0].reading;
+}
+
+// The work of a wrong scheduler goes up and down with the step: its curve does not go back and
+// forth with it.
+TEST(CostOfASchedulerInAReport, CurvesGoFromLeftToRight) {
+  engines::SchedulerCurve yours{"your scheduler", false, {}, {}};
+  for (const std::uint64_t integrations : {17u, 52u, 30u, 41u}) {
+    engines::SchedulerRun run;
+    run.due = 2;
+    run.committed = 1;
+    run.integrations = integrations;
+    run.step_s = 0.1;
+    yours.by_step.push_back(run);
+  }
+  const report::Curve& curve = scheduler_plots({yours}).at(0).curves.at(0);
+  ASSERT_EQ(curve.x.size(), 4u);
+  EXPECT_TRUE(std::is_sorted(curve.x.begin(), curve.x.end()));
 }
 
 }  // namespace

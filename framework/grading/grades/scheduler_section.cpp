@@ -36,7 +36,7 @@ void place(const SchedulerCurve& whose, report::Curve curve, report::Plot& plot)
   if (curve.x.empty()) curve.name.clear();
   if (whose.is_reference && plot.curves.size() < report::kReferenceStyles)
     plot.curves.resize(report::kReferenceStyles);
-  plot.curves.push_back(std::move(curve));
+  plot.curves.push_back(report::sorted_by_x(std::move(curve)));
 }
 
 report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
