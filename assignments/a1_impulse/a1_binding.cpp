@@ -1,7 +1,7 @@
 #include "assignments/a1_impulse/a1_binding.h"
 
 #include "assignments/a1_impulse/a1_truths.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/live/showcase.h"
 
 namespace tumble::a1 {
@@ -16,7 +16,7 @@ void bind(const Module& module, Laws& laws) {
 
 void register_module(modules::Registry& registry) {
   registry.add<Module>(bind);
-  registry.set_note(Module::kId, engines::CostShowcase{"collide_off_centre_e05", 2.0, true});
+  registry.set_note(Module::kId, cost::CostShowcase{"collide_off_centre_e05", 2.0, true});
   registry.set_note(Module::kId, live::Showcase{"poked_box"});
   register_truths(registry);
 }

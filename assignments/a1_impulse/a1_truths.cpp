@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "assignments/a1_impulse/a1_impulse.h"
-#include "framework/engines/truths/comparison.h"
-#include "framework/engines/truths/module_truths.h"
+#include "framework/truths/comparison.h"
+#include "framework/truths/module_truths.h"
 
 namespace tumble::a1 {
 namespace {

@@ -1,7 +1,7 @@
 #include "assignments/a2_integration/a2_binding.h"
 
 #include "assignments/a2_integration/a2_truths.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/live/showcase.h"
 
 namespace tumble::a2 {
@@ -15,7 +15,7 @@ void bind(const Module& module, Laws& laws) {
 
 void register_module(modules::Registry& registry) {
   registry.add<Module>(bind);
-  registry.set_note(Module::kId, engines::CostShowcase{"t_handle", 1.0, true});
+  registry.set_note(Module::kId, cost::CostShowcase{"t_handle", 1.0, true});
   registry.set_note(Module::kId, live::Showcase{"t_handle"});
   registry.add_method("euler_step", 1, &Module::euler_step);
   registry.add_method("rk4_step", 4, &Module::rk4_step);

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "assignments/a2_integration/a2_integration.h"
-#include "framework/engines/truths/comparison.h"
-#include "framework/engines/truths/module_truths.h"
+#include "framework/truths/comparison.h"
+#include "framework/truths/module_truths.h"
 
 namespace tumble::a2 {
 namespace {

@@ -1,7 +1,7 @@
 #include "assignments/a3_constraints/a3_binding.h"
 
 #include "framework/effects/rod/rod.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/live/showcase.h"
 
 namespace tumble::a3 {
@@ -19,7 +19,7 @@ void bind(const Module& module, Laws& laws) {
 
 void register_module(modules::Registry& registry) {
   registry.add<Module>(bind);
-  registry.set_note(Module::kId, engines::CostShowcase{"double_pendulum", 1.0, true});
+  registry.set_note(Module::kId, cost::CostShowcase{"double_pendulum", 1.0, true});
   registry.set_note(Module::kId, live::Showcase{"drop_a_box"});
 }
 

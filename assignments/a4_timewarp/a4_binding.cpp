@@ -1,6 +1,6 @@
 #include "assignments/a4_timewarp/a4_binding.h"
 
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/live/showcase.h"
 
 namespace tumble::a4 {
@@ -14,7 +14,7 @@ void bind(const Module& module, Laws& laws) {
 
 void register_module(modules::Registry& registry) {
   registry.add<Module>(bind);
-  registry.set_note(Module::kId, engines::CostShowcase{"billiards", 6.0, true, "gas"});
+  registry.set_note(Module::kId, cost::CostShowcase{"billiards", 6.0, true, "gas"});
   registry.set_note(Module::kId, live::Showcase{"billiards"});
   registry.mark_scheduler(Module::kId);
 }

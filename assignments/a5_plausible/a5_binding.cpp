@@ -1,6 +1,6 @@
 #include "assignments/a5_plausible/a5_binding.h"
 
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/live/showcase.h"
 #include "framework/sampling/sampler.h"
 
@@ -23,7 +23,7 @@ void bind(const Module&, Laws&) {}
 void register_module(modules::Registry& registry) {
   registry.add<Module>(bind);
   registry.set_note(Module::kId, live::Showcase{"ball_into_bin"});
-  registry.set_note(Module::kId, engines::CostShowcase{"ball_into_bin"});
+  registry.set_note(Module::kId, cost::CostShowcase{"ball_into_bin"});
   registry.set_note(Module::kId, sampling::Sampler{[](const modules::AnyModule& module) {
                       return functions_of(*static_cast<const Module*>(module.get()));
                     }});

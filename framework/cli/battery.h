@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "framework/dynamics/laws.h"
-#include "framework/engines/truths/truth_case.h"
+#include "framework/truths/truth_case.h"
 #include "framework/modules/registry.h"
 #include "framework/report/battery_row.h"
 

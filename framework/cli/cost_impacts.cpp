@@ -12,8 +12,8 @@
 #include "framework/core/error.h"
 #include "framework/core/text.h"
 #include "framework/dynamics/root_methods.h"
-#include "framework/engines/truths/impact_problem.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/impact_problem.h"
+#include "framework/truths/memory_scene.h"
 
 namespace tumble::cli {
 namespace {

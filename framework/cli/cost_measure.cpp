@@ -12,8 +12,8 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
-#include "framework/engines/cost/cost.h"
-#include "framework/engines/cost/reading.h"
+#include "framework/cost/cost.h"
+#include "framework/cost/reading.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
 #include "framework/scene/words.h"
@@ -21,9 +21,9 @@
 namespace tumble::cli {
 namespace {
 
-using engines::CostMethod;
-using engines::CostReference;
-using engines::CostResult;
+using cost::CostMethod;
+using cost::CostReference;
+using cost::CostResult;
 
 constexpr double kLeastRunTime = 2.0;  // s of CPU of a run that is always allowed
 constexpr double kLeastShare = 0.2;    // the same as a fraction of a small budget
@@ -100,11 +100,10 @@ report::CostCurve curve_of(const Refinement& refinement, const CostReference& re
                            double price, bool smooth) {
   report::CostCurve curve;
   curve.name = refinement.method.name;
-  curve.reading =
-      engines::read_refinement(refinement.method, refinement.results, reference, smooth);
+  curve.reading = cost::read_refinement(refinement.method, refinement.results, reference, smooth);
   curve.counted = counted_in_words(refinement.method.counted);
   curve.is_subject = refinement.method.is_subject;
-  const auto fit = engines::order_of(refinement.method, refinement.results, reference);
+  const auto fit = cost::order_of(refinement.method, refinement.results, reference);
   if (fit && !refinement.method.controlled) curve.order = fit->order;
   double closest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < refinement.results.size(); ++k) {
@@ -150,7 +149,7 @@ bool any_gets_through(const Refinement& refinement) {
 class Refinements {
  public:
   Refinements(const CostSubject& subject, const CostReference& reference, const CostWords& words,
-              const engines::CostOptions& options)
+              const cost::CostOptions& options)
       : scene_(subject.scene),
         reference_(reference),
         words_{words.steps_s(), words.tolerances},
@@ -195,7 +194,7 @@ class Refinements {
   }
 
   void extend(std::size_t k, double share) {
-    engines::CostOptions own = options_;
+    cost::CostOptions own = options_;
     const bool first = std::none_of(refinements.begin(), refinements.end(), any_gets_through) &&
                        (reference_.by_numbers || k == 0);
     const double allowed = !first                  ? std::min(kLeastRunTime, kLeastShare * budget_)
@@ -203,7 +202,7 @@ class Refinements {
                                                    : kLongestFirst * left();
     own.most_of_run_s = std::max(allowed, std::min(left(), kLongest * share));
     if (share == 0.0) own.most_of_run_s = std::max(kLeastShare * budget_, left());
-    engines::extend_refinement(
+    cost::extend_refinement(
         scene_, refinements[k].method, reference_, share, own, words_, refinements[k].results,
         [&](const CostResult& result) {
           const std::string found =
@@ -224,9 +223,9 @@ class Refinements {
 
   bool can_go_on(std::size_t k) const {
     const Refinement& refinement = refinements[k];
-    return !refinement.results.empty() && engines::next_price(refinement.results) <= left() &&
-           !engines::refinement_is_done(scene_, refinement.method, reference_, refinement.results,
-                                        words_);
+    return !refinement.results.empty() && cost::next_price(refinement.results) <= left() &&
+           !cost::refinement_is_done(scene_, refinement.method, reference_, refinement.results,
+                                     words_);
   }
 
   /// The largest required error above the floor that no run has reached; 0: there is none.
@@ -254,7 +253,7 @@ class Refinements {
     const double mark = next_mark();
     for (std::size_t k = 0; k < refinements.size(); ++k) {
       if (!can_go_on(k)) continue;
-      const double next = engines::next_price(refinements[k].results);
+      const double next = cost::next_price(refinements[k].results);
       const std::pair<int, double> here =
           next < kTrifle * left() ? std::pair{0, next} : hope(refinements[k].results, next, mark);
       if (best && here >= least) continue;
@@ -294,9 +293,9 @@ class Refinements {
 
   const scene::Scene& scene_;
   const CostReference& reference_;
-  engines::RefinementWords words_;
+  cost::RefinementWords words_;
   double budget_;
-  engines::CostOptions options_;
+  cost::CostOptions options_;
   double until_;
   std::function<void()> each_;
 };
@@ -368,8 +367,7 @@ struct SizedWords {
 
 /// Gives a scene whose size is a parameter a size of which a run fits into the budget many times,
 /// unless the words give one.
-SizedWords with_size_that_fits(const Context& context, CostWords words,
-                               engines::CostOptions options) {
+SizedWords with_size_that_fits(const Context& context, CostWords words, cost::CostOptions options) {
   const scene::SizedScene* sized = scene::sized_scene_named(words.scene);
   if (sized == nullptr || words.n || std::filesystem::is_regular_file(words.scene))
     return {words, std::nullopt};
@@ -379,13 +377,13 @@ SizedWords with_size_that_fits(const Context& context, CostWords words,
   for (int n = sized->default_n;; n = std::max(1, n / kSmaller)) {
     words.n = n;
     const CostSubject subject = find_subject(context, words);
-    const CostReference whole = engines::by_numbers(subject.scene, options, "");
+    const CostReference whole = cost::by_numbers(subject.scene, options, "");
     fmt::print(stderr, "tumble: {} with n = {}: testing whether a run fits into {:.3g} s\n",
                words.scene, n, options.most_of_run_s);
-    const CostMethod method = engines::goes_in_closed_form(subject.scene)
+    const CostMethod method = cost::goes_in_closed_form(subject.scene)
                                   ? method_by_engine("ca", subject.truth_laws, true)
                                   : method_by_integrator(method_named("rk4"), subject.truth_laws);
-    if (n > 1 && !engines::run_at_resolution(subject.scene, method, whole, 1, kUnset, options)
+    if (n > 1 && !cost::run_at_resolution(subject.scene, method, whole, 1, kUnset, options)
                       .stopped_by.empty())
       continue;
     return {words, n == sized->default_n ? std::nullopt : std::optional<int>(sized->default_n)};
@@ -461,14 +459,14 @@ void check_with_files(const Context& context, const scene::Scene& scene, const L
   if (!std::filesystem::is_directory(folder)) return;
   for (const auto& file : find_truths(folder)) {
     const truths::Case known = read_truth(file);
-    engines::check_reference(scene, laws, truths::known_positions(scene, known),
-                             "tests/truths/" + file.filename().string(), reference);
+    cost::check_reference(scene, laws, truths::known_positions(scene, known),
+                          "tests/truths/" + file.filename().string(), reference);
   }
 }
 
 MeasuredCost measure_cost(const Context& context, const CostWords& asked, const CostSoFar& each) {
   asked.steps_s();  // refused before any run
-  engines::CostOptions options;
+  cost::CostOptions options;
   options.timewarp = engines::fast_timewarp();
   options.progress = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
   options.most_of_search_s =
@@ -480,13 +478,13 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked, const 
   if (!options.duration_s && !subject.scene.checks.empty()) options.least_share = kWorthATruth;
   std::string why;
   const std::optional<CostReference> found =
-      engines::try_reference(subject.scene, subject.truth_laws, options, why);
+      cost::try_reference(subject.scene, subject.truth_laws, options, why);
   if (!found && subject.scene.checks.empty())
     throw UserError(
         subject.scene.name,
         "there is no reference solution (" + why + "), and the scene has no numbers of its own",
         "Give it \"checks\", or a shorter --duration-s.");
-  CostReference reference = found ? *found : engines::by_numbers(subject.scene, options, why);
+  CostReference reference = found ? *found : cost::by_numbers(subject.scene, options, why);
   if (!found)
     fmt::print(stderr,
                "tumble: no reference solution ({}): runs are judged by the scene's numbers\n", why);

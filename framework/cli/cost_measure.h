@@ -33,7 +33,7 @@ MeasuredCost measure_cost(const Context& context, const CostWords& words,
 /// engine.
 /// @param laws  right ones
 void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws,
-                      engines::CostReference& reference);
+                      cost::CostReference& reference);
 
 /// The cheapest method for each error, one sentence each.
 std::vector<std::string> verdicts(const report::CostPage& page);

@@ -14,14 +14,14 @@
 #include "framework/core/error.h"
 #include "framework/dynamics/iterative_solvers.h"
 #include "framework/dynamics/root_methods.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {
 
-using engines::CostMethod;
+using cost::CostMethod;
 
 }  // namespace
 
@@ -140,7 +140,7 @@ CostMethod by_impacts(const std::string& word, const scene::Scene& scene, const 
   method.controlled = true;
   method.laws = laws;
   method.counted = "gap_evaluations";
-  if (engines::goes_in_closed_form(scene)) {
+  if (cost::goes_in_closed_form(scene)) {
     method.propagator = "auto";
   } else {
     method.step_function = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
@@ -208,12 +208,12 @@ std::vector<std::string> engines_for(const CostWords& words, CostSubject& subjec
     else
       chosen.emplace_back(word);
   }
-  if (engines::goes_in_closed_form(subject.scene)) chosen.push_back("auto");
+  if (cost::goes_in_closed_form(subject.scene)) chosen.push_back("auto");
   return chosen;
 }
 
 void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject) {
-  const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
+  const bool in_closed_form = cost::goes_in_closed_form(subject.scene);
   for (const std::string& word : engines_for(words, subject))
     subject.methods.push_back(method_by_engine(word, laws, in_closed_form));
 }
@@ -307,7 +307,7 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   subject.truth_laws = chosen.laws;
   subject.connections = chosen.connections;
   // Closed forms first: they cost little, and are complete where a budget ends early.
-  const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
+  const bool in_closed_form = cost::goes_in_closed_form(subject.scene);
   if (in_closed_form) add_engines(words, chosen.laws, subject);
   add_named_methods(context, words, chosen.laws, subject);
   for (const scene::Coordinates coordinates : coordinates_for(subject.scene, words))
@@ -342,13 +342,13 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
         kind.methods.empty()
             ? ""
             : "Its own methods: tumble cost SCENE --modules library --methods rk4,dopri5");
-  if (words.on.empty() && kind.note<engines::CostShowcase>().scene.empty())
+  if (words.on.empty() && kind.note<cost::CostShowcase>().scene.empty())
     throw UserError("tumble cost " + kind.id,
                     "no scene is known on which this assignment is measured",
                     "Name one: --on SCENE.");
   subject.scene = find_scene(
-      context, words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on, words.n);
-  if (words.on.empty()) subject.duration_s = kind.note<engines::CostShowcase>().duration_s;
+      context, words.on.empty() ? kind.note<cost::CostShowcase>().scene : words.on, words.n);
+  if (words.on.empty()) subject.duration_s = kind.note<cost::CostShowcase>().duration_s;
   const bool has_reference =
       std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   const ChosenLaws right =

@@ -7,7 +7,7 @@
 
 #include "framework/cli/module_choice.h"
 #include "framework/cli/verb.h"
-#include "framework/engines/cost/cost.h"
+#include "framework/cost/cost.h"
 
 namespace tumble::cli {
 
@@ -43,18 +43,17 @@ struct CostSubject {
   std::optional<double> duration_s;  // suitable duration; empty: the scene's
   Laws truth_laws;
   std::string note;  // remark on reading the costs; may be empty
-  std::vector<engines::CostMethod> methods;
+  std::vector<cost::CostMethod> methods;
   std::vector<std::string> not_run;                // methods left out, with the reason
   std::vector<std::shared_ptr<void>> connections;  // to sandboxes
 };
 
 /// A method of integration of the library in place of the laws' own.
-engines::CostMethod method_by_integrator(const Method& integrator, const Laws& laws);
+cost::CostMethod method_by_integrator(const Method& integrator, const Laws& laws);
 /// @param word            auto (rd with closed forms), ca, tw, ordered
 /// @param in_closed_form  for the whole scene: else there are processes, which are integrated by
 ///   RK4 with a refinement of their steps
-engines::CostMethod method_by_engine(const std::string& word, const Laws& laws,
-                                     bool in_closed_form);
+cost::CostMethod method_by_engine(const std::string& word, const Laws& laws, bool in_closed_form);
 
 /// Checks the words that name something in every scene.
 /// @throws UserError with the word that is unknown

@@ -14,7 +14,7 @@
 #include "framework/cli/sandboxed_module.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/report/cost_page.h"
 #include "framework/report/html.h"
@@ -76,7 +76,7 @@ struct Subject {
 Subject subject_of(const Context& context, const modules::ModuleKind& kind, const std::string& word,
                    const CostWords& words) {
   Subject subject;
-  const std::string name = words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on;
+  const std::string name = words.on.empty() ? kind.note<cost::CostShowcase>().scene : words.on;
   scene::Scene scene = find_scene(context, name, words.n);
   const auto spec = scene::load_sampling(scene);
   if (!spec)

@@ -13,7 +13,7 @@
 #include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/grades/scheduler_section.h"
 #include "framework/report/cost_page.h"
@@ -23,10 +23,10 @@
 namespace tumble::cli {
 namespace {
 
-using engines::SchedulerCurve;
-using engines::SchedulerReading;
-using engines::SchedulerRun;
-using engines::SchedulerRunOptions;
+using cost::SchedulerCurve;
+using cost::SchedulerReading;
+using cost::SchedulerRun;
+using cost::SchedulerRunOptions;
 
 constexpr int kSizes[] = {6, 12, 24, 48, 96};
 constexpr double kSizedDuration = 1.0;  // s
@@ -67,16 +67,15 @@ class Measuring {
       : context_(context),
         kind_(kind),
         words_(words),
-        scene_(find_scene(context,
-                          words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on,
-                          words.n)),
-        sized_(words.on.empty() ? kind.note<engines::CostShowcase>().sized_scene : ""),
+        scene_(find_scene(
+            context, words.on.empty() ? kind.note<cost::CostShowcase>().scene : words.on, words.n)),
+        sized_(words.on.empty() ? kind.note<cost::CostShowcase>().sized_scene : ""),
         until_(now_s() + words.budget()),
         steps_until_(now_s() + kOfTheFirst * words.budget()) {
     steps_ = words.steps_s();
-    if (steps_.empty()) steps_ = engines::scheduler_steps(scene_);
+    if (steps_.empty()) steps_ = cost::scheduler_steps(scene_);
     duration_s_ = words.duration_s.value_or(
-        words.on.empty() ? kind.note<engines::CostShowcase>().duration_s : scene_.duration_s);
+        words.on.empty() ? kind.note<cost::CostShowcase>().duration_s : scene_.duration_s);
   }
 
   void run(Way& way) const {
@@ -139,8 +138,7 @@ class Measuring {
 
   void one(const scene::Scene& scene, const Laws& laws, const Way& way,
            const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
-    runs.push_back(
-        engines::run_scheduler(scene, laws, trial, engines::events_due(scene, laws, trial)));
+    runs.push_back(cost::run_scheduler(scene, laws, trial, cost::events_due(scene, laws, trial)));
     const SchedulerRun& run = runs.back();
     const std::string found =
         run.is_right() ? fmt::format("{:.2f} integrations per event, {}",
@@ -263,7 +261,7 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   std::vector<SchedulerCurve> curves{ways[0].curve};
   if (ways.size() > 1 && ways[1].curve.is_reference) curves.push_back(ways[1].curve);
   const std::vector<SchedulerReading> readings =
-      engines::read_scheduler(curves[0], curves.size() > 1 ? &curves[1] : nullptr);
+      cost::read_scheduler(curves[0], curves.size() > 1 ? &curves[1] : nullptr);
   const std::string scenes =
       measuring.scene().title +
       (measuring.sized().empty()

@@ -22,9 +22,9 @@
 namespace tumble::cli {
 namespace {
 
-using engines::CostChoice;
-using engines::CostMethod;
-using engines::CostReference;
+using cost::CostChoice;
+using cost::CostMethod;
+using cost::CostReference;
 
 constexpr double kMostSearch = 40.0;         // s of CPU, of a search for an error
 constexpr double kSearchOverBudget = 4.0;    // of a search for a time: in multiples of that time
@@ -54,7 +54,7 @@ std::vector<CostMethod> methods_for(const Context& context, const scene::Scene& 
     own.laws = chosen.laws;
     return {own};
   }
-  if (engines::goes_in_closed_form(scene))
+  if (cost::goes_in_closed_form(scene))
     for (const char* word : {"ca", "tw", "auto"})
       if (std::string(word) != "tw" || engines::fast_timewarp())
         methods.push_back(method_by_engine(word, chosen.laws, true));
@@ -95,7 +95,7 @@ std::string flags_of(const CostChoice& choice) {
       choice.method.controlled ? fmt::format("--tolerance {:.3g} ", choice.tolerance) : "", step);
 }
 
-[[noreturn]] void refuse(const RunWords& words, const engines::CostChoices& found,
+[[noreturn]] void refuse(const RunWords& words, const cost::CostChoices& found,
                          const CostReference& reference) {
   if (!found.closest)
     throw UserError(asked_of(words), "no method completes a run of this scene",
@@ -135,13 +135,13 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
   const double begun = cpu_seconds();
   PlannedRun::Search search;
   search.goal = {words.accuracy_m, words.budget_s};
-  engines::CostOptions options;
+  cost::CostOptions options;
   options.timewarp = engines::fast_timewarp();
   options.duration_s = words.duration_s;
   options.frame_rate_hz = kFrameRate;
   options.shorten = false;
   options.progress = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
-  search.reference = engines::find_reference(scene, chosen.laws, options);
+  search.reference = cost::find_reference(scene, chosen.laws, options);
   check_with_files(context, scene, chosen.laws, search.reference);
   if (words.accuracy_m && search.reference.floor_m > *words.accuracy_m)
     throw UserError(asked_of(words),
@@ -154,7 +154,7 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
                           ? kMostSearch
                           : std::max(kLeastPlannedSearch, kSearchOverBudget * *words.budget_s),
                until = cpu_seconds() + most;
-  const engines::CostChoices found = engines::choose_method(
+  const cost::CostChoices found = cost::choose_method(
       scene, methods_for(context, scene, chosen, words), search.reference, search.goal, most,
       options, [&](const CostChoice& trial) {
         const std::string result =
@@ -180,7 +180,7 @@ double error_of(const PlannedRun::Search& search, const Trajectory& run) {
     while (frame != run.frames.end() && frame->time < sample.time - engines::kSameInstant) ++frame;
     if (frame == run.frames.end() || frame->time > sample.time + engines::kSameInstant)
       return std::numeric_limits<double>::quiet_NaN();
-    most = std::max(most, engines::distance_between(*frame, sample, search.reference.radii));
+    most = std::max(most, cost::distance_between(*frame, sample, search.reference.radii));
   }
   return most;
 }
@@ -251,10 +251,10 @@ PlannedRun plan_run(const Context& context, const scene::Scene& scene, const Cho
   if (words.accuracy_m || words.budget_s) {
     plan.search = look(context, scene, chosen, words);
     const CostChoice& choice = plan.search->choice;
-    engines::CostOptions options;
+    cost::CostOptions options;
     options.timewarp = engines::fast_timewarp();
-    engines::CostRun run = engines::run_of(scene, choice.method, plan.search->reference,
-                                           choice.steps, choice.tolerance, options);
+    cost::CostRun run = cost::run_of(scene, choice.method, plan.search->reference, choice.steps,
+                                     choice.tolerance, options);
     plan = {std::move(run.scene), std::move(run.laws), std::move(run.options),
             std::move(plan.search)};
     plan.options.command = context.command_line;

@@ -10,7 +10,7 @@
 #include "framework/cli/module_choice.h"
 #include "framework/cli/run_words.h"
 #include "framework/cli/verb.h"
-#include "framework/engines/cost/choice.h"
+#include "framework/cost/choice.h"
 #include "framework/scene/scene.h"
 
 namespace tumble::cli {
@@ -22,9 +22,9 @@ struct PlannedRun {
 
   /// Set where an error or a time was requested.
   struct Search {
-    engines::CostGoal goal;
-    engines::CostReference reference;
-    engines::CostChoice choice;
+    cost::CostGoal goal;
+    cost::CostReference reference;
+    cost::CostChoice choice;
     double seconds = 0.0;  // its CPU time
     bool was_cut_short = false;
   };

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "framework/engines/truths/truth_case.h"
+#include "framework/truths/truth_case.h"
 
 namespace tumble::cli {
 

@@ -13,8 +13,8 @@
 #include "framework/cli/truths_table.h"
 #include "framework/cli/verb.h"
 #include "framework/core/version.h"
-#include "framework/engines/truths/families.h"
-#include "framework/engines/truths/module_truths.h"
+#include "framework/truths/families.h"
+#include "framework/truths/module_truths.h"
 
 namespace tumble::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/engines/truths/comparison.h"
+#include "framework/truths/comparison.h"
 
 namespace tumble::cli {
 

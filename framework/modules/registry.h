@@ -45,7 +45,7 @@ struct ModuleKind : ModuleName {
   bool is_scheduler = false;
 
   /// Data about a module for a room above this one, of a type of that room (truths::ModuleTruths,
-  /// engines::CostShowcase), which is stored here without knowledge of the type.
+  /// cost::CostShowcase), which is stored here without knowledge of the type.
   /// Default-constructed where nothing was set.
   template <class Note>
   Note note() const {

@@ -13,7 +13,7 @@
 #include "framework/effects/invariants.h"
 #include "framework/effects/registry.h"
 #include "framework/effects/water/water.h"
-#include "framework/engines/cost/cost.h"
+#include "framework/cost/cost.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"
@@ -326,8 +326,8 @@ TEST(Water, GoesInNoClosedFormAndIsAbsentWhereNobodyAsks) {
   scene::Scene wet = in_water({ball("ball", 0.1, 1.0, Vector3d::Zero(), Vector3d::Zero())}, 0.1),
                dry = wet;
   dry.effects.of<effects::WaterSpec>().clear();
-  EXPECT_FALSE(engines::goes_in_closed_form(wet));
-  EXPECT_TRUE(engines::goes_in_closed_form(dry));
+  EXPECT_FALSE(cost::goes_in_closed_form(wet));
+  EXPECT_TRUE(cost::goes_in_closed_form(dry));
   EXPECT_TRUE(build_world(dry).effects.of<effects::Floating>().empty());
   EXPECT_EQ(run(dry).counters.counts.at("water_calls"), 0u);
 }

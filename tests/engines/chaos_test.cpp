@@ -2,14 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/engines/cost/cost.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/cost/cost.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/support/test_laws.h"
 
 namespace tumble::testing {
 namespace {
 
-using engines::CostOptions;
+using cost::CostOptions;
 
 /// Six balls between four walls: each collision of two multiplies an error by about three.
 scene::Scene billiard() {
@@ -31,7 +31,7 @@ scene::Scene billiard() {
 TEST(Truth, OfChaosHoldsForAWhileAndIsRefusedForLonger) {
   CostOptions options;
   std::string why;
-  const auto reference = engines::try_reference(billiard(), test_laws(), options, why);
+  const auto reference = cost::try_reference(billiard(), test_laws(), options, why);
   ASSERT_TRUE(reference) << why;
   // errors of 1e-16 grow by e per collision: some forty collisions, seconds
   EXPECT_GT(reference->duration_s, 1.0);
@@ -39,11 +39,10 @@ TEST(Truth, OfChaosHoldsForAWhileAndIsRefusedForLonger) {
   EXPECT_LE(reference->floor_m, 1e-4 * reference->scale_m);
   // half of the scene's duration is tried; the reference holds for less
   options.least_share = 0.3;
-  EXPECT_FALSE(engines::try_reference(billiard(), test_laws(), options, why))
-      << "it holds for a part";
+  EXPECT_FALSE(cost::try_reference(billiard(), test_laws(), options, why)) << "it holds for a part";
   options.least_share = 0.0;
   options.shorten = false;
-  EXPECT_THROW(engines::find_reference(billiard(), test_laws(), options), UserError);
+  EXPECT_THROW(cost::find_reference(billiard(), test_laws(), options), UserError);
 }
 
 }  // namespace

@@ -4,17 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/engines/cost/choice.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/cost/choice.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/engines/cost_scenes.h"
 
 namespace tumble::testing {
 namespace {
 
-using engines::CostChoices;
-using engines::CostMethod;
-using engines::CostOptions;
-using engines::CostReference;
+using cost::CostChoices;
+using cost::CostMethod;
+using cost::CostOptions;
+using cost::CostReference;
 
 constexpr double kFrames = 60.0;  // Hz
 
@@ -24,26 +24,26 @@ scene::Scene tumbling() { return free_top(Vector3d(3.0, 2.0, 5.0)); }
 CostReference truth_at_frames(const scene::Scene& scene) {
   CostOptions options;
   options.frame_rate_hz = kFrames;
-  return engines::find_reference(scene, library_laws(), options);
+  return cost::find_reference(scene, library_laws(), options);
 }
 
 /// @param most_s  of the search: generous, because the CPU times of a loaded machine are not tested
-CostChoices chosen(const std::vector<CostMethod>& methods, const engines::CostGoal& goal) {
-  return engines::choose_method(tumbling(), methods, truth_at_frames(tumbling()), goal, 60.0, {},
-                                [](const engines::CostChoice&) {});
+CostChoices chosen(const std::vector<CostMethod>& methods, const cost::CostGoal& goal) {
+  return cost::choose_method(tumbling(), methods, truth_at_frames(tumbling()), goal, 60.0, {},
+                             [](const cost::CostChoice&) {});
 }
 
 /// The error of a new run with the choice, against the final state in closed form.
-double error_of_the_run(const engines::CostChoice& choice) {
+double error_of_the_run(const cost::CostChoice& choice) {
   const CostReference reference = truth_at_frames(tumbling());
-  const engines::CostRun run =
-      engines::run_of(tumbling(), choice.method, reference, choice.steps, choice.tolerance, {});
+  const cost::CostRun run =
+      cost::run_of(tumbling(), choice.method, reference, choice.steps, choice.tolerance, {});
   TrajectoryRecorder recorder;
   engines::run_scene(run.scene, run.laws, run.options, recorder);
   double most = 0.0;
   for (std::size_t k = 0; k < reference.samples.size(); ++k)
-    most = std::max(most, engines::distance_between(recorder.trajectory().frames.at(k),
-                                                    reference.samples[k], reference.radii));
+    most = std::max(most, cost::distance_between(recorder.trajectory().frames.at(k),
+                                                 reference.samples[k], reference.radii));
   return most;
 }
 
@@ -111,26 +111,25 @@ scene::Scene judged_by_energy(double tolerance) {
 }
 
 TEST(ByNumbers, AnErrorIsTheShareOfWhatIsAllowed) {
-  const CostReference wide = engines::by_numbers(judged_by_energy(1e-2), {}, "none"),
-                      narrow = engines::by_numbers(judged_by_energy(1e-4), {}, "none");
+  const CostReference wide = cost::by_numbers(judged_by_energy(1e-2), {}, "none"),
+                      narrow = cost::by_numbers(judged_by_energy(1e-4), {}, "none");
   const double share =
-      engines::run_at_resolution(judged_by_energy(1e-2), method_of("euler"), wide, 4, kUnset, {})
+      cost::run_at_resolution(judged_by_energy(1e-2), method_of("euler"), wide, 4, kUnset, {})
           .error_m;
-  const engines::CostResult strict =
-      engines::run_at_resolution(judged_by_energy(1e-4), method_of("euler"), narrow, 4, kUnset, {});
+  const cost::CostResult strict =
+      cost::run_at_resolution(judged_by_energy(1e-4), method_of("euler"), narrow, 4, kUnset, {});
   EXPECT_GT(share, 0.0);
   EXPECT_NEAR(strict.error_m / share, 100.0, 1e-9);  // the tolerance is a hundredth
   EXPECT_NE(strict.worst.find("energy"), std::string::npos) << strict.worst;
-  EXPECT_LT(
-      engines::run_at_resolution(judged_by_energy(1e-4), method_of("rk4"), narrow, 4, kUnset, {})
-          .error_m,
-      1.0);
+  EXPECT_LT(cost::run_at_resolution(judged_by_energy(1e-4), method_of("rk4"), narrow, 4, kUnset, {})
+                .error_m,
+            1.0);
 }
 
 TEST(ByNumbers, WhereNothingIsAllowedAndSomethingIsThereARunIsWrong) {
-  const engines::CostResult result = engines::run_at_resolution(
-      judged_by_energy(0.0), method_of("euler"),
-      engines::by_numbers(judged_by_energy(0.0), {}, "none"), 1, kUnset, {});
+  const cost::CostResult result =
+      cost::run_at_resolution(judged_by_energy(0.0), method_of("euler"),
+                              cost::by_numbers(judged_by_energy(0.0), {}, "none"), 1, kUnset, {});
   EXPECT_TRUE(std::isinf(result.error_m)) << result.error_m;
 }
 
@@ -178,15 +177,15 @@ TEST(KnownPositions, AreThoseOfTheSameProblemOnly) {
 }
 
 TEST(KnownPositions, RaiseTheErrorFloorOfAReferenceThatMissesThem) {
-  CostReference reference = engines::find_reference(tumbling(), library_laws(), {});
+  CostReference reference = cost::find_reference(tumbling(), library_laws(), {});
   const double before = reference.floor_m;
   const Vector3d there = Vector3d(1.0, 0.0, 0.0) * 0.5;  // the top moves at 1 m/s
   // the second is after the end of the reference
-  engines::check_reference(tumbling(), library_laws(), {{0.5, 0, there}, {7.0, 0, there}}, "a file",
-                           reference);
+  cost::check_reference(tumbling(), library_laws(), {{0.5, 0, there}, {7.0, 0, there}}, "a file",
+                        reference);
   EXPECT_LT(reference.floor_m, before + 1e-14);
-  engines::check_reference(tumbling(), library_laws(), {{0.5, 0, there + Vector3d(0.0, 1e-5, 0.0)}},
-                           "a wrong file", reference);
+  cost::check_reference(tumbling(), library_laws(), {{0.5, 0, there + Vector3d(0.0, 1e-5, 0.0)}},
+                        "a wrong file", reference);
   EXPECT_NEAR(reference.floor_m, 1e-5, 1e-12);
   EXPECT_NE(reference.what.find("a wrong file"), std::string::npos) << reference.what;
 }

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "framework/engines/cost/cost.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/cost/cost.h"
+#include "framework/truths/memory_scene.h"
 
 namespace tumble::testing {
 
@@ -19,9 +19,9 @@ inline scene::Scene free_top(const Vector3d& omega_rad_s) {
   return scene;
 }
 
-inline engines::CostMethod method_of(const std::string& word) {
+inline cost::CostMethod method_of(const std::string& word) {
   const Method& integrator = method_named(word);
-  engines::CostMethod method;
+  cost::CostMethod method;
   method.name = integrator.name;
   method.step_function = [integrator](double tolerance) { return step_of(integrator, tolerance); };
   method.steps_in_units = needs_units(integrator);

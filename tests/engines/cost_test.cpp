@@ -6,17 +6,17 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/engines/cost/cost.h"
-#include "framework/engines/cost/reading.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/cost/cost.h"
+#include "framework/cost/reading.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/engines/cost_scenes.h"
 
 namespace tumble::testing {
 namespace {
 
-using engines::CostMethod;
-using engines::CostReference;
-using engines::CostResult;
+using cost::CostMethod;
+using cost::CostReference;
+using cost::CostResult;
 
 /// A box that rotates for a second, not about a principal axis, a third of a turn away from Euler's
 /// result.
@@ -25,13 +25,13 @@ scene::Scene turning() { return free_top(Vector3d(1.0, 0.5, 2.0)); }
 /// A short refinement of steps or tolerances.
 std::vector<CostResult> refinement_of(const scene::Scene& scene, const CostMethod& method,
                                       const CostReference& reference) {
-  return engines::run_refinement(scene, method, reference, 10.0, {},
-                                 {1.0 / 16, 1.0 / 32, 1.0 / 64, 1.0 / 128},
-                                 {1e-4, 1e-6, 1e-8, 1e-10}, [](const CostResult&) {});
+  return cost::run_refinement(scene, method, reference, 10.0, {},
+                              {1.0 / 16, 1.0 / 32, 1.0 / 64, 1.0 / 128}, {1e-4, 1e-6, 1e-8, 1e-10},
+                              [](const CostResult&) {});
 }
 
 TEST(Cost, ReferenceOfAFreeTopIsTheClosedFormToRoundOff) {
-  const CostReference reference = engines::find_reference(turning(), library_laws(), {});
+  const CostReference reference = cost::find_reference(turning(), library_laws(), {});
   EXPECT_NE(reference.what.find("closed form"), std::string::npos) << reference.what;
   EXPECT_EQ(reference.duration_s, 1.0);
   // Two engines, each with a few roundings of elliptic functions per sample; the scale is a metre.
@@ -40,26 +40,26 @@ TEST(Cost, ReferenceOfAFreeTopIsTheClosedFormToRoundOff) {
 
 TEST(Cost, RefinementsShowTheOrderOfTheirMethod) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   for (const char* word : {"euler", "midpoint", "rk4"}) {
     const CostMethod method = method_of(word);
     const std::vector<CostResult> results = refinement_of(scene, method, reference);
-    const auto fit = engines::order_of(method, results, reference);
+    const auto fit = cost::order_of(method, results, reference);
     ASSERT_TRUE(fit) << word;
     // w h is 1/30 in the middle of the refinement: the next term of the error is at most a tenth of
     // the first.
     EXPECT_NEAR(fit->order, method.order, 0.15) << word;
-    EXPECT_NE(engines::read_refinement(method, results, reference, true).find("as it should"),
+    EXPECT_NE(cost::read_refinement(method, results, reference, true).find("as it should"),
               std::string::npos)
-        << engines::read_refinement(method, results, reference, true);
+        << cost::read_refinement(method, results, reference, true);
     // a sentence begins with a capital letter: "Midpoint converges"
-    EXPECT_TRUE(std::isupper(engines::read_refinement(method, results, reference, true).front()));
+    EXPECT_TRUE(std::isupper(cost::read_refinement(method, results, reference, true).front()));
   }
 }
 
 TEST(Cost, AWrongStageIsReported) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   CostMethod method = method_of("rk4");
   method.name = "your rk4_step";
   method.step_function = [](double) -> StepFunction {
@@ -71,13 +71,13 @@ TEST(Cost, AWrongStageIsReported) {
     };
   };
   const std::string reading =
-      engines::read_refinement(method, refinement_of(scene, method, reference), reference, true);
+      cost::read_refinement(method, refinement_of(scene, method, reference), reference, true);
   EXPECT_NE(reading.find("a stage is wrong"), std::string::npos) << reading;
 }
 
 TEST(Cost, AWrongLawDoesNotConverge) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   CostMethod method = method_of("rk4");
   method.laws.state_derivative = [right = method.laws.state_derivative](
                                      const RigidBodyState& state, const Inertia& inertia,
@@ -85,13 +85,13 @@ TEST(Cost, AWrongLawDoesNotConverge) {
     return 0.99 * right(state, inertia, wrench);  // one per cent slower
   };
   const std::string reading =
-      engines::read_refinement(method, refinement_of(scene, method, reference), reference, true);
+      cost::read_refinement(method, refinement_of(scene, method, reference), reference, true);
   EXPECT_NE(reading.find("does not converge"), std::string::npos) << reading;
 }
 
 TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   const std::vector<CostResult> results = refinement_of(scene, method_of("dopri5"), reference);
   ASSERT_EQ(results.size(), 4u);
   EXPECT_GT(results.back().evaluations, results.front().evaluations);
@@ -101,43 +101,43 @@ TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
 
 TEST(Cost, ARefinementContinuesWhereItEnded) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   const CostMethod method = method_of("rk4");
-  const engines::RefinementWords halvings;
+  const cost::RefinementWords halvings;
   std::vector<CostResult> results;
   int progress = 0;
   const auto count = [&progress](const CostResult&) { ++progress; };
   // no time: one run each
   for (int k = 0; k < 3; ++k)
-    engines::extend_refinement(scene, method, reference, 0.0, {}, halvings, results, count);
+    cost::extend_refinement(scene, method, reference, 0.0, {}, halvings, results, count);
   ASSERT_EQ(results.size(), 3u);
   EXPECT_EQ(progress, 3);
   for (std::size_t k = 1; k < results.size(); ++k)
     EXPECT_DOUBLE_EQ(results[k].step_s, 0.5 * results[k - 1].step_s);
-  EXPECT_GT(engines::next_price(results), 0.0);
-  EXPECT_FALSE(engines::refinement_is_done(scene, method, reference, results, halvings));
-  engines::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);
-  EXPECT_TRUE(engines::refinement_is_done(scene, method, reference, results, halvings));
+  EXPECT_GT(cost::next_price(results), 0.0);
+  EXPECT_FALSE(cost::refinement_is_done(scene, method, reference, results, halvings));
+  cost::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);
+  EXPECT_TRUE(cost::refinement_is_done(scene, method, reference, results, halvings));
   const std::size_t all = results.size();
   // nothing more comes of it
-  engines::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);
+  cost::extend_refinement(scene, method, reference, 30.0, {}, halvings, results, count);
   EXPECT_EQ(results.size(), all);
 }
 
 TEST(Cost, ARunThatTakesTooLongIsStoppedAndSaysSo) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
-  engines::CostOptions hurried;
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
+  cost::CostOptions hurried;
   hurried.most_of_run_s = 0.0;
   const CostResult result =
-      engines::run_at_resolution(scene, method_of("rk4"), reference, 64, kUnset, hurried);
+      cost::run_at_resolution(scene, method_of("rk4"), reference, 64, kUnset, hurried);
   EXPECT_NE(result.stopped_by.find("it would take more than"), std::string::npos)
       << result.stopped_by;
 }
 
 TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   long evaluations = 0;
   CostMethod method = method_of("dopri5");
   method.step_function = [&](double) -> StepFunction {
@@ -147,21 +147,21 @@ TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
       return y;
     };
   };
-  engines::CostOptions hurried;
+  cost::CostOptions hurried;
   hurried.most_of_run_s = 0.0;
-  EXPECT_TRUE(engines::run_at_resolution(scene, method, reference, 1, 1e-6, hurried).took_too_long);
+  EXPECT_TRUE(cost::run_at_resolution(scene, method, reference, 1, 1e-6, hurried).took_too_long);
   EXPECT_LT(evaluations, 200);  // the clock is read every 64 evaluations
 }
 
 TEST(Cost, ARefinementEndsWhereARunTakesTooLongAndContinuesThereWithMoreTime) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   const CostMethod method = method_of("rk4");
-  engines::CostOptions hurried;
+  cost::CostOptions hurried;
   hurried.most_of_run_s = 0.0;
   std::vector<CostResult> results;
   const auto nobody = [](const CostResult&) {};
-  engines::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);
+  cost::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);
   ASSERT_TRUE(results.back().took_too_long) << results.back().stopped_by;
   // finer ones are not tried
   EXPECT_EQ(std::count_if(results.begin(), results.end(),
@@ -170,10 +170,10 @@ TEST(Cost, ARefinementEndsWhereARunTakesTooLongAndContinuesThereWithMoreTime) {
   const std::size_t all = results.size();
   const double step = results.back().step_s;
   // no more time: no run
-  engines::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);
+  cost::extend_refinement(scene, method, reference, 30.0, hurried, {}, results, nobody);
   EXPECT_EQ(results.size(), all);
   // one run: the same again
-  engines::extend_refinement(scene, method, reference, 0.0, {}, {}, results, nobody);
+  cost::extend_refinement(scene, method, reference, 0.0, {}, {}, results, nobody);
   ASSERT_EQ(results.size(), all);
   EXPECT_TRUE(results.back().stopped_by.empty()) << results.back().stopped_by;
   EXPECT_EQ(results.back().step_s, step);
@@ -190,35 +190,35 @@ CostResult result_of(double step_s, double error_m, double spent_s) {
 
 TEST(Cost, TheExpectedCostOfTheNextRunExcludesCostsThatDoNotComeFromSteps) {
   // twice the steps, and 10 % more
-  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 1.0)}), 2.2);
-  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 1.0), result_of(0.05, 0.1, 2.0)}),
+  EXPECT_DOUBLE_EQ(cost::next_price({result_of(0.1, 0.1, 1.0)}), 2.2);
+  EXPECT_DOUBLE_EQ(cost::next_price({result_of(0.1, 0.1, 1.0), result_of(0.05, 0.1, 2.0)}),
                    2.0 + 2.2 * 1.0);
-  EXPECT_DOUBLE_EQ(engines::next_price({result_of(0.1, 0.1, 2.0), result_of(0.05, 0.1, 2.0)}),
+  EXPECT_DOUBLE_EQ(cost::next_price({result_of(0.1, 0.1, 2.0), result_of(0.05, 0.1, 2.0)}),
                    1.2 * 2.0);
 }
 
 TEST(Cost, WhereStepsAreNotTheCostTheNextRunIsMuchFiner) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
   const double interval = reference.duration_s / static_cast<double>(reference.intervals);
   std::vector<CostResult> same = {result_of(interval, 0.1, 1.0),
                                   result_of(interval / 2, 0.05, 1.0)},
                           twice = {result_of(interval, 0.1, 1.0),
                                    result_of(interval / 2, 0.05, 2.0)};
   for (auto* results : {&same, &twice})
-    engines::extend_refinement(scene, method_of("rk4"), reference, 0.0, {}, {}, *results,
-                               [](const CostResult&) {});
+    cost::extend_refinement(scene, method_of("rk4"), reference, 0.0, {}, {}, *results,
+                            [](const CostResult&) {});
   EXPECT_DOUBLE_EQ(same.back().step_s, interval / 16);
   EXPECT_DOUBLE_EQ(twice.back().step_s, interval / 4);
 }
 
 TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
   const scene::Scene scene = turning();
-  const CostReference reference = engines::find_reference(scene, library_laws(), {});
-  const CostResult coarse = engines::run_at_resolution(scene, method_of("euler"), reference, 2,
-                                                       kUnset, {}),
-                   fine = engines::run_at_resolution(scene, method_of("rk4"), reference, 8, kUnset,
-                                                     {});
+  const CostReference reference = cost::find_reference(scene, library_laws(), {});
+  const CostResult coarse =
+                       cost::run_at_resolution(scene, method_of("euler"), reference, 2, kUnset, {}),
+                   fine =
+                       cost::run_at_resolution(scene, method_of("rk4"), reference, 8, kUnset, {});
   ASSERT_EQ(coarse.energy_errors.size(), reference.samples.size());
   EXPECT_GT(coarse.energy_errors.back(), 1e-4);
   EXPECT_LT(fine.energy_errors.back(), 1e-6);

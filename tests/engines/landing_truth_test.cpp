@@ -3,8 +3,8 @@
 
 #include "tests/support/places.h"
 #include "framework/effects/spring/spring.h"
-#include "framework/engines/cost/cost.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/cost/cost.h"
+#include "framework/truths/memory_scene.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/reference_laws.h"
 
@@ -18,7 +18,7 @@ TEST(Truth, OfALandingLastsToTheEndAndThreeRunsAgreeOnIt) {
   const scene::Scene scene =
       scene::load_scene(test::source_dir() + "/assignments/a3_constraints/scenes/drop_a_box.json");
   std::string why;
-  const auto reference = engines::try_reference(scene, reference_laws(), {}, why);
+  const auto reference = cost::try_reference(scene, reference_laws(), {}, why);
   ASSERT_TRUE(reference) << why;
   EXPECT_EQ(reference->duration_s, scene.duration_s) << reference->shortened_by;
   // error of the finest steps: 6e-5 m where there is time for 1/7680 s
@@ -43,10 +43,9 @@ TEST(CostReference, AReferenceWithImpactsIsAsAccurateAsTheRunsThatItJudges) {
   scene.bodies = {wall, ball};
   scene.effects.of<effects::SpringSpec>().push_back(
       {"spring", {"ball", Vector3d::Zero()}, {"", Vector3d(3, 0, 0)}, 50.0, 0.0, 3.0});
-  engines::CostOptions options;
+  cost::CostOptions options;
   options.frame_rate_hz = 60.0;
-  const engines::CostReference reference =
-      engines::find_reference(scene, reference_laws(), options);
+  const cost::CostReference reference = cost::find_reference(scene, reference_laws(), options);
   EXPECT_EQ(reference.intervals, 90) << reference.shortened_by;
   EXPECT_LE(reference.floor_m, 1e-10) << reference.what;
 }

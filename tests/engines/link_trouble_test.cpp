@@ -9,7 +9,7 @@
 #include "framework/effects/drag/drag.h"
 #include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
 

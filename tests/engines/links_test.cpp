@@ -11,7 +11,7 @@
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/spring/spring.h"
 #include "framework/engines/run.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "framework/modules/load.h"
 #include "framework/modules/registry.h"
 

@@ -11,7 +11,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/events/flight_world.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/support/whole.h"

@@ -15,7 +15,7 @@
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/rod/rod.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "framework/modules/load.h"
 #include "framework/modules/registry.h"
 #include "framework/scene/load_scene.h"

@@ -2,17 +2,17 @@
 // and one that never ends.
 #include <gtest/gtest.h>
 
-#include "framework/engines/cost/scheduler_work.h"
+#include "framework/cost/scheduler_work.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/taught_laws.h"
 
 namespace tumble::testing {
 namespace {
 
-using engines::SchedulerCurve;
-using engines::SchedulerReading;
-using engines::SchedulerRun;
-using engines::SchedulerRunOptions;
+using cost::SchedulerCurve;
+using cost::SchedulerReading;
+using cost::SchedulerRun;
+using cost::SchedulerRunOptions;
 
 constexpr int kBalls = 8;
 
@@ -42,7 +42,7 @@ SchedulerRun run_of(const Laws& laws, double most_s = 60.0) {
   SchedulerRunOptions trial;
   trial.n = kBalls;
   trial.most_s = most_s;
-  return engines::run_scheduler(scene, laws, trial, engines::events_due(scene, laws, trial));
+  return cost::run_scheduler(scene, laws, trial, cost::events_due(scene, laws, trial));
 }
 
 TEST(SchedulerWork, RightDecisionsCommitAllAndAreCounted) {
@@ -61,7 +61,7 @@ TEST(SchedulerWork, RollingBackAllBodiesIsRightAndCostlyAndTheCauseIsNamed) {
   const SchedulerCurve dear{"your scheduler", false, {}, {run_of(laws)}},
       right{"reference", true, {}, {run_of(taught_laws())}};
   ASSERT_TRUE(dear.by_size[0].is_right()) << dear.by_size[0].stopped_by;
-  const std::vector<SchedulerReading> readings = engines::read_scheduler(dear, &right);
+  const std::vector<SchedulerReading> readings = cost::read_scheduler(dear, &right);
   ASSERT_GE(readings.size(), 2u);
   EXPECT_EQ(readings[0].kind, SchedulerReading::Kind::kRight) << readings[0].text;
   EXPECT_EQ(readings[1].kind, SchedulerReading::Kind::kWasteful) << readings[1].text;

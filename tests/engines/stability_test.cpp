@@ -12,7 +12,7 @@
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/spring/spring.h"
 #include "framework/engines/stepping/stability.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {

@@ -149,9 +149,9 @@ TEST_F(CostInAReport, EulerStepHasOrderOne) {  // the lecture's formula, which i
 // The work of a wrong scheduler goes up and down with the step: its curve does not go back and
 // forth with it.
 TEST(CostOfASchedulerInAReport, CurvesGoFromLeftToRight) {
-  engines::SchedulerCurve yours{"your scheduler", false, {}, {}};
+  cost::SchedulerCurve yours{"your scheduler", false, {}, {}};
   for (const std::uint64_t integrations : {17u, 52u, 30u, 41u}) {
-    engines::SchedulerRun run;
+    cost::SchedulerRun run;
     run.due = 2;
     run.committed = 1;
     run.integrations = integrations;

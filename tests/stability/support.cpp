@@ -7,7 +7,7 @@
 #include "framework/core/files.h"
 #include "framework/core/not_implemented.h"
 #include "framework/effects/gravity/gravity.h"
-#include "framework/engines/truths/families.h"
+#include "framework/truths/families.h"
 #include "models/write_3ds.h"
 
 namespace tumble::battery {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "framework/cli/battery.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "framework/geometry/triangle_mesh.h"
 
 namespace tumble::battery {

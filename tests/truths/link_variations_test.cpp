@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/truths/made_case.h"
 #include "tests/truths/truths.h"
 

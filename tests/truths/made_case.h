@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/engines/truths/truth_case.h"
+#include "framework/truths/truth_case.h"
 
 namespace tumble::testing {
 

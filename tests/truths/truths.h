@@ -8,8 +8,8 @@
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
 #include "framework/cli/read_truth.h"
-#include "framework/engines/truths/families.h"
-#include "framework/engines/truths/module_truths.h"
+#include "framework/truths/families.h"
+#include "framework/truths/module_truths.h"
 #include "framework/modules/load.h"
 #include "framework/modules/registry.h"
 

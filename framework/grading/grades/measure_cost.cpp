@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "framework/core/text.h"
-#include "framework/engines/cost/cost.h"
-#include "framework/engines/cost/reading.h"
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/cost.h"
+#include "framework/cost/reading.h"
+#include "framework/cost/showcase.h"
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/course/laws_around.h"
 #include "framework/grading/verdicts/plain_text.h"
@@ -20,9 +20,9 @@ namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
-using engines::CostMethod;
-using engines::CostReference;
-using engines::CostResult;
+using cost::CostMethod;
+using cost::CostReference;
+using cost::CostResult;
 using modules::AnyModule;
 using modules::ModuleKind;
 
@@ -64,7 +64,7 @@ std::vector<CostMethod> methods_of(const ModuleKind& kind, const AnyModule& modu
 std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostMethod> methods,
                               const CostReference& reference,
                               const std::function<void()>& between) {
-  engines::CostOptions options;
+  cost::CostOptions options;
   options.runs = 1;
   std::vector<double> steps;
   for (int k = 0; k < kResolutions; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
@@ -73,13 +73,13 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostMethod>
     Measured measured{std::move(method), {}, "", false};
     between();
     try {
-      engines::run_refinement(scene, measured.method, reference, 0.0, options, steps, {},
-                              [&](const CostResult& result) {
-                                measured.results.push_back(result);
-                                // it hangs or crashes, and would do so again
-                                if (call_log().noted && !result.not_attempted)
-                                  throw std::runtime_error(call_log().story);
-                              });
+      cost::run_refinement(scene, measured.method, reference, 0.0, options, steps, {},
+                           [&](const CostResult& result) {
+                             measured.results.push_back(result);
+                             // it hangs or crashes, and would do so again
+                             if (call_log().noted && !result.not_attempted)
+                               throw std::runtime_error(call_log().story);
+                           });
     } catch (const std::exception& error) {
       measured.story = error.what();
     }
@@ -89,14 +89,14 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostMethod>
 }
 
 CostLine line_of(const Measured& measured, const CostReference& reference) {
-  CostLine line = line_that_says(
-      measured.story.empty()
-          ? engines::read_refinement(measured.method, measured.results, reference, true)
-          : fmt::format("{}: the refinement sequence ended early: {}", measured.method.name,
-                        measured.story));
+  CostLine line =
+      line_that_says(measured.story.empty()
+                         ? cost::read_refinement(measured.method, measured.results, reference, true)
+                         : fmt::format("{}: the refinement sequence ended early: {}",
+                                       measured.method.name, measured.story));
   line.is_attempted = measured.results.empty() || !measured.results.back().not_attempted;
   line.is_right = measured.story.empty() && line.is_attempted &&
-                  engines::keeps_promise(measured.method, measured.results, reference);
+                  cost::keeps_promise(measured.method, measured.results, reference);
   return line;
 }
 
@@ -109,7 +109,7 @@ report::Plot plot_of(const std::vector<Measured>& all, const CostReference& refe
     // the submission's colours with hollow marks
     if (measured.is_reference)
       plot.curves.resize(std::max(plot.curves.size(), report::kReferenceStyles));
-    const auto fit = engines::order_of(measured.method, measured.results, reference);
+    const auto fit = cost::order_of(measured.method, measured.results, reference);
     report::Curve curve{fit ? fmt::format("{}, order {:.2f}", measured.method.name, fit->order)
                             : measured.method.name,
                         {},
@@ -130,7 +130,7 @@ report::Plot plot_of(const std::vector<Measured>& all, const CostReference& refe
 
 fs::path scene_file(const Course& course, const ModuleKind& kind) {
   return course.root / "assignments" / kind.folder / "scenes" /
-         (kind.note<engines::CostShowcase>().scene + ".json");
+         (kind.note<cost::CostShowcase>().scene + ".json");
 }
 
 }  // namespace
@@ -148,14 +148,14 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   const ModuleKind& kind = course.registry->find(id);
   if (kind.is_scheduler) return measure_scheduler(course, kind, submission, options);
   const AnyModule reference_module = reference_of(course, kind);
-  if (!kind.note<engines::CostShowcase>().is_graded || (!reference_module && kind.methods.empty()))
+  if (!kind.note<cost::CostShowcase>().is_graded || (!reference_module && kind.methods.empty()))
     return {};
   const scene::Scene scene = scene::load_scene(scene_file(course, kind));
   const Laws right = laws_around(course, kind, kind.methods.empty() ? reference_module : nullptr,
                                  "reference", scene);
-  engines::CostOptions looking;
-  looking.duration_s = kind.note<engines::CostShowcase>().duration_s;
-  const CostReference reference = engines::find_reference(scene, right, looking);
+  cost::CostOptions looking;
+  looking.duration_s = kind.note<cost::CostShowcase>().duration_s;
+  const CostReference reference = cost::find_reference(scene, right, looking);
 
   WorkerOptions worker;
   worker.id = kind.id;

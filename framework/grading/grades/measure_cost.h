@@ -9,7 +9,7 @@
 
 namespace tumble::grading {
 
-/// Measures a module that has a showcase (engines::CostShowcase). Its calls run in the sandbox; a
+/// Measures a module that has a showcase (cost::CostShowcase). Its calls run in the sandbox; a
 /// hang or crash there ends only its own curve.
 /// @param submission  a shared object; never loaded into this process
 CostSection measure_cost(const Course& course, const std::string& id,

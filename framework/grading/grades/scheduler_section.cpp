@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/engines/cost/showcase.h"
+#include "framework/cost/showcase.h"
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/course/laws_around.h"
 #include "framework/grading/verdicts/plain_text.h"
@@ -17,10 +17,10 @@ namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
-using engines::SchedulerCurve;
-using engines::SchedulerReading;
-using engines::SchedulerRun;
-using engines::SchedulerRunOptions;
+using cost::SchedulerCurve;
+using cost::SchedulerReading;
+using cost::SchedulerRun;
+using cost::SchedulerRunOptions;
 using modules::AnyModule;
 using modules::ModuleKind;
 
@@ -106,22 +106,22 @@ class RunSequence {
   void run(const AnyModule& module, const std::string& source, const std::function<void()>& between,
            SchedulerCurve& curve) const {
     const fs::path file = course_.root / "assignments" / kind_.folder / "scenes" /
-                          (kind_.note<engines::CostShowcase>().scene + ".json");
+                          (kind_.note<cost::CostShowcase>().scene + ".json");
     const scene::Scene scene = scene::load_scene(file);
-    for (const double step : engines::scheduler_steps(scene)) {
+    for (const double step : cost::scheduler_steps(scene)) {
       SchedulerRunOptions trial;
       trial.step_s = step;
-      trial.duration_s = kind_.note<engines::CostShowcase>().duration_s;
+      trial.duration_s = kind_.note<cost::CostShowcase>().duration_s;
       between();
       if (!one(scene, module, source, trial, curve.by_step)) return;
     }
-    if (kind_.note<engines::CostShowcase>().sized_scene.empty()) return;
+    if (kind_.note<cost::CostShowcase>().sized_scene.empty()) return;
     for (const int n : kSizes) {
       SchedulerRunOptions trial;
       trial.n = n;
       trial.duration_s = kSizedDuration;
       between();
-      if (!one(scene::make_sized_scene(kind_.note<engines::CostShowcase>().sized_scene, n), module,
+      if (!one(scene::make_sized_scene(kind_.note<cost::CostShowcase>().sized_scene, n), module,
                source, trial, curve.by_size))
         return;
     }
@@ -131,9 +131,9 @@ class RunSequence {
   bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source,
            const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
     const std::size_t due =
-        engines::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
-    runs.push_back(engines::run_scheduler(scene, laws_around(course_, kind_, module, source, scene),
-                                          trial, due));
+        cost::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
+    runs.push_back(
+        cost::run_scheduler(scene, laws_around(course_, kind_, module, source, scene), trial, due));
     return !call_log().noted;  // a hang, a crash or a stub would repeat
   }
 
@@ -209,7 +209,7 @@ std::string what_a_scheduler_pays() {
 
 CostSection measure_scheduler(const Course& course, const ModuleKind& kind,
                               const fs::path& submission, const CostSectionOptions& options) {
-  if (!kind.note<engines::CostShowcase>().is_graded) return {};
+  if (!kind.note<cost::CostShowcase>().is_graded) return {};
   const RunSequence sequence(course, kind);
   if (!sequence.reference()) return {};  // nor laws for the impulses
   WorkerOptions worker;
@@ -230,10 +230,10 @@ CostSection measure_scheduler(const Course& course, const ModuleKind& kind,
       sequence.reference(), "reference", [] {}, curves[1]);
   CostSection section;
   section.scene = scene::load_scene(course.root / "assignments" / kind.folder / "scenes" /
-                                    (kind.note<engines::CostShowcase>().scene + ".json"))
+                                    (kind.note<cost::CostShowcase>().scene + ".json"))
                       .title;
   section.truth = what_a_scheduler_pays();
-  for (const SchedulerReading& reading : engines::read_scheduler(curves[0], &curves[1]))
+  for (const SchedulerReading& reading : cost::read_scheduler(curves[0], &curves[1]))
     section.lines.push_back(line_of(reading));
   section.plots = scheduler_plots(curves);
   section.tables.push_back(scheduler_table(curves));

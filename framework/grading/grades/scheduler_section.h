@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/engines/cost/scheduler_work.h"
+#include "framework/cost/scheduler_work.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/grades/cost_section.h"
 #include "framework/modules/registry.h"
@@ -22,10 +22,10 @@ CostSection measure_scheduler(const Course& course, const modules::ModuleKind& k
 /// Common parts of pages about schedulers: error against work, work against the step and against
 /// the number of processes, all runs.
 /// @param curves  the reference's last
-std::vector<report::Plot> scheduler_plots(const std::vector<engines::SchedulerCurve>& curves);
-report::Table scheduler_table(const std::vector<engines::SchedulerCurve>& curves);
+std::vector<report::Plot> scheduler_plots(const std::vector<cost::SchedulerCurve>& curves);
+report::Table scheduler_table(const std::vector<cost::SchedulerCurve>& curves);
 /// Explains the measured quantities.
 std::string what_a_scheduler_pays();
-CostLine line_of(const engines::SchedulerReading& reading);
+CostLine line_of(const cost::SchedulerReading& reading);
 
 }  // namespace tumble::grading

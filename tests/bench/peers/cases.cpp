@@ -8,7 +8,7 @@
 #include "framework/core/random.h"
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/joint/joint.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 
 namespace tumble::peers {
 namespace {

@@ -11,7 +11,7 @@
 #include "framework/dynamics/methods.h"
 #include "framework/effects/joint/joint.h"
 #include "framework/engines/run.h"
-#include "framework/engines/truths/memory_scene.h"
+#include "framework/truths/memory_scene.h"
 #include "tests/bench/peers/harness.h"
 #include "tests/engines/reference_laws.h"
 #if __has_include( \
