@@ -9,7 +9,7 @@
 #include "framework/cost/cost.h"
 #include "framework/cost/reading.h"
 #include "framework/truths/memory_scene.h"
-#include "tests/engines/cost_scenes.h"
+#include "tests/cost/cost_scenes.h"
 
 namespace tumble::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include "framework/core/error.h"
 #include "framework/cost/choice.h"
 #include "framework/truths/memory_scene.h"
-#include "tests/engines/cost_scenes.h"
+#include "tests/cost/cost_scenes.h"
 
 namespace tumble::testing {
 namespace {
