@@ -1,6 +1,5 @@
 // Impacts on bodies that rods and joints hold: the reactions of all constraints act within the
-// impact. Closed forms, in all engines and under all impact laws; and what must hold for linked
-// trees and loops drawn at random.
+// impact. Closed forms, in all engines and under all impact laws.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -9,48 +8,18 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/decompositions.h"
-#include "framework/core/random.h"
 #include "framework/dynamics/solve_contacts.h"
-#include "framework/effects/build_world.h"
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/rod/rod.h"
-#include "framework/engines/contact/impact_detection.h"
-#include "framework/engines/contact/sequential_impacts.h"
 #include "framework/engines/judging/judge.h"
-#include "tests/engines/event_scenes.h"
-#include "tests/engines/reference_laws.h"
+#include "tests/engines/linked_impacts.h"
 
-namespace tumble::testing::constrained_impacts_test {
+namespace tumble::testing::linked_impacts {
 namespace {
 
 // Closed forms of numbers of the size of 1: some hundred roundings, of the impact and of the ten
 // steps about it.
 constexpr double kRounding = 1e-12;
-
-const Laws& laws() {
-  static const Laws all = reference_laws();
-  return all;
-}
-
-/// A scene under every law of impacts.
-std::vector<std::pair<std::string, scene::Scene>> under_all_laws(const scene::Scene& scene) {
-  scene::Scene sequential = scene, simultaneous = scene;
-  sequential.contact = scene::ContactSpec{};
-  simultaneous.contact = scene::ContactSpec{};
-  simultaneous.contact->impact_law = scene::ImpactLaw::kSimultaneous;
-  return {{"without contact", scene}, {"sequential", sequential}, {"simultaneous", simultaneous}};
-}
-
-scene::Scene linked_scene(std::vector<scene::BodySpec> bodies, double e, double friction = 0.0) {
-  for (scene::BodySpec& body : bodies) {
-    body.restitution = e;
-    body.friction = friction;
-  }
-  scene::Scene scene = scene_of(std::move(bodies), 0.01);
-  scene.step_s = 0.001;
-  scene.stabilisation = scene::StabilisationSpec{};
-  return scene;
-}
 
 /// Runs it by every engine under every law. @param needs_contact  whether what does not bounce goes
 /// on pressing: without contact it would meet again and again
@@ -195,70 +164,6 @@ double held_inverse_mass(const engines::MovingWorld& moving, const std::vector<C
   return D.dot(response - inverse_mass * J.transpose() * taken_up);
 }
 
-/// One impact in a world that stands still in time.
-struct OneImpact {
-  scene::Scene scene;
-  Laws guarded_laws = laws();
-  engines::RunCounters counters;
-  engines::MovingWorld moving;
-  engines::ImpactDetection meetings;
-  engines::SequentialImpacts impacts;
-
-  explicit OneImpact(const scene::Scene& asked)
-      : scene(asked),
-        moving(build_world(scene), guarded_laws, counters),
-        meetings(moving, guarded_laws, counters),
-        impacts(guarded_laws, {1e-6, 1e-5}, counters) {
-    if (scene.contact) impacts.use_contact_rules(1e-6, scene.contact->impact_law);
-  }
-
-  engines::Resolution strike(int a, int b) {
-    const collision::Gap gap = meetings.gap({a, b});
-    const std::vector<engines::TouchingPair> pairs{
-        engines::TouchingPair{a, b, gap, meetings.touching_points({a, b}, gap)}};
-    return impacts.resolve(moving, pairs, 0);
-  }
-
-  double kinetic_energy() const {
-    double sum = 0.0;
-    for (int i = 0; i < moving.size(); ++i) {
-      if (moving.world().bodies[static_cast<std::size_t>(i)].immovable()) continue;
-      const RigidBodyState& state = moving.state(i);
-      const Inertia& inertia = moving.world().bodies[static_cast<std::size_t>(i)].inertia;
-      sum += 0.5 * inertia.inverse_mass * state.momentum_world.squaredNorm() +
-             0.5 * omega_of(state, inertia).dot(state.angular_momentum_world);
-    }
-    return sum;
-  }
-
-  std::pair<Vector3d, Vector3d> momenta() const {
-    Vector3d P = Vector3d::Zero(), L = Vector3d::Zero();
-    for (int i = 0; i < moving.size(); ++i) {
-      if (moving.world().bodies[static_cast<std::size_t>(i)].immovable()) continue;
-      P += moving.state(i).momentum_world;
-      L += moving.state(i).angular_momentum_world +
-           moving.state(i).com_world.cross(moving.state(i).momentum_world);
-    }
-    return {P, L};
-  }
-
-  double largest_rate() {
-    double rate = 0.0;
-    for (engines::LinkedBodies& group : moving.linked_groups())
-      for (const Constraint& row : group.constraint_rows(moving.states(), moving.time()))
-        rate = std::max(rate, std::abs(row.row.rate));
-    return rate;
-  }
-
-  void set_velocity(int body, const Vector3d& velocity, const Vector3d& omega) {
-    RigidBodyState state = moving.state(body);
-    const Inertia& inertia = moving.world().bodies[static_cast<std::size_t>(body)].inertia;
-    state.momentum_world = inertia.mass * velocity;
-    state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
-    moving.set_state(body, state);
-  }
-};
-
 // The middle of three bobs that hang on three rods from the origin, not in a row.
 TEST(ImpactsOnLinks, AChainAnswersWithAllItsBobs) {
   const std::vector<Vector3d> places{{0.6, 0, -0.8}, {0.8, 0.3, -1.7}, {0.3, 0.9, -2.2}};
@@ -372,147 +277,6 @@ TEST(ImpactsOnLinks, FrictionOnABobSlidesOrSticksWithItsRod) {
           EXPECT_TRUE(check.passed) << check.kind << ": " << check.detail;
       }
   }
-}
-
-// ---- Drawn at random ---------------------------------------------------------------------------
-
-Vector3d direction(Random& random) {
-  const double z = random.between(-1, 1), angle = random.between(0, 2 * std::numbers::pi),
-               r = std::sqrt(1 - z * z);
-  return {r * std::cos(angle), r * std::sin(angle), z};
-}
-
-/// A tree of balls and boxes linked by rods and joints of all kinds, hung from the world or free;
-/// the last body is a ball that touches one of them. With `loop` some links are there twice, and
-/// one more closes a ring.
-scene::Scene random_tree(Random& random, bool is_free, bool loop, double e, double friction) {
-  const int n = 2 + static_cast<int>(random.below(6));
-  std::vector<scene::BodySpec> bodies;
-  std::vector<Vector3d> places;
-  for (int i = 0; i < n; ++i) {
-    places.push_back(i == 0 ? Vector3d(0, 0, -1)
-                            : Vector3d(places[random.below(static_cast<std::uint64_t>(i))] +
-                                       1.5 * direction(random)));
-    const double mass = std::exp(random.between(-2, 2));
-    const std::string name = "b" + std::to_string(i);
-    if (random.unit() < 0.5)
-      bodies.push_back(ball(name, 0.2, mass, places.back(), Vector3d::Zero()));
-    else
-      bodies.push_back(box(name, {0.1, 0.2, 0.3}, mass, places.back(), Vector3d::Zero()));
-    bodies.back().world_from_body =
-        Quaterniond(Eigen::AngleAxisd(random.between(0, 3), direction(random)));
-  }
-  const int struck = static_cast<int>(random.below(static_cast<std::uint64_t>(n)));
-  // Where the ball touches: the end of the body in some direction.
-  const Vector3d way = direction(random);
-  const scene::BodySpec& body = bodies[static_cast<std::size_t>(struck)];
-  Vector3d surface = 0.2 * way;
-  if (std::holds_alternative<scene::BoxSpec>(body.shape))
-    surface = body.world_from_body *
-              Vector3d(0.1, random.between(-0.19, 0.19), random.between(-0.29, 0.29));
-  const Vector3d out = std::holds_alternative<scene::BoxSpec>(body.shape)
-                           ? Vector3d(body.world_from_body * Vector3d::UnitX())
-                           : way;
-  bodies.push_back(ball("ball", 0.15, std::exp(random.between(-2, 2)),
-                        body.position_m + surface + 0.15 * out, Vector3d::Zero()));
-  scene::Scene scene = linked_scene(bodies, e, friction);
-  const auto link = [&](const std::string& a, const std::string& b, const Vector3d& at,
-                        const Vector3d& from) {
-    const std::string name = "l" + std::to_string(scene.effects.of<effects::RodSpec>().size() +
-                                                  scene.effects.of<effects::JointSpec>().size());
-    const double kind = random.unit();
-    if (kind < 0.3)
-      scene.effects.of<effects::RodSpec>().push_back(
-          {name,
-           {a, Vector3d::Zero()},
-           {b, b.empty() ? from : Vector3d(Vector3d::Zero())},
-           (at - from).norm()});
-    else
-      scene.effects.of<effects::JointSpec>().push_back({name,
-                                                        kind < 0.55   ? effects::JointKind::kHinge
-                                                        : kind < 0.85 ? effects::JointKind::kBall
-                                                                      : effects::JointKind::kWeld,
-                                                        a, b, 0.5 * (at + from),
-                                                        direction(random)});
-  };
-  for (int i = 1; i < n; ++i) {
-    int nearest = 0;  // the one it was set beside
-    for (int k = 0; k < i; ++k)
-      if (std::abs(
-              (places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(k)]).norm() -
-              1.5) < 1e-9)
-        nearest = k;
-    link("b" + std::to_string(i), "b" + std::to_string(nearest),
-         places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(nearest)]);
-  }
-  if (!is_free) link("b0", "", places[0], Vector3d(0.1, 0, 0));
-  if (loop && n > 2) {
-    link("b" + std::to_string(n - 1), "b0", places.back(), places[0]);
-    if (!scene.effects.of<effects::JointSpec>().empty()) {
-      // the same twice: its rows are redundant
-      scene.effects.of<effects::JointSpec>().push_back(
-          scene.effects.of<effects::JointSpec>().front());
-      scene.effects.of<effects::JointSpec>().back().name = "again";
-    }
-  }
-  return scene;
-}
-
-// Momentum along what is free, energy at e = 1 without friction and never more, u_n' = -e u_n, and
-// rods and joints that hold: whatever is struck where. Also of loops, whose rows are redundant.
-TEST(ImpactsOnLinks, KeepTheirLawsInTreesAndLoopsDrawnAtRandom) {
-  Random random(11);
-  int struck = 0;
-  for (int trial = 0; trial < 600; ++trial) {
-    const bool is_free = trial % 2 == 0, loop = trial % 3 == 0;
-    const double e = trial % 4 == 0 ? 1.0 : random.unit(),
-                 friction = trial % 5 < 2 ? 0.0 : random.between(0, 1.5);
-    scene::Scene scene = random_tree(random, is_free, loop, e, friction);
-    scene.contact = scene::ContactSpec{};
-    if (trial % 7 == 0) scene.contact->impact_law = scene::ImpactLaw::kSimultaneous;
-    OneImpact impact(scene);
-    const int last = impact.moving.size() - 1;
-    int touched = -1;
-    for (int i = 0; i < last; ++i)
-      if (std::abs(impact.meetings.gap({i, last}).distance) < 1e-12) touched = i;
-    if (touched < 0) continue;
-    // Random velocities that the links allow.
-    for (int i = 0; i <= last; ++i)
-      impact.set_velocity(i, direction(random),
-                          i == last ? direction(random) : random.between(0, 1) * direction(random));
-    std::vector<RigidBodyState> states = impact.moving.states();
-    for (engines::LinkedBodies& group : impact.moving.linked_groups())
-      group.project_velocities(states, 0.0);
-    impact.moving.stand_at(0.0, states);
-    const Vector3d n = impact.meetings.gap({touched, last}).normal_b_to_a_world;
-    impact.set_velocity(last, 3.0 * n + 0.5 * direction(random), direction(random));
-
-    const double before = impact.kinetic_energy();
-    const auto [P, L] = impact.momenta();
-    const double open = impact.largest_rate();
-    const engines::Resolution result = impact.strike(touched, last);
-    ASSERT_TRUE(result.settled) << trial;
-    if (result.events.empty()) continue;
-    ++struck;
-    const Event& event = result.events.front();
-    // masses 1 : 55 and rings of seven bodies take some digits
-    const double size = std::sqrt(2 * before) + 3.0, tolerance = 1e-10 * size;
-    EXPECT_EQ(result.events.size(), 1u) << trial;
-    EXPECT_NEAR(event.normal_velocity_after, -e * event.normal_velocity_before, tolerance)
-        << trial << " law " << (trial % 7 == 0);
-    EXPECT_LT(impact.largest_rate(), open + tolerance) << trial;
-    EXPECT_LE(impact.kinetic_energy(), before * (1 + 1e-10)) << trial;
-    if (e == 1.0 && friction == 0.0) {
-      EXPECT_NEAR(impact.kinetic_energy(), before, 1e-10 * before) << trial;
-    }
-    EXPECT_LE(event.energy_excess, 1e-10) << trial;
-    EXPECT_NEAR(event.energy_change, impact.kinetic_energy() - before, 1e-10 * before) << trial;
-    if (!is_free) continue;
-    const auto [P_after, L_after] = impact.momenta();
-    EXPECT_LT((P_after - P).norm(), 1e-10 * (P.norm() + size)) << trial;
-    EXPECT_LT((L_after - L).norm(), 1e-10 * (L.norm() + 10 * size)) << trial;
-  }
-  EXPECT_GT(struck, 400);
 }
 
 // ---- What links leave no impulse to do, and what the judge sees --------------------------------
@@ -652,4 +416,4 @@ TEST(ImpactEnergy, IsJudgedAtEveryImpact) {
 }
 
 }  // namespace
-}  // namespace tumble::testing::constrained_impacts_test
+}  // namespace tumble::testing::linked_impacts
