@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/disjoint_sets.h"
 #include "framework/dynamics/split_ode.h"
 #include "framework/dynamics/state_units.h"
 #include "framework/effects/registry.h"
@@ -31,15 +30,6 @@ double path_bend(const Laws& laws) {
 
 namespace {
 
-// Newton's method doubles the digits; a step leaves few missing
-constexpr int kMostProjections = 8;
-
-Matrix3d inverse_inertia_world(const Body& body) {
-  if (body.inertia.inverse_mass == 0.0) return Matrix3d::Zero();
-  const Matrix3d R = body.world_from_body.toRotationMatrix();
-  return R * body.inertia.inverse_inertia_body * R.transpose();
-}
-
 Body body_of(const RigidBodyState& state, const Inertia& inertia) {
   return {inertia, state.com_world, state.world_from_body.normalized(),
           inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
@@ -51,48 +41,6 @@ void add_force(const Body& body, const Vector3d& force, const Vector3d& point, W
 }
 
 }  // namespace
-
-std::vector<LinkedGroup> groups_of_linked_bodies(const World& world) {
-  const int n = static_cast<int>(world.bodies.size());
-  DisjointSets sets(n);
-  std::vector<bool> linked(n, false);
-  const auto movable = [&](int body) { return body >= 0 && !world.bodies[body].immovable(); };
-  // Entry by entry: the first movable body that it names, to which it ties the others; -1 where
-  // none can move.
-  std::vector<std::pair<std::size_t, std::vector<int>>> first_bodies;  // of an effect's entries
-  for (std::size_t k = 0; k < effects::all().size(); ++k) {
-    const effects::Effect& effect = *effects::all()[k];
-    if (!effect.traits().ties || effect.count_in(world) == 0) continue;
-    std::vector<int>& first_of = first_bodies.emplace_back(k, std::vector<int>{}).second;
-    for (int entry = 0; entry < effect.count_in(world); ++entry) {
-      int first = -1;
-      for (const int body : effect.bodies_of(world, entry)) {
-        if (!movable(body)) continue;
-        linked[body] = true;
-        if (first < 0) first = body;
-        sets.unite(first, body);
-      }
-      first_of.push_back(first);
-    }
-  }
-  std::vector<int> group_of(n, -1);  // by the name of a set
-  std::vector<LinkedGroup> groups;
-  for (int i = 0; i < n; ++i) {
-    if (!linked[i]) continue;
-    int& group = group_of[sets.find(i)];
-    if (group < 0) {
-      group = static_cast<int>(groups.size());
-      groups.emplace_back();
-    }
-    groups[group].bodies.push_back(i);
-  }
-  for (const auto& [effect, first_of] : first_bodies)
-    for (std::size_t entry = 0; entry < first_of.size(); ++entry)
-      if (first_of[entry] >= 0)
-        groups[group_of[sets.find(first_of[entry])]].entries[effect].push_back(
-            static_cast<int>(entry));
-  return groups;
-}
 
 LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters,
                            OuterWrench outer_wrench, LinkedGroup group, LeftAlone left_alone)
@@ -275,11 +223,9 @@ VectorXd LinkedBodies::add_constraint_forces(const std::vector<Constraint>& all,
                                              const std::vector<RigidBodyState>& local,
                                              std::vector<Wrench>& wrenches) {
   const StageTimer timer(counters_.constraint_seconds);
-  std::vector<ConstrainedBody> constrained;
-  constrained.reserve(bodies.size());
+  std::vector<ConstrainedBody> held = constrained(bodies);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    ConstrainedBody body{bodies[i].inertia.inverse_mass, inverse_inertia_world(bodies[i]),
-                         Vector6d::Zero()};
+    ConstrainedBody& body = held[i];
     if (i < bodies_.size()) {
       const Vector3d gyroscopic = bodies[i].omega_world.cross(local[i].angular_momentum_world);
       body.free_acceleration << body.inverse_mass * wrenches[i].force_world,
@@ -289,7 +235,6 @@ VectorXd LinkedBodies::add_constraint_forces(const std::vector<Constraint>& all,
       body.free_acceleration.head<3>() =
           acceleration_of_fixed(fixed_[i - bodies_.size()], bodies[i].com_world, time_of_stage_);
     }
-    constrained.push_back(body);
   }
   VectorXd wanted = VectorXd::Zero(static_cast<Eigen::Index>(all.size()));
   if (world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kBaumgarte)
@@ -297,7 +242,7 @@ VectorXd LinkedBodies::add_constraint_forces(const std::vector<Constraint>& all,
       wanted[static_cast<Eigen::Index>(k)] = laws_.baumgarte_acceleration(
           all[k].row.value, all[k].row.rate, world_.stabilisation->time_constant_s);
   ++counters_.constraint_solves;
-  const VectorXd multipliers = laws_.constraint_multipliers(all, constrained, wanted);
+  const VectorXd multipliers = laws_.constraint_multipliers(all, held, wanted);
   if (multipliers.size() != wanted.size())
     throw StoppedRun("rods and joints (constraint_multipliers of " + laws_.source_of_links() +
                      ") returned " + std::to_string(multipliers.size()) + " multipliers for " +
@@ -387,135 +332,6 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   return local;
 }
 
-// The largest error of these rows: of a place over the group's size, which is its longest rod, its
-// farthest coordinate, and where these are near 0 its largest radius of gyration; of a direction
-// [rad] as it is, whatever the size.
-double LinkedBodies::open_part(const std::vector<Body>& bodies,
-                               const std::vector<Constraint>& rows) const {
-  double worst = 0.0, turn = 0.0, size = 0.0;
-  for (const Constraint& c : rows) {
-    double& largest = is_of_directions(c.row) ? turn : worst;
-    largest = std::isnan(c.row.value) ? c.row.value : std::max(largest, std::abs(c.row.value));
-  }
-  for (const Terms& terms : terms_) size = std::max(size, terms.acting->size());
-  for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
-  if (!(worst <= kNegligible * size))
-    for (const int body : bodies_) {
-      const Inertia& inertia = world_.bodies[static_cast<std::size_t>(body)].inertia;
-      size = std::max(size, std::sqrt(inertia.inertia_body.diagonal().maxCoeff() / inertia.mass));
-    }
-  const double part = worst == 0.0 ? 0.0 : worst / size;
-  return std::isnan(part) || std::isnan(turn) ? kUnset : std::max(part, turn);
-}
-
-std::vector<ConstrainedBody> LinkedBodies::constrained(const std::vector<Body>& bodies) {
-  std::vector<ConstrainedBody> result;
-  result.reserve(bodies.size());
-  for (const Body& body : bodies)
-    result.push_back({body.inertia.inverse_mass, inverse_inertia_world(body), Vector6d::Zero()});
-  return result;
-}
-
-VectorXd LinkedBodies::correction(const std::vector<Constraint>& rows,
-                                  const std::vector<ConstrainedBody>& bodies,
-                                  const VectorXd& error) {
-  ++counters_.constraint_corrections;
-  VectorXd change = laws_.constraint_correction(rows, bodies, error);
-  if (change.size() != 6 * static_cast<Eigen::Index>(bodies.size()))
-    throw StoppedRun("rods and joints (constraint_correction of " + laws_.source_of_links() +
-                     ") returned " + std::to_string(change.size()) +
-                     " numbers instead of 6 a body");
-  return change;
-}
-
-LinkedBodies::Instant LinkedBodies::at_instant(const std::vector<RigidBodyState>& states,
-                                               double t) try {
-  const std::vector<Body> bodies = place_bodies(take(states), t);
-  return {rows(bodies), constrained(bodies)};
-} catch (const OutOfTime&) {
-  throw;
-} catch (const StoppedRun& stop) {
-  throw StoppedRun(subject() + ": " + stop.what());
-}
-
-VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) try {
-  const StageTimer timer(counters_.constraint_seconds);
-  const auto rate = [&](int body, const Vector6d& jacobian) {
-    return jacobian.dot(change.segment<6>(6 * static_cast<Eigen::Index>(body)));
-  };
-  VectorXd error(static_cast<Eigen::Index>(instant.rows.size()));
-  for (std::size_t k = 0; k < instant.rows.size(); ++k) {
-    const auto& [a, b, row] = instant.rows[k];
-    error[static_cast<Eigen::Index>(k)] = rate(a, row.jacobian_a) + rate(b, row.jacobian_b);
-  }
-  return correction(instant.rows, instant.bodies, error);
-} catch (const OutOfTime&) {
-  throw;
-} catch (const StoppedRun& stop) {
-  throw StoppedRun(subject() + ": " + stop.what());
-}
-
-void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
-  if (!laws_.constraint_correction && goes_without_rows()) return settle_on_tree(local, t);
-  const StageTimer timer(counters_.constraint_seconds);
-  const auto correct = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all,
-                           bool of_places) {
-    VectorXd error(static_cast<Eigen::Index>(all.size()));
-    for (std::size_t k = 0; k < all.size(); ++k)
-      error[static_cast<Eigen::Index>(k)] = of_places ? all[k].row.value : all[k].row.rate;
-    return correction(all, constrained(bodies), error);
-  };
-  std::vector<Body> bodies = place_bodies(local, t);
-  std::vector<Constraint> all = rows(bodies);
-  for (int round = 0; places && round < kMostProjections; ++round) {
-    if (open_part(bodies, all) <= kCoordinateRounding) break;
-    const VectorXd change = correct(bodies, all, true);
-    for (std::size_t i = 0; i < local.size(); ++i) {
-      const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
-      // Momenta follow: the velocities stay, and with them, for a turned body, the angular velocity
-      // rather than its momentum.
-      const Vector3d omega = bodies[i].omega_world, turn = change.segment<3>(at + 3);
-      local[i].com_world += change.segment<3>(at);
-      const double angle = turn.norm();
-      if (angle > 0)
-        local[i].world_from_body =
-            (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * local[i].world_from_body)
-                .normalized();
-      local[i].angular_momentum_world =
-          angular_momentum_of(omega, local[i].world_from_body, bodies[i].inertia);
-    }
-    bodies = place_bodies(local, t);
-    all = rows(bodies);
-  }
-  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kNegligible))
-    counters_.watch.note(RunWatch::Kind::kProjectionOpen, subject(), {left, kNegligible, t, step_});
-  const VectorXd change = correct(bodies, all, false);
-  for (std::size_t i = 0; i < local.size(); ++i) {
-    const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
-    local[i].momentum_world += bodies[i].inertia.mass * change.segment<3>(at);
-    local[i].angular_momentum_world +=
-        angular_momentum_of(change.segment<3>(at + 3), local[i].world_from_body, bodies[i].inertia);
-  }
-} catch (const OutOfTime&) {
-  throw;
-} catch (const StoppedRun& stop) {
-  throw StoppedRun(subject() + ": " + stop.what());
-}
-
-void LinkedBodies::project_velocities(std::vector<RigidBodyState>& states, double t) {
-  if (!has_constraints()) return;
-  std::vector<RigidBodyState> local = take(states);
-  project_local(local, t, false);
-  put(local, states);
-}
-
-void LinkedBodies::project(std::vector<RigidBodyState>& states, double t) {
-  if (!has_constraints()) return;
-  std::vector<RigidBodyState> local = take(states);
-  project_local(local, t, true);
-  put(local, states);
-}
-
 void LinkedBodies::watch(const std::vector<RigidBodyState>& states, double t, double h) {
   // a tree's coordinates cannot open its joints
   if (!has_constraints() || (goes_without_rows() && !touched_)) return;
@@ -535,35 +351,35 @@ std::string LinkedBodies::subject() const {
   return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it";
 }
 
-void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t,
-                           const std::vector<ContactPoint>& contacts, LinkForces& measured) try {
-  const std::vector<RigidBodyState> local = take(states);
-  time_of_stage_ = t;
-  const std::vector<Body> bodies = place_bodies(local, t);
-  VectorXd multipliers;
+VectorXd LinkedBodies::multipliers_at(const std::vector<RigidBodyState>& local,
+                                      const std::vector<Body>& bodies, double t,
+                                      const std::vector<ContactPoint>& contacts) {
   const auto touches = [&](const ContactPoint& contact) {
     return has(contact.body_a) || has(contact.body_b);
   };
-  if (has_constraints() && goes_without_rows() &&
-      std::none_of(contacts.begin(), contacts.end(), touches)) {
-    multipliers = multipliers_of_tree(local, t);
-  } else if (has_constraints()) {
-    std::vector<Wrench> wrenches = forces(local, bodies);
-    if (built::kContact) add_contacts(bodies, contacts, wrenches);
-    multipliers = add_constraint_forces(rows(bodies), bodies, local, wrenches);
-  }
-  Eigen::Index at = 0;
-  for (const Terms& terms : terms_) {
-    const auto rows = static_cast<Eigen::Index>(terms.acting->row_count());
-    if (!measured.of_effects[terms.effect].empty())
-      terms.acting->measure(bodies, multipliers.segment(at, rows),
-                            measured.of_effects[terms.effect]);
-    at += rows;
-  }
-} catch (const OutOfTime&) {
-  throw;
-} catch (const StoppedRun& stop) {
-  throw StoppedRun(subject() + ": " + stop.what());
+  if (!has_constraints()) return {};
+  if (goes_without_rows() && std::none_of(contacts.begin(), contacts.end(), touches))
+    return multipliers_of_tree(local, t);
+  std::vector<Wrench> wrenches = forces(local, bodies);
+  if (built::kContact) add_contacts(bodies, contacts, wrenches);
+  return add_constraint_forces(rows(bodies), bodies, local, wrenches);
+}
+
+void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t,
+                           const std::vector<ContactPoint>& contacts, LinkForces& measured) {
+  const std::vector<RigidBodyState> local = take(states);
+  time_of_stage_ = t;
+  naming(subject(), [&] {
+    const std::vector<Body> bodies = place_bodies(local, t);
+    const VectorXd lambda = multipliers_at(local, bodies, t, contacts);
+    Eigen::Index at = 0;
+    for (const Terms& terms : terms_) {
+      const auto count = static_cast<Eigen::Index>(terms.acting->row_count());
+      if (!measured.of_effects[terms.effect].empty())
+        terms.acting->measure(bodies, lambda.segment(at, count), measured.of_effects[terms.effect]);
+      at += count;
+    }
+  });
 }
 
 // The force on A at the point, its opposite on B.
@@ -579,24 +395,6 @@ void LinkedBodies::add_contacts(const std::vector<Body>& bodies,
       add_force(bodies[place], sign * contact.force_on_a_world, contact.point_world,
                 wrenches[place]);
     }
-}
-
-LinkForces::LinkForces(const World& world) {
-  for (const effects::Effect* effect : effects::all())
-    of_effects.emplace_back(effect->measured_as() == nullptr ? 0 : effect->count_in(world));
-}
-
-void record(LinkForces forces, Frame& frame) {
-  for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
-    if (const auto kept = effects::all()[k]->measured_as())
-      frame.*kept = std::move(forces.of_effects[k]);
-}
-
-LinkForces recorded_forces(const World& world, const Frame& frame) {
-  LinkForces forces(world);
-  for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
-    if (const auto kept = effects::all()[k]->measured_as()) forces.of_effects[k] = frame.*kept;
-  return forces;
 }
 
 }  // namespace tumble::engines

@@ -24,35 +24,14 @@
 #include "framework/engines/base/effects_built.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/body_places.h"
+#include "framework/engines/stepping/link_forces.h"
+#include "framework/engines/stepping/linked_groups.h"
 
 namespace tumble::engines {
 
 /// What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2.
 /// Asked once, so that bounds hold for whichever method a student wrote. [-]
 double path_bend(const Laws& laws);
-
-/// What the links of a world pull with, by their places in its lists; zero for links of other
-/// groups. [N]
-struct LinkForces {
-  explicit LinkForces(const World& world);
-
-  // by place in effects::all(); empty of those that are not recorded
-  std::vector<std::vector<double>> of_effects;
-};
-/// Puts them where a frame keeps them.
-void record(LinkForces forces, Frame& frame);
-/// What a frame keeps of them.
-LinkForces recorded_forces(const World& world, const Frame& frame);
-
-/// Movable bodies that entries of effects tie together, and these entries.
-struct LinkedGroup {
-  std::vector<int> bodies;  // ascending
-  // by place in effects::all(); ascending, one at least
-  std::map<std::size_t, std::vector<int>> entries;
-};
-/// The groups of a world, by their first bodies. Bodies that no entry ties or acts on are in none.
-/// Cost: linear in bodies and entries.
-std::vector<LinkedGroup> groups_of_linked_bodies(const World& world);
 
 class LinkedBodies final : effects::GroupPlaces {
  public:
@@ -158,6 +137,8 @@ class LinkedBodies final : effects::GroupPlaces {
                                  const std::vector<Body>& bodies,
                                  const std::vector<RigidBodyState>& local,
                                  std::vector<Wrench>& wrenches);
+  VectorXd multipliers_at(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies,
+                          double t, const std::vector<ContactPoint>& contacts);
   VectorXd derivative(double t, const VectorXd& y);
   // Rows that say what others say: redundant_rows.cpp.
   bool closes_loop(const LinkedGroup& group) const;
@@ -188,6 +169,7 @@ class LinkedBodies final : effects::GroupPlaces {
   VectorXd correction(const std::vector<Constraint>& rows,
                       const std::vector<ConstrainedBody>& bodies, const VectorXd& error);
   void project_local(std::vector<RigidBodyState>& local, double t, bool places);
+  void bring_back(std::vector<RigidBodyState>& local, double t, bool places);
   std::vector<RigidBodyState> take(const std::vector<RigidBodyState>& states) const;
   void put(const std::vector<RigidBodyState>& local, std::vector<RigidBodyState>& states) const;
 
