@@ -9,6 +9,7 @@
 
 #include "framework/core/numbers.h"
 #include "framework/engines/base/tolerances.h"
+#include "framework/engines/stepping/linked_groups.h"
 #include "framework/engines/stepping/loss_remedy.h"
 
 namespace tumble::engines {

@@ -12,7 +12,7 @@
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/energy_loss.h"
-#include "framework/engines/stepping/linked_bodies.h"
+#include "framework/engines/stepping/link_forces.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {

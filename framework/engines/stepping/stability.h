@@ -11,7 +11,7 @@
 #include "framework/dynamics/world.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_counters.h"
-#include "framework/engines/stepping/linked_bodies.h"
+#include "framework/engines/stepping/link_forces.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {

@@ -14,7 +14,6 @@
 #include "framework/core/decompositions.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/engines/base/tolerances.h"
-#include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
