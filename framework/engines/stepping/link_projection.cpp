@@ -1,5 +1,5 @@
-// Rods and joints hold: bodies brought back onto their rows, and what rows add to a sudden change of
-// velocities. Part of LinkedBodies.
+// Rods and joints hold: bodies brought back onto their rows, and what rows add to a sudden change
+// of velocities. Part of LinkedBodies.
 #include <algorithm>
 #include <cmath>
 #include <string>
