@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include <fmt/format.h>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -40,6 +41,12 @@ std::string escaped(const std::string& key) {
   return text;
 }
 
+// lists and objects within each other; the deepest scene needs ten
+constexpr std::size_t kDeepest = 100;
+struct TooDeep {
+  int line;
+};
+
 /// Follows the parser's events and notes the line of every value.
 class LineNotes {
  public:
@@ -52,6 +59,7 @@ class LineNotes {
       case Event::array_start:
         note_value();
         levels_.push_back({pointer(), event == Event::array_start ? 0 : -1, ""});
+        if (levels_.size() > kDeepest) throw TooDeep{line()};
         break;
       case Event::object_end:
       case Event::array_end:
@@ -198,20 +206,16 @@ bool has_type(const json& value, const std::string& type) {
 
 // Squares and cubes of a scene's numbers must stay within doubles, and so must products of three of
 // them (2^-1074 to 2^1023).
-constexpr int kDeepest = 100;
 constexpr double kLargest = 1e60, kSmallest = 1e-60;
 
-void refuse_extreme_numbers(const Document& document, const json& value, const std::string& pointer,
-                            int depth = 0) {
-  if (depth > kDeepest)
-    document.refuse(pointer.substr(0, pointer.find('/', 1)),
-                    "found lists within lists, deeper than any scene needs", "Check its brackets.");
+void refuse_extreme_numbers(const Document& document, const json& value,
+                            const std::string& pointer) {
   if (value.is_object())
     for (const auto& [key, member] : value.items())
-      refuse_extreme_numbers(document, member, pointer + '/' + escaped(key), depth + 1);
+      refuse_extreme_numbers(document, member, pointer + '/' + escaped(key));
   if (value.is_array())
     for (std::size_t i = 0; i < value.size(); ++i)
-      refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i), depth + 1);
+      refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i));
   if (!value.is_number()) return;
   const double size = std::abs(value.get<double>());
   if (size > kLargest)
@@ -243,6 +247,12 @@ Document parse_document(const std::string& text, const std::filesystem::path& fi
     document.json = json::parse(
         WatchedIterator{text.data(), &seen}, WatchedIterator{text.data() + text.size(), &seen},
         [&](int, json::parse_event_t event, json& parsed) { return notes(event, parsed); });
+  } catch (const TooDeep& deep) {  // the notes of a level are as long as it is deep
+    throw UserError(file.string() + ':' + std::to_string(deep.line),
+                    fmt::format("found more than {} lists and objects within each other, deeper "
+                                "than any scene",
+                                kDeepest),
+                    "Check its brackets.");
   } catch (const json::parse_error& error) {
     throw UserError(file.string() + ':' + line_and_column(text, error.byte),
                     "this is not JSON: " + essence(error.what()),

@@ -230,6 +230,12 @@ TEST(SceneRefusals, ListsWithinListsAreFollowedToSomeDepth) {
             std::string::npos);
 }
 
+// The places of values are as long as they are deep: noted to the end of such a file they would
+// take memory with the square of its length, 5 GB for 50 kB.
+TEST(SceneRefusals, BracketsThatNeverCloseAreRefusedBeforeTheyAreRead) {
+  expect_words(refusal("[\n" + std::string(3000, '[')), {"s.json:2", "deeper", "brackets"});
+}
+
 TEST(SceneRefusals, ATrailingCommaIsNotJson) {
   expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"});
 }
