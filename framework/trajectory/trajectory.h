@@ -86,7 +86,7 @@ struct Event {
 /// run with a fault is judged wrong.
 struct RunFault {
   // a name like that of a check: "link_open", "projection_open", "contact_unsolved",
-  // "energy_rises", "energy_lost", "turn_unresolved", "overlap_left"
+  // "energy_rises", "energy_lost", "turn_unresolved", "turns_wrong", "overlap_left"
   std::string kind;
   std::string subject;  // names of the bodies or links in the worst case
   double worst = 0.0, allowed = 0.0;

@@ -43,6 +43,12 @@ const Words& words_of(RunWatch::Kind kind) {
        "beyond half a turn a step cannot be told from a turn the other way round: orientations, "
        "and what hangs on them, are not to be trusted",
        "a slower body, or --propagator auto where nothing but gravity acts on it"},
+      {"turns_wrong",
+       "what nothing turns keeps its angular momentum and turns as that says: its steps have "
+       "turned "
+       "it wrong by this angle, and what hangs on it is off as much",
+       "--propagator auto where nothing but gravity acts on it, or --engine ordered: both turn it "
+       "in closed form"},
       {"overlap_left",
        "bodies stay apart: here the corrections of their places have ended with an overlap of this "
        "part of the smaller one's radius",
@@ -57,7 +63,9 @@ double likely_part(RunWatch::Kind kind, double times_what_is_allowed, double ord
   constexpr double kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
   // a radian a step
   if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);
-  if (kind != RunWatch::Kind::kEnergyRises && kind != RunWatch::Kind::kEnergyLost) return kMost;
+  if (kind != RunWatch::Kind::kEnergyRises && kind != RunWatch::Kind::kEnergyLost &&
+      kind != RunWatch::Kind::kTurnsWrong)
+    return kMost;
   return std::min(kMost, std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / order)));
 }
 

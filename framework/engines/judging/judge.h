@@ -47,6 +47,8 @@
 ///   contact_unsolved    approach and slip that the impulses of contacts left, over the island's
 ///                       speed [-]
 ///   turn_unresolved     rotation of a body in a step of a method that samples [rad]
+///   turns_wrong         angle by which steps have turned a body wrong that nothing turns, all its
+///                       flights together [rad]
 ///   overlap_left        overlap that the corrections of places left, over the radius of the
 ///                       smaller body [-]
 ///   energy_rises        rise of E above its least value so far, without the work of point forces

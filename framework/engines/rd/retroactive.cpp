@@ -36,7 +36,10 @@ class RetroactiveRun : private StepStages {
         hand_(options.hand),
         recorder_(FrameTimes(options, scene.duration_s), sink),
         energy_watch_(scene.rest_speed_m_s, step_, true) {
-    if (options.propagator == "auto") moving_.go_in_closed_form();
+    if (options.propagator == "auto")
+      moving_.go_in_closed_form();
+    else
+      moving_.watch_free_turning();
     if (!world_step_.has_contacts()) return;
     PersistentContacts& contacts = world_step_.contacts();
     recorder_.record_contacts_of(contacts);

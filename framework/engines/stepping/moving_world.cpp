@@ -576,8 +576,8 @@ void MovingWorld::commit(double t) {
     const StageTimer timer(counters_.integration_seconds);
     arrived.reserve(states_.size());
     for (int i = 0; i < size(); ++i) {
-      watch_turning(i, t - time_);
       arrived.push_back(path(i, t));
+      watch_turning(i, arrived.back(), t - time_);
     }
   }
   const bool is_cut_short = t < target_;

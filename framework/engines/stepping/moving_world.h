@@ -23,6 +23,7 @@
 #include "framework/effects/registry.h"
 #include "framework/engines/base/effects_built.h"
 #include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/free_turning.h"
 #include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/pair_caches.h"
 #include "framework/engines/stepping/smooth_path.h"
@@ -61,6 +62,10 @@ class MovingWorld {
   /// From here on bodies that nothing but gravity acts on go in closed form instead of along the
   /// laws' integration.
   void go_in_closed_form();
+
+  /// From here on bodies that nothing turns are compared with the exact rotation, as far as the
+  /// laws' integration leads them. For worlds whose steps are all committed.
+  void watch_free_turning() { watches_free_turning_ = true; }
 
   const World& world() const { return world_; }
   int size() const { return static_cast<int>(world_.bodies.size()); }
@@ -242,7 +247,8 @@ class MovingWorld {
   double turning_error(int body, double duration);
   bool bound_turning(int body, double duration, collision::MotionBounds& bounds);
   double resolved_duration(int body, double duration, bool measures_path);
-  void watch_turning(int body, double duration);
+  void watch_turning(int body, const RigidBodyState& end, double duration);
+  void note_turning(int body, double found, RunWatch::Kind kind, double duration);
   collision::MotionBounds work_out_bounds(int body);
   RigidBodyState still_state(int body, double t) const;
 
@@ -272,6 +278,8 @@ class MovingWorld {
   std::uint64_t integrations_in_step_ = 0;
   std::vector<std::optional<PrincipalMoments>> principal_;  // by body, once asked for
   std::vector<FreeRotation> rotations_;                     // by body; empty: the laws integrate
+  bool watches_free_turning_ = false;
+  std::map<int, FreeTurning> free_turning_;  // by body, of those that have turned
   // by body: units of its state, once its integration has asked for them
   std::vector<VectorXd> units_;
 };

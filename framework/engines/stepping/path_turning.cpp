@@ -37,6 +37,9 @@ constexpr double kLook = 1e-3;
 // within the two limits above.
 constexpr double kUnseenTurn = 2.0;
 
+// A body is round where its moments differ by no more than computing them from a mesh leaves.
+constexpr double kSameMoments = 1e-12;
+
 // a method whose error does not shrink with the step is not helped by shorter ones
 constexpr int kMostHalvings = 12;
 
@@ -130,28 +133,45 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
   return resolved;
 }
 
-// Beyond half a turn a step cannot be told from a turn the other way round: a method of integration
-// that samples it only there gives some orientation. A ball that nothing hangs on looks the same
-// however it turns, and moves the same.
-void MovingWorld::watch_turning(int body, double duration) {
-  if (!can_move(body)) return;
-  const double turning = turning_speed_of(states_[body], world_.bodies[body].inertia) * duration;
-  if (turning <= kTurnResolved) return;
-  const bool is_alone =
-      linked_group(body) < 0 && std::none_of(effects::all().begin(), effects::all().end(),
-                                             [&](const effects::Effect* effect) {
-                                               return effect->traits().stores_energy &&
-                                                      effect->count_in(world_) > 0;
-                                             });
-  if (is_alone && flies_freely(body)) return;
-  if (!is_alone || !shapes_[body]->is_ball())
-    return counters_.watch.note(RunWatch::Kind::kTurnUnresolved, names_of(world_, {body}),
-                                {turning, kTurnResolved, time_, duration});
+// A ball that nothing hangs on looks the same however it turns, and moves the same: to turn it
+// wrong is no fault. (One that is not round inside moves as it is turned, where it rubs.)
+void MovingWorld::note_turning(int body, double found, RunWatch::Kind kind, double duration) {
+  const bool is_tied =
+      linked_group(body) >= 0 ||
+      std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) {
+        return effect->traits().stores_energy && effect->count_in(world_) > 0;
+      });
+  if (!is_tied && flies_freely(body)) return;
+  const Vector3d& moments = principal_of(body).moments;
+  const bool is_round = shapes_[body]->is_ball() && moments.maxCoeff() - moments.minCoeff() <=
+                                                        kSameMoments * moments.maxCoeff();
+  if (is_tied || !is_round) {
+    const double allowed = kind == RunWatch::Kind::kTurnUnresolved ? kTurnResolved : kTurnsRight;
+    return counters_.watch.note(kind, names_of(world_, {body}), {found, allowed, time_, duration});
+  }
   const std::string ball = fmt::format("ball '{}'", world_.bodies[body].name);
-  counters_.watch.say(ball, time_,
-                      ball +
-                          " turns more than half a turn in a step: its orientation is not to be "
-                          "trusted, how it moves is");
+  counters_.watch.say(
+      ball, time_,
+      fmt::format("{} {}: its orientation is not to be trusted, how it moves is", ball,
+                  kind == RunWatch::Kind::kTurnUnresolved
+                      ? "turns more than half a turn in a step"
+                      : fmt::format("is turned wrong by {:.2g} rad by its steps", found)));
+}
+
+// Beyond half a turn a step cannot be told from a turn the other way round: a method of integration
+// that samples it only there gives some orientation. Below it gives one that is off by its order.
+void MovingWorld::watch_turning(int body, const RigidBodyState& end, double duration) {
+  if (!can_move(body)) return;
+  const double speed = turning_speed_of(states_[body], world_.bodies[body].inertia);
+  if (speed * duration > kTurnResolved)
+    return note_turning(body, speed * duration, RunWatch::Kind::kTurnUnresolved, duration);
+  if (!watches_free_turning_ || speed == 0.0 || linked_group(body) >= 0 || paths_[body].smooth ||
+      !is_left_alone(body))
+    return;
+  FreeTurning& turning = free_turning_.try_emplace(body, world_.bodies[body].inertia).first->second;
+  turning.step(states_[body], end, duration, speed);
+  if (turning.error() > kTurnsRight)
+    note_turning(body, turning.error(), RunWatch::Kind::kTurnsWrong, turning.longest_step());
 }
 
 bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs,
