@@ -22,11 +22,27 @@ double apart(const BodyPose& a, const BodyPose& b, double radius_m) {
   return shift + radius_m * a.world_from_body.angularDistance(b.world_from_body);
 }
 
-std::string bodies_of(const Event& event, const Trajectory& run) {
+// "collision of ball and wall", "a force on box begins": before "at 2 s in ..." or "only in ...".
+std::string in_words(const Event& event, const Trajectory& run) {
   const auto name = [&](int body) { return run.bodies[static_cast<std::size_t>(body)].name; };
-  if (event.body_a < 0) return "";
-  return event.body_b < 0 ? " of " + name(event.body_a)
-                          : " of " + name(event.body_a) + " and " + name(event.body_b);
+  if (event.body_a < 0) return name_of_event(event.kind);
+  const bool are_two = event.body_b >= 0;
+  const std::string bodies = name(event.body_a) + (are_two ? " and " + name(event.body_b) : "");
+  switch (event.kind) {
+    case EventKind::kRest:
+      return bodies + (are_two ? " come to rest on each other" : " comes to rest");
+    case EventKind::kForceOn: return "a force on " + bodies + " begins";
+    case EventKind::kForceOff: return "a force on " + bodies + " ends";
+    case EventKind::kContact: return "contact of " + bodies + " begins";
+    case EventKind::kBreak: return "contact of " + bodies + " ends";
+    case EventKind::kStick: return bodies + (are_two ? " stick" : " sticks");
+    case EventKind::kSlide: return bodies + (are_two ? " begin to slide" : " begins to slide");
+    case EventKind::kSleep: return bodies + (are_two ? " fall asleep" : " falls asleep");
+    case EventKind::kWake: return bodies + (are_two ? " wake" : " wakes");
+    case EventKind::kCollision:
+    case EventKind::kControl: break;
+  }
+  return std::string(name_of_event(event.kind)) + " of " + bodies;
 }
 
 bool differ(double a, double b, double scale) {
@@ -37,10 +53,10 @@ bool differ(double a, double b, double scale) {
 std::string difference_of(const Event& a, const Event& b, double impulse_scale,
                           const Trajectory& run_a, const Trajectory& run_b,
                           const std::string& label_a, const std::string& label_b) {
-  const std::string head = std::string(name_of_event(a.kind)) + bodies_of(a, run_a);
+  const std::string head = in_words(a, run_a);
   if (a.kind != b.kind || a.body_a != b.body_a || a.body_b != b.body_b)
-    return fmt::format("{} at {:.6g} s in {}, {}{} at {:.6g} s in {}", head, a.time, label_a,
-                       name_of_event(b.kind), bodies_of(b, run_b), b.time, label_b);
+    return fmt::format("{} at {:.6g} s in {}, {} at {:.6g} s in {}", head, a.time, label_a,
+                       in_words(b, run_b), b.time, label_b);
   if (differ(a.time, b.time, 1.0))
     return fmt::format("{}: at {:.6g} s in {}, at {:.6g} s in {}", head, a.time, label_a, b.time,
                        label_b);
@@ -70,10 +86,10 @@ std::optional<Difference> first_event(const Trajectory& a, const std::string& la
   const Trajectory& other = a_has_more ? b : a;
   // that run ended earlier: not a difference of the motion
   if (other.frames.empty() || other.frames.back().time < event.time) return std::nullopt;
-  return Difference{event.time,
-                    fmt::format("{}{} only in {}", name_of_event(event.kind),
-                                bodies_of(event, more), a_has_more ? label_a : label_b),
-                    event.body_a};
+  return Difference{
+      event.time,
+      fmt::format("{} only in {}", in_words(event, more), a_has_more ? label_a : label_b),
+      event.body_a};
 }
 
 std::optional<EarlyEnd> early_end_of(const Trajectory& a, const Trajectory& b) {

@@ -13,7 +13,8 @@ namespace tumble::report {
 /// The first difference of two runs.
 struct Difference {
   double time_s;
-  // a sentence: "Collision of ball and wall: impulse 6 N s in submission, 9 N s in reference"
+  // "collision of ball and wall: impulse 6 N s in submission, 9 N s in reference", "a force on box
+  // begins only in submission"
   std::string what;
   int body = -1;  // -1: not of a particular body
 };

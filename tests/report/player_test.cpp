@@ -148,7 +148,25 @@ TEST(Comparison, NamesAnEventThatOnlyOneRunHas) {
   const auto first =
       compare(thrown_ball(), kRadii, thrown_run(), "submission", less, "reference").first;
   ASSERT_TRUE(first.has_value());
-  EXPECT_EQ(first->what, "comes to rest of box and floor only in submission");
+  EXPECT_EQ(first->what, "box and floor come to rest on each other only in submission");
+}
+
+TEST(Comparison, SaysOfAForceWhatItActsOn) {
+  Trajectory less = thrown_run(), more = thrown_run();
+  less.events.pop_back();
+  Event& force = more.events.back();
+  force.kind = EventKind::kForceOn;
+  force.body_b = -1;
+  const auto only = compare(thrown_ball(), kRadii, more, "this run", less, "the run before").first;
+  ASSERT_TRUE(only.has_value());
+  const std::string name = more.bodies[static_cast<std::size_t>(force.body_a)].name;
+  EXPECT_EQ(only->what, "a force on " + name + " begins only in this run");
+  Trajectory other = more;
+  other.events.back().kind = EventKind::kSlide;
+  const auto both = compare(thrown_ball(), kRadii, more, "this run", other, "the run before").first;
+  ASSERT_TRUE(both.has_value());
+  EXPECT_EQ(both->what.find("a force on " + name + " begins at "), 0u) << both->what;
+  EXPECT_NE(both->what.find(", " + name + " begins to slide at "), std::string::npos) << both->what;
 }
 
 // A run that stopped is neither the same nor different: the page must not praise it.
