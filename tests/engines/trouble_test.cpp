@@ -93,6 +93,19 @@ TEST(Trouble, AnImpulseThatIsNotANumberIsNamed) {
   expect_stopped(run(head_on(), laws), {"left ball", "right ball", "0.9", "impulse"}, 54);
 }
 
+// Applied with the wrong sign an impulse drives the bodies together, faster each time, until the
+// numbers end: the function in which they end is right, and the one that drives them has no part
+// in it. Both are named.
+TEST(Trouble, AnImpulseThatDrivesBodiesTogetherIsNoMissingNumber) {
+  Laws laws = test_laws();
+  laws.apply_impulse = [right = laws.apply_impulse](const Body& body, const Vector3d& impulse_world,
+                                                    const Vector3d& point_world) {
+    return right(body, -impulse_world, point_world);
+  };
+  expect_stopped(run(head_on(), laws),
+                 {"left ball", "right ball", "0.9", "apply_impulse", "drives them together"}, 54);
+}
+
 TEST(Trouble, ALawThatThrowsIsNamed) {
   Laws laws = test_laws();
   laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double {

@@ -1,5 +1,9 @@
 #include "framework/engines/base/guarded_laws.h"
 
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
 #include "framework/dynamics/law_guard.h"
 #include "framework/dynamics/world.h"
 
@@ -17,11 +21,39 @@ constexpr auto kNumber = [](const LawGuard& by, const auto& answer, const auto&.
   by.need_number(answer);
 };
 
+// Faster is no body of a scene: only an impulse leads there that drives two bodies together again
+// and again, each time faster, until an answer overflows. Which of the two functions has the wrong
+// sign cannot be seen from there.
+constexpr double kFlung = 1e100;  // m/s, rad/s
+
+bool is_flung(const Body& body) {
+  const double fastest = std::max(body.velocity_world.lpNorm<Eigen::Infinity>(),
+                                  body.omega_world.lpNorm<Eigen::Infinity>());
+  return std::isfinite(fastest) && fastest > kFlung;
+}
+
+template <class Answer>
+void need_number_unless_flung(const LawGuard& by, const std::string& source, const Answer& answer,
+                              std::initializer_list<const Body*> bodies) {
+  if (!is_number(answer) &&
+      std::any_of(bodies.begin(), bodies.end(), [](const Body* body) { return is_flung(*body); }))
+    throw StoppedRun("collision (collision_impulse, apply_impulse of " + source +
+                     ") drives them together, faster each time it is applied: an impulse has the "
+                     "wrong sign");
+  by.need_number(answer);
+}
+
 void guard_impulses(Laws& laws) {
-  const std::string& source = laws.impulse_source;
-  guard(laws.relative_normal_velocity, "collision", "relative_normal_velocity", source, kNumber);
-  guard(laws.collision_impulse, "collision", "collision_impulse", source, kNumber);
-  guard(laws.apply_impulse, "collision", "apply_impulse", source, kNumber);
+  const std::string source = laws.impulse_source;
+  const auto of_two = [source](const LawGuard& by, double answer, const Contact&, const Body& a,
+                               const Body& b, auto...) {
+    need_number_unless_flung(by, source, answer, {&a, &b});
+  };
+  guard(laws.relative_normal_velocity, "collision", "relative_normal_velocity", source, of_two);
+  guard(laws.collision_impulse, "collision", "collision_impulse", source, of_two);
+  guard(laws.apply_impulse, "collision", "apply_impulse", source,
+        [source](const LawGuard& by, const Velocity& answer, const Body& body, const Vector3d&,
+                 const Vector3d&) { need_number_unless_flung(by, source, answer, {&body}); });
   guard(laws.wrench_of_point_force, "point force", "wrench_of_point_force", source, kNumber);
 }
 
