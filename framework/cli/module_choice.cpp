@@ -88,9 +88,17 @@ fs::path build_student(const Context& context, const ModuleKind& kind) {
 }
 
 /// The user's own code in this process, with guards against errors.
+/// @param file  what the user knows it by: the source of the object
 AnyModule load_own(const ModuleKind& kind, const fs::path& object, const std::string& file) {
-  return grading::guarded(
-      kind, grading::guarded_load(file, [&] { return modules::load_module(kind, object); }), file);
+  const auto load = [&] {
+    try {
+      return modules::load_module(kind, object);
+    } catch (const UserError& error) {
+      if (error.where() != object.string()) throw;
+      throw UserError(file, error.problem(), error.remedy());
+    }
+  };
+  return grading::guarded(kind, grading::guarded_load(file, load), file);
 }
 
 /// Whether this tree has the module of a word.

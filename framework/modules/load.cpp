@@ -18,9 +18,9 @@ const void* load_functions(const ModuleName& module, const std::filesystem::path
   using Exported = const void* (*)();
   const auto exported = reinterpret_cast<Exported>(::dlsym(handle, module.exported_name().c_str()));
   if (exported == nullptr)
-    throw UserError(
-        file.string(), "exports no module " + module.id,
-        "It must be built from a file that includes the header of " + module.folder + ".");
+    throw UserError(file.string(), "defines nothing of " + module.id,
+                    "It must be built from a file that includes the header of " + module.folder +
+                        ": is that file empty?");
   return exported();
 }
 

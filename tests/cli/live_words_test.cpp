@@ -50,6 +50,16 @@ TEST_F(CommandLine, LiveRefusesInTheTerminalWhatItsPageCouldNotDo) {
   EXPECT_TRUE(left_nothing());
 }
 
+// Of an empty file a shared object without a module is made.
+TEST_F(CommandLine, AModuleOfAnEmptyFileIsSaidToBeOne) {
+  const std::string object = (folder_ / "empty.so").string();
+  ASSERT_EQ(std::system(("g++ -shared -x c++ /dev/null -o '" + object + "'").c_str()), 0);
+  const Said said = type("run pong_1 --modules a1='" + object + "'");
+  EXPECT_EQ(said.code, 1);
+  EXPECT_TRUE(holds(said.out, ".so: defines nothing of a1")) << said.out;
+  EXPECT_TRUE(holds(said.out, "is that file empty?")) << said.out;
+}
+
 #ifdef TUMBLE_HAS_REFERENCE
 // What the run has compiled is judged as it is: the verdicts come without a second compilation, here
 // where there is none to be had.
