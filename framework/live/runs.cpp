@@ -72,7 +72,11 @@ void Runs::listen_to(std::unique_ptr<Simulator>& simulator) {
     if (is_open || !simulator || simulator.get() != before) return;
     if (auto loss = simulator->loss()) {
       (*loss)["ends_run"] = true;
-      if (simulator == starting_) end_former(*loss);
+      if (simulator == starting_)
+        end_former(*loss);
+      else if (!shown_.asked().empty())
+        shown_.tell_asked(scenes_.asked(
+            dumped(simulator->asked_at_loss(Json::parse(shown_.asked()).at("modules")))));
       shown_.tell_trouble(*loss);
       find_place(simulator->talk);
       if (simulator == starting_) settled_();

@@ -1,5 +1,6 @@
 #include "framework/live/simulator.h"
 
+#include <cstdint>
 #include <cstring>
 #include <sstream>
 
@@ -16,7 +17,8 @@ std::string for_people(const std::string& talk) {
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("tumble: ")) line.erase(0, 8);
-    const bool is_ours = line.starts_with("frame ") || line.starts_with("compiling ");
+    const bool is_ours =
+        line.starts_with("frame ") || line.starts_with("called ") || line.starts_with("compiling ");
     if (!is_ours && !(text.empty() && line.empty())) text += line + "\n";
   }
   return text;
@@ -48,6 +50,21 @@ std::optional<Json> Simulator::loss() {
                       : fmt::format("ended with code {}", code);
   return Json{{"title", said.find("out of time") != std::string::npos ? "Out of time" : "Crashed"},
               {"text", said}};
+}
+
+Json Simulator::asked_at_loss(Json asked) const {
+  std::istringstream lines(talk);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string called, id, function;
+    std::uint64_t count = 0;
+    if (!(words >> called >> id >> function >> count) || called != "called") continue;
+    for (Json& module : asked)
+      if (module.at("id") == id)
+        for (Json& one : module.at("functions"))
+          if (one.at(0) == function) one.at(1) = count;
+  }
+  return asked;
 }
 
 }  // namespace tumble::live

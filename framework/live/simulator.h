@@ -22,6 +22,10 @@ struct Simulator {
   bool read();
   /// Its pipe has closed: what ended it, for people; nothing where it has said so itself.
   std::optional<Json> loss();
+  /// After a loss: what it had asked of the modules, to its last call.
+  /// @param asked  JSON of simulate.h, as it was told last
+  /// @return the same with the counts of the end
+  Json asked_at_loss(Json asked) const;
 
   Child child;
   RecordReader records;

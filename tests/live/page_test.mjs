@@ -303,6 +303,7 @@ test('the view finds and follows; changes keep pushes; a refused number stands a
   await page.value('(async () => { const post = c => fetch("do", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(c) }); await post({ do: "aim", body: 0, point_body_m: [0, 0, 0] }); await post({ do: "push", force_n: [3000, 0, 0], duration_s: 0.1 }); })()');
   await page.until('/left the picture/.test(document.getElementById("hint").textContent)', 'that the box has left');
   if (pictures) await page.picture(join(pictures, 'lost.png'));
+  expect(JSON.parse(await page.value('document.body.dataset.asked')).a1.collision_impulse >= 1, `the call that crashed is one of the run: ${await page.value('document.body.dataset.asked')}`);
   await page.value('document.getElementById("go").click()');
   await page.until('document.getElementById("state").textContent === "paused"', 'the pause', 20);
   // The page has drawn nothing since the pause: found is what has moved on until then.

@@ -29,6 +29,7 @@ constexpr auto kPeriod = std::chrono::milliseconds(250);  // between two checks 
 constexpr double kChecksPerSecond = 4.0;
 std::atomic<double> limit_s{kGuardedCallLimit};
 std::atomic<bool> tells_frames{false};
+std::atomic<void (*)()> says_more{nullptr};
 // A call has been too long: its thread is to say where it is.
 constexpr int kWhere = SIGUSR2;
 constexpr std::array kSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
@@ -51,9 +52,7 @@ thread_local CallPlace* here = nullptr;
 // prepared in advance: a signal handler must not allocate memory
 char signal_words[kSignals.size()][256];
 
-void say(const char* text) {
-  [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
-}
+void say(const char* text) { say_in_handler(text); }
 
 void say_frames() {
   void* places_in_code[48];
@@ -93,6 +92,7 @@ char out_of_time_words[96];
 void on_signal(int signal) {
   const char* function = here != nullptr ? here->function.load() : nullptr;
   if (tells_frames) say_frames();
+  if (void (*const more)() = says_more) more();
   if (signal == kWhere && function != nullptr) leave(out_of_time_words, function, here->file);
   if (function != nullptr)
     for (std::size_t i = 0; i < kSignals.size(); ++i)
@@ -191,8 +191,24 @@ Guard& lasting_guard(const std::string& file) { return *new Guard(file); }
 
 }  // namespace
 
-void guard_for_another(double seconds) {
+void say_in_handler(const char* text) {
+  [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
+}
+
+void say_in_handler(std::uint64_t number) {
+  char digits[24];
+  char* first = digits + sizeof digits;
+  *--first = '\0';
+  do {
+    *--first = static_cast<char>('0' + number % 10);
+    number /= 10;
+  } while (number > 0);
+  say_in_handler(first);
+}
+
+void guard_for_another(double seconds, void (*say_more)()) {
   limit_s = seconds;
+  says_more = say_more;
   void* unused[1];
   ::backtrace(unused, 1);  // loads what it needs: not in a signal handler
   tells_frames = true;

@@ -4,6 +4,7 @@
 /// against mistakes, not against attacks.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -17,7 +18,13 @@ constexpr double kGuardedCallLimit = 10.0;
 
 /// For a process of which another tells the user: another limit for all its guarded calls [s], and
 /// a line "frame OBJECT 0xOFFSET" for each place in the stack, innermost first, before the message.
-void guard_for_another(double seconds);
+/// @param say_more  called behind these lines, in a signal handler: writes lines of its own to
+///   stderr, with say_in_handler() alone; may be null
+void guard_for_another(double seconds, void (*say_more)() = nullptr);
+
+/// Writes to stderr, as a signal handler may. A number in decimal.
+void say_in_handler(const char* text);
+void say_in_handler(std::uint64_t number);
 
 /// The same module with guarded calls. On a signal or an endless loop the process prints a message
 /// to stderr and exits with 1; an exception of the module itself becomes a CallEnded, which stops a
