@@ -249,16 +249,22 @@ void locate_for_page(Context& context, const RunWords& words) {
       }
     }
   }
-  for (const OwnSource& source : sources)
+  // Of several functions that are named any may be the one.
+  for (const OwnSource& source : sources) {
+    std::string places, first;
     for (const std::string& function : source.functions) {
       const std::regex named("\\b" + function + "\\b");
       if (!std::regex_search(said, named)) continue;
       const int number = grading::line_of_definition(text_of(source.file), function);
       if (number == 0) continue;
-      fmt::print("in {}, which begins in line {} of {}: {}\n", function, number,
-                 source.file.filename().string(), line_in(source.file, number));
-      return;
+      places += fmt::format("{}{}, which begins in line {}", places.empty() ? "in " : ", or in ",
+                            function, number);
+      if (first.empty()) first = line_in(source.file, number);
     }
+    if (places.empty()) continue;
+    fmt::print("{} of {}: {}\n", places, source.file.filename().string(), first);
+    return;
+  }
 }
 
 void simulate_for_page(Context& context, const RunWords& words) {

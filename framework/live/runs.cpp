@@ -117,7 +117,10 @@ void Runs::hear_starting(Record record) {
                     : said.value("not_attempted", false) ? "Not attempted"
                                                          : "The scene cannot begin";
     said["text"] = problem;
-    if (!compiles) said["remedy"] = "";  // for the command line
+    if (!compiles) {
+      said["text"] = problem.substr(std::min(problem.find('\n') + 1, problem.size()));
+      said["remedy"] = "";  // for the command line
+    }
     if (is_of_save && compiles) end_former(said);
     if (is_of_save) said["shows_former"] = true;
     shown_.tell_trouble(said);

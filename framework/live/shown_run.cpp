@@ -116,7 +116,10 @@ void ShownRun::tell_place(std::string place) {
   if (place.empty() || trouble_.empty()) return;
   Json what = Json::parse(trouble_);
   what["where"] = place.substr(0, place.find(": "));
-  what["text"] = place + "\n" + what.value("text", "");
+  const bool is_line = !place.starts_with("in ");  // else no more than a function's first line
+  const std::size_t colon = place.find(": ");
+  if (is_line && colon != std::string::npos)
+    what["text"] = place.substr(colon + 2) + "\n" + what.value("text", "");
   tell_trouble(what);
 }
 
