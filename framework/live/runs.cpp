@@ -8,6 +8,7 @@ namespace tumble::live {
 
 void Runs::begin(const std::string& reason, double from_s, const Recipe& recipe) {
   // The recipe may be the one of the run that is starting, which ends with the assignment.
+  missed_.clear();
   starting_ = std::make_unique<Simulator>(scenes_.shown().simulator, from_s, reason, recipe);
   starting_->start(speed_, true);
   pages_.tell({{"kind", "starting"}, {"reason", reason}});
@@ -15,6 +16,7 @@ void Runs::begin(const std::string& reason, double from_s, const Recipe& recipe)
 }
 
 void Runs::stop() {
+  missed_.clear();
   running_.reset();
   starting_.reset();
   place_.drop();
@@ -58,6 +60,11 @@ void Runs::listen() {
 
 void Runs::listen_to(std::unique_ptr<Simulator>& simulator) {
   const bool is_open = simulator->read();
+  if (simulator == starting_ && !starting_->is_told_to_compile &&
+      starting_->talk.find("compiling ") != std::string::npos) {
+    starting_->is_told_to_compile = true;
+    pages_.tell({{"kind", "starting"}, {"reason", "code"}});
+  }
   try {
     // What a record leads to may put another process in this one's place.
     const Simulator* const before = simulator.get();
@@ -93,6 +100,14 @@ void Runs::listen_to(std::unique_ptr<Simulator>& simulator) {
 }
 
 void Runs::hear_starting(Record record) {
+  if (record.kind == RecordKind::kHead && !missed_.empty()) {
+    // What a hand did while the code was compiled belongs to its run, too. The code is built: the
+    // same run with all of it is there at once.
+    Recipe recipe = starting_->recipe;
+    recipe.pushes.insert(recipe.pushes.end(), missed_.begin(), missed_.end());
+    begin("code", 0.0, recipe);
+    return;
+  }
   if (record.kind == RecordKind::kHead) {
     adopt(record.bytes);
     if (running_) listen_to(running_);  // what has come behind the head
@@ -167,7 +182,8 @@ void Runs::add_push(const std::string& text) {
   if (!runs_again) {
     shown_.add_push(dumped(push));
     pages_.tell({{"kind", "push"}, {"push", push}});
-    if (!shown_.recipe().document.empty()) scenes_.tell_unsaved(true);
+    scenes_.touched();
+    if (is_starting() && starting_->reason == "code") missed_.push_back(dumped(push));
     return;
   }
   // The run that is shown goes on without the push: it belongs to the one that is begun. A second

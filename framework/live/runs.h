@@ -32,6 +32,10 @@ class Runs {
   /// Ends all; what begins next is not paused.
   void stop();
   bool is_starting() const { return starting_ && !starting_->has_ended; }
+  /// Why a run is starting, "code" also while code is compiled for another reason; empty: none is.
+  std::string starting_reason() const {
+    return !is_starting() ? "" : starting_->is_told_to_compile ? "code" : starting_->reason;
+  }
   /// Of the run that is starting, else of the one that is shown: what a change adds to.
   const Recipe& wanted() const { return is_starting() ? starting_->recipe : shown_.recipe(); }
 
@@ -62,7 +66,8 @@ class Runs {
   FormerRun& former_;
   std::function<void()> settled_;
   std::unique_ptr<Simulator> running_, starting_;
-  Question place_;  // of a bad end in the user's file
+  std::vector<std::string> missed_;  // pushes since code was saved whose run has not begun yet
+  Question place_;                   // of a bad end in the user's file
   double speed_ = 1.0;
   bool is_paused_ = false;
 };

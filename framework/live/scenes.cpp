@@ -1,7 +1,5 @@
 #include "framework/live/scenes.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
@@ -77,20 +75,34 @@ SavedScene Scenes::save(const Recipe& recipe, const History& run) {
   return saved;
 }
 
-Left Scenes::left(const Recipe& wanted) const {
+Json Scenes::unsaved_of(const Recipe& wanted) const {
   const auto is_unsaved = [](const Recipe& recipe, const std::string& saved) {
     return !recipe.document.empty() && as_text(recipe) != saved;
   };
-  return {files_, is_unsaved(wanted, saved_recipe_) ||
-                      std::any_of(left_.begin(), left_.end(), [&](const auto& one) {
-                        return is_unsaved(one.second.recipe, one.second.saved_recipe);
-                      })};
+  Json unsaved{{"is", is_unsaved(wanted, saved_recipe_)}, {"others", Json::array()}};
+  for (const auto& [name, kept] : left_)
+    if (is_unsaved(kept.recipe, kept.saved_recipe)) unsaved["others"].push_back(name);
+  return unsaved;
 }
 
-void Scenes::tell_unsaved(bool is_unsaved) {
-  if (is_unsaved == is_unsaved_) return;
-  is_unsaved_ = is_unsaved;
-  pages_.tell({{"kind", "unsaved"}, {"is", is_unsaved_}});
+Left Scenes::left(const Recipe& wanted) const {
+  const Json unsaved = unsaved_of(wanted);
+  return {files_, unsaved.at("is") || !unsaved.at("others").empty()};
+}
+
+void Scenes::touched() {
+  if (shown_.recipe.document.empty()) return;
+  Json unsaved = unsaved_;
+  unsaved["is"] = true;
+  tell_unsaved(unsaved);
+}
+
+void Scenes::tell_unsaved(const Json& unsaved) {
+  if (unsaved == unsaved_) return;
+  unsaved_ = unsaved;
+  Json words{{"kind", "unsaved"}};
+  words.update(unsaved);
+  pages_.tell(words);
 }
 
 }  // namespace tumble::live

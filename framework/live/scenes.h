@@ -40,11 +40,17 @@ class Scenes {
 
   /// A scene that is made by code cannot be saved: what is done to it is never kept.
   Left left(const Recipe& wanted) const;
-  bool is_unsaved() const { return is_unsaved_; }  // as pages were told last
-  void look_for_unsaved(const Recipe& wanted) { tell_unsaved(left(wanted).has_unsaved); }
-  void tell_unsaved(bool is_unsaved);
+  /// {"is": whether what was done to the shown scene is in no file, "others": names of the other
+  /// scenes of which that holds}, as pages were told last
+  const Json& unsaved() const { return unsaved_; }
+  void look_for_unsaved(const Recipe& wanted) { tell_unsaved(unsaved_of(wanted)); }
+  /// A hand has acted on the shown scene.
+  void touched();
 
  private:
+  Json unsaved_of(const Recipe& wanted) const;
+  void tell_unsaved(const Json& unsaved);
+
   const Sitting& sitting_;
   Pages& pages_;
   SceneStart shown_;
@@ -56,7 +62,7 @@ class Scenes {
   std::map<std::string, Kept> left_;   // by name: scenes that were left for another one
   std::map<std::string, Json> asked_;  // by name: ids and functions, as far as runs have shown
   std::vector<std::filesystem::path> files_;  // saved
-  bool is_unsaved_ = false;
+  Json unsaved_{{"is", false}, {"others", Json::array()}};
 };
 
 }  // namespace tumble::live

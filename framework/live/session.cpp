@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <map>
 #include <set>
 
 #include "framework/core/error.h"
@@ -18,6 +20,8 @@
 
 namespace tumble::live {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// The loop of a sitting: what has come from pages, processes and the watch over sources is taken
 /// to the part that it is for.
@@ -46,6 +50,7 @@ class Session {
   void choose_scene(const std::string& name);
   void save();
   void code_saved(const std::set<std::filesystem::path>& files);
+  void look_for_files();
   std::vector<const Child*> children() const;
 
   const Sitting& sitting_;
@@ -57,6 +62,7 @@ class Session {
   Verdicts verdicts_;
   SaveCheck save_check_;
   Runs runs_;
+  std::map<std::filesystem::path, Clock::time_point> gone_;  // watched files, since when
 };
 
 ServerHooks Session::hooks() {
@@ -91,6 +97,7 @@ void Session::run(int stop) {
     save_check_.listen();
     if (verdicts_.listen() && !runs_.is_starting()) verdicts_.go_on();
     former_.compare(shown_.history(), shown_.has_ended());
+    look_for_files();
     // A page that is closed lets the run stand.
     if (pages_.forget_closed()) runs_.keep_pace();
   }
@@ -121,7 +128,8 @@ void Session::greet(Mailbox& page) const {
   hello["kind"] = "hello";
   hello["speed"] = runs_.speed();
   hello["paused"] = runs_.is_paused();
-  hello["is_unsaved"] = scenes_.is_unsaved();
+  hello["unsaved"] = scenes_.unsaved();
+  hello["starting"] = runs_.starting_reason();
   page.put("say", dumped(hello));
   if (scenes_.can_be_chosen()) page.put("say", dumped(scenes_.offered_words()));
   shown_.greet(page, former_);
@@ -194,6 +202,29 @@ void Session::code_saved(const std::set<std::filesystem::path>& files) {
       pages_.tell({{"kind", "code_saved"}, {"file", one.file.filename().string()}, {"id", one.id}});
     }
   if (is_any) runs_.begin("code", 0.0, runs_.wanted());
+}
+
+// An editor that puts a new file in the place of the old one leaves none for an instant.
+void Session::look_for_files() {
+  constexpr std::chrono::seconds kGone{1};
+  for (const Watched& one : sitting_.watched) {
+    std::error_code unknown;
+    if (std::filesystem::exists(one.file, unknown)) {
+      gone_.erase(one.file);
+      continue;
+    }
+    const auto now = Clock::now();
+    auto [since, is_new] = gone_.emplace(one.file, now);
+    if (is_new || since->second == Clock::time_point::max() || now - since->second < kGone)
+      continue;
+    since->second = Clock::time_point::max();  // told
+    shown_.tell_trouble(
+        {{"title", "Your file is gone"},
+         {"where", one.file.filename().string()},
+         {"text", one.file.string() + " is not there any more. What runs is the code that was "
+                                      "saved last."},
+         {"remedy", "Put it back under this name: the scene begins anew by itself."}});
+  }
 }
 
 /// Signals that end the program, as a descriptor; blocked for all threads that are started later.

@@ -34,6 +34,7 @@ struct Simulator {
   std::string reason;      // "begin", "code", "change", "back", "push", "scene", "check"
   Recipe recipe;           // that it was begun with
   bool has_ended = false;  // it has said how
+  bool is_told_to_compile = false;
 };
 
 }  // namespace tumble::live

@@ -11,7 +11,7 @@ import { Browser } from './browser.mjs';
 
 const [root, build, seconds = '20'] = process.argv.slice(2), tumble = join(build, 'bin/tumble'), pictures = process.env.LIVE_PICTURES;
 function skip(why) { console.log(`skipped: ${why}`); process.exit(77); }
-const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // five tests of seconds; all take minutes
+const isQuick = !process.env.TUMBLE_TEST_WHOLE;   // six tests of seconds; all take minutes
 try { execFileSync('chromium', ['--version'], { stdio: 'ignore' }); } catch { skip('chromium is not installed'); }
 if (!existsSync(tumble)) skip(`${tumble} is not built`);
 const hasReference = existsSync(join(build, 'modules/a1_reference.so'));
@@ -47,7 +47,7 @@ class Live {
   }
 }
 
-const tests = [], kQuick = ['a push', 'the keyboard', 'another origin', 'judges nobody', 'of a save is said'];
+const tests = [], kQuick = ['a push', 'the keyboard', 'another origin', 'judges nobody', 'of a save is said', 'said beside the run'];
 const test = (name, run, needsReference = true) => tests.push({ name, run, needsReference });
 const browser = new Browser();
 
@@ -191,6 +191,65 @@ test('what is said of a save is said of the saved code', async () => {
   await live.stop();
 });
 
+test('what is said beside the run is true of it', async () => {
+  const live = await Live.start('poked_box', '--modules', 'reference');
+  const page = await browser.open(live.address, { before: `const Source = EventSource; window.EventSource = class extends Source { constructor(...words) { super(...words); window.stream = this; } };
+    window.tell = message => stream.dispatchEvent(new MessageEvent('say', { data: JSON.stringify(message) }));` });
+  const tell = message => page.value(`tell(${JSON.stringify(message)})`), text = id => page.value(`document.getElementById("${id}").textContent.trim()`);
+  await page.until('tumble.run && tumble.run.length > 30 && tumble.hadStage', 'the motion');
+  // Of the shown scene, of another one, of none.
+  const unsaved = () => page.value('getComputedStyle(document.getElementById("unsaved")).visibility === "hidden" ? "" : document.getElementById("unsaved").textContent');
+  expect(await unsaved() === '', `nothing is unsaved at the start: ${await unsaved()}`);
+  await tell({ kind: 'unsaved', is: true, others: ['pong_1'] });
+  expect(await unsaved() === 'not saved', `the shown scene is not saved: ${await unsaved()}`);
+  await tell({ kind: 'unsaved', is: false, others: ['pong_1'] });
+  expect(await unsaved() === 'pong_1: not saved' && /to pong_1 /.test(await page.value('document.getElementById("unsaved").title')), `another one is not saved: ${await unsaved()}`);
+  await tell({ kind: 'unsaved', is: false, others: [] });
+  // A ray of the reference is not the user's; a push by numbers has none.
+  const point_body_m = [0.1, 0, 0];
+  await tell({ kind: 'aimed', body: 0, face: 3, point_body_m });
+  expect(/by the ray function of the reference$/.test(await text('aimed')), `whose ray: ${await text('aimed')}`);
+  await tell({ kind: 'aimed', body: 0, point_body_m });
+  expect(!/ray/.test(await text('aimed')), `no ray: ${await text('aimed')}`);
+  // A pull of many forces is one.
+  for (let i = 0; i < 20; ++i) await tell({ kind: 'push', push: { body: 'box', force_n: [1, 0, 0], point_m: [0, 0, 0], start_s: 1 + i / 60, duration_s: 1 / 60 } });
+  await page.value('[...document.querySelectorAll("#tabs button")].find(tab => tab.textContent === "Change").click()');
+  expect(/with the push so far/.test(await page.value('document.querySelector("#panes").textContent')), 'a pull is not twenty pushes');
+  // Of a run that went on after the one before had stopped it is not said that nothing has changed.
+  await page.value('tumble.reason = "code", tumble.savedId = "a1", tumble.former = { end: 0.25, length: 9, stopped: "Crashed" }, 1');
+  await tell({ kind: 'difference', same_until_s: 0.25 });
+  await page.until('!document.getElementById("difference").hidden', 'what is said of both runs', 20);
+  expect(await page.value('document.querySelector("#difference span").textContent') === 'The run before stopped at 0.25 s. This one is the same until then, and goes on.', `the run before had stopped: ${await text('difference')}`);
+  await page.value('tumble.former = null, 1');
+  // The compiler is at work for as long as it is, also where the run before ends meanwhile.
+  await tell({ kind: 'code_saved', file: 'a1.cpp', id: 'a1' });
+  await tell({ kind: 'starting', reason: 'code' });
+  await tell({ kind: 'end', stopped_by: '', time_s: 120, faults: '' });
+  expect(/^compiling …/.test(await text('state')), `it is compiled still: ${await text('state')}`);
+  await page.value('tumble.status.since -= 11000');
+  await page.until('document.getElementById("state").textContent === "compiling … 10 s"', 'for how long it is compiled', 20);
+  // Virtual times are those of a timewarp: the tab goes with it.
+  const tabs = () => page.value('[...document.querySelectorAll("#tabs button")].filter(tab => tab.checkVisibility()).map(tab => tab.textContent).join()');
+  await page.value('tumble.run.facts.engine = "tw"');
+  await tell({ kind: 'times', processes: ['box'], from: 0, moves: [[0, 0, 0.5, 0]] });
+  expect(/Virtual times/.test(await tabs()), `tabs of a timewarp: ${await tabs()}`);
+  await page.value('[...document.querySelectorAll("#tabs button")].find(tab => tab.textContent === "Virtual times").click()');
+  await page.value('tumble.run.facts.engine = "rd"');
+  await tell({ kind: 'times', processes: ['box'], from: 0, moves: [] });
+  expect(!/Virtual times/.test(await tabs()) && await page.value('document.querySelector("#tabs [aria-selected=true]").textContent') === 'Change', `tabs of another engine: ${await tabs()}`);
+  // A long line that is no story stays in the pane.
+  await tell({ kind: 'verdicts', id: 'a1', title: 'Impulse', file: 'a1.cpp', handout: 'handouts/a1_impulse', said: `tumble: ${'a long line '.repeat(30)}`, tests: [] });
+  await page.value('[...document.querySelectorAll("#tabs button")].find(tab => tab.textContent === "Verdicts").click()');
+  expect(await page.value('[...document.querySelectorAll(".pane")].every(pane => pane.scrollWidth <= pane.clientWidth)'), 'the pane is not wider than it is');
+  expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
+  // Ctrl-C in the terminal.
+  await live.stop();
+  await page.until('/^The program has ended.*Start it again in the terminal/s.test(document.getElementById("trouble").textContent.trim())', 'what to do when the program has ended', 20);
+  await sleep(4000);   // the stream is tried again
+  expect(await text('state') === 'the program has ended', `it stays ended: ${await text('state')}`);
+  if (pictures) await page.picture(join(pictures, 'gone.png'));
+});
+
 test('a page of another origin gets nothing', async () => {
   const live = await Live.start('poked_box', '--modules', 'reference'), address = new URL(live.address);
   const foreign = createServer((request, response) => { response.setHeader('Content-Type', 'text/html'); response.end('<title>foreign</title>'); });
@@ -244,6 +303,7 @@ test('a saved slip shows its verdict; errors, loops and crashes are shown and th
   const stood = await page.value('document.getElementById("clock").textContent');
   await sleep(1500);
   expect(await page.value('document.getElementById("clock").textContent') === stood, 'nothing moves after a crash');
+  expect(JSON.parse(await page.value('document.body.dataset.asked')).a1.collision_impulse >= 1, `the call that crashed is one of the run: ${await page.value('document.body.dataset.asked')}`);
   await save(right, 'mended', runs => `Number(document.body.dataset.runs) > ${runs} && !document.body.dataset.trouble && tumble.run.length > 2`);
   expect(page.errors.length === 0, `the page has errors: ${page.errors.join('; ')}`);
   await live.stop('SIGTERM');
@@ -303,7 +363,6 @@ test('the view finds and follows; changes keep pushes; a refused number stands a
   await page.value('(async () => { const post = c => fetch("do", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(c) }); await post({ do: "aim", body: 0, point_body_m: [0, 0, 0] }); await post({ do: "push", force_n: [3000, 0, 0], duration_s: 0.1 }); })()');
   await page.until('/left the picture/.test(document.getElementById("hint").textContent)', 'that the box has left');
   if (pictures) await page.picture(join(pictures, 'lost.png'));
-  expect(JSON.parse(await page.value('document.body.dataset.asked')).a1.collision_impulse >= 1, `the call that crashed is one of the run: ${await page.value('document.body.dataset.asked')}`);
   await page.value('document.getElementById("go").click()');
   await page.until('document.getElementById("state").textContent === "paused"', 'the pause', 20);
   // The page has drawn nothing since the pause: found is what has moved on until then.

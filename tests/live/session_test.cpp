@@ -313,7 +313,7 @@ TEST_F(LiveSession, EachAssignmentKeepsItsVerdicts) {
 }
 
 TEST_F(LiveSession, SaysWhetherAnythingIsUnsavedWhileThereIsTime) {
-  ASSERT_TRUE(hears("\"is_unsaved\":false"));
+  ASSERT_TRUE(hears("\"unsaved\":{\"is\":false"));
   ASSERT_TRUE(hears("event: f"));
   post(R"({"do": "change", "changes": {"gravity_m_s2": [0, 0, -1]}})");
   ASSERT_TRUE(hears("\"kind\":\"unsaved\",\"is\":true"));
@@ -321,6 +321,59 @@ TEST_F(LiveSession, SaysWhetherAnythingIsUnsavedWhileThereIsTime) {
   ASSERT_TRUE(hears("event: f"));
   post(R"({"do": "save"})");
   EXPECT_TRUE(hears("\"kind\":\"unsaved\",\"is\":false"));
+}
+
+// What was done to one scene is not what "not saved" means beside another.
+TEST_F(LiveSession, NamesTheSceneOfWhichSomethingIsUnsaved) {
+  ASSERT_TRUE(hears("event: f"));
+  post(R"({"do": "change", "changes": {"gravity_m_s2": [0, 0, -1]}})");
+  ASSERT_TRUE(hears("\"kind\":\"unsaved\",\"is\":true,\"others\":[]"));
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"change\""));
+  post(R"({"do": "scene", "name": "ball"})");
+  ASSERT_TRUE(hears("\"kind\":\"unsaved\",\"is\":false,\"others\":[\"box\"]"));
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"scene\""));
+  post(R"({"do": "scene", "name": "box"})");
+  EXPECT_TRUE(hears("\"kind\":\"unsaved\",\"is\":true,\"others\":[]"));
+}
+
+TEST_F(LiveSession, PushWhileCodeIsCompiledStaysInItsRun) {
+  ASSERT_TRUE(hears("event: f"));
+  code("hand");
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  ASSERT_TRUE(hears("event: f"));
+  code("slow");
+  ASSERT_TRUE(hears("\"kind\":\"push\""));
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  EXPECT_TRUE(hears("\"pushes\":["));
+  EXPECT_TRUE(hears("event: f"));
+  EXPECT_NE(before_it_.find("\"force_n\":[7"), std::string::npos) << before_it_;
+}
+
+TEST_F(LiveSession, SaysThatASceneWaitsForTheCompiler) {
+  code("slow");
+  ASSERT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  post(R"({"do": "scene", "name": "ball"})");
+  ASSERT_TRUE(hears("\"kind\":\"starting\",\"reason\":\"scene\""));
+  EXPECT_TRUE(hears("\"kind\":\"starting\",\"reason\":\"code\""));
+  EXPECT_TRUE(hears("\"kind\":\"run\",\"reason\":\"scene\""));
+}
+
+TEST_F(LiveSession, FileThatIsGoneIsTold) {
+  ASSERT_TRUE(hears("event: f"));
+  const fs::path away = folder_.path() / "renamed.txt";
+  fs::rename(file(), away);
+  EXPECT_TRUE(hears("\"title\":\"Your file is gone\",\"where\":\"code.txt\""));
+  EXPECT_TRUE(hears("event: f"));  // of the code before
+  fs::rename(away, file());
+  EXPECT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+}
+
+TEST_F(LiveSession, CallThatNeverReturnedIsAmongThoseThatTheRunAsked) {
+  ASSERT_TRUE(hears("[\"f\",12],[\"g\",0]"));
+  code("crash");
+  ASSERT_TRUE(hears("[\"f\",12],[\"g\",0]"));
+  EXPECT_TRUE(hears("[\"f\",13],[\"g\",1],[\"h\",0]"));
+  EXPECT_TRUE(hears("\"text\":\"a1_impulse.cpp: crashed, in collision_impulse\\n\""));
 }
 
 TEST_F(LiveSession, RefusedChangeIsToldAsOne) {

@@ -3,24 +3,28 @@
 const byId = id => document.getElementById(id);
 
 const shown = { v: false, omega: false, L: false, impulse: true, contact: true, constraint: false, axes: false, centres: false, chosenOnly: false, ghost: true, forces: true, links: true, halo: false, ground: true, shadows: true };
-const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '' }, isLost: false, finds: false, findsUntil: 0, isFormerOnly: false, begunAt: 0, turnAt: 0 };
+const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, tool: 'push', paused: false, speed: 1, time: 0, follows: true, difference: null, frames: 0, picture: null, asked: null, status: { text: 'starting', kind: '', since: 0 }, isStarting: false, isLost: false, finds: false, findsUntil: 0, isFormerOnly: false, begunAt: 0, turnAt: 0 };
 
 // One after the other: a pull that came behind its release would hold the body for ever.
 let posted = Promise.resolve();
 function post(command) {
-  posted = posted.then(() => fetch('do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(command) })).catch(() => say('the program has ended', 'bad'));
+  posted = posted.then(() => fetch('do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(command) })).catch(showGone);
   return posted;
 }
 
 function say(text, kind = '') {
-  page.status = { text, kind };
+  const isSame = page.status.text === text;
+  page.status = { text, kind, since: isSame ? page.status.since : performance.now() };
   showState();
 }
+
+const kWorthCounting = 5;   // s: what takes longer says how long it has taken
 
 // A run that goes on may be paused, or be looked at at an earlier instant.
 function showState() {
   const { text, kind } = page.status, isGoing = text === 'running' && page.run && page.run.length > 0;
-  const words = !isGoing ? text : isPast() ? 'paused at an earlier instant' : page.paused ? 'paused' : text;
+  const waited = kWorthCounting * Math.floor((performance.now() - page.status.since) / 1000 / kWorthCounting);
+  const words = kind === 'busy' && waited > 0 ? `${text} ${waited} s` : !isGoing ? text : isPast() ? 'paused at an earlier instant' : page.paused ? 'paused' : text;
   if (byId('state').textContent !== words) byId('state').textContent = words;
   byId('state').className = kind;
 }
@@ -144,7 +148,7 @@ const hand = {
   showPush(body, way, span) { byId('aimed').textContent = wordsOfPush(body, way, span); },
   push(body, way, span) {
     const { force, seconds } = pushOf(body, way, span);
-    byId('aimed').textContent = wordsOfPush(body, way, span);
+    byId('aimed').textContent = `${wordsOfPush(body, way, span)}${page.paused ? '. It acts when the run goes on.' : ''}`;
     post({ do: 'push', force_n: force, duration_s: seconds });
   },
   pull(to) {   // at most 60 times a second
@@ -179,7 +183,7 @@ const asked = new AskedBox();
 const panes = {
   verdicts: new VerdictPane(asked.box),
   scenes: new ScenesPane(name => { if (name !== page.scene) post({ do: 'scene', name }); }),
-  change: new ChangePane(changes => post({ do: 'change', changes, keep: panes.change.keep.checked }), () => page.pushes.length),
+  change: new ChangePane(changes => post({ do: 'change', changes, keep: panes.change.keep.checked }), () => foldPushes(page.pushes).length),
   body: new BodyPane((body, point, force, seconds) => {
     if (!page.follows) newest();
     post({ do: 'aim', body, point_body_m: point }).then(() => post({ do: 'push', force_n: force, duration_s: seconds }));
@@ -208,11 +212,18 @@ function openTab(at) {
   showPanes(true);
 }
 
-function addTimesTab() {
-  if (tabs.some(tab => tab[0] === 'Virtual times') || !page.run || page.run.facts.engine !== 'tw') return;
-  tabs.push(['Virtual times', times.box]);
-  addTab(tabs[tabs.length - 1], tabs.length - 1);
-  openTab(opened);
+// Only a timewarp has virtual times.
+function showTimesTab() {
+  if (!page.run) return;
+  const at = tabs.findIndex(tab => tab[0] === 'Virtual times'), isThere = page.run.facts.engine === 'tw';
+  if (isThere && at < 0) {
+    tabs.push(['Virtual times', times.box]);
+    addTab(tabs[tabs.length - 1], tabs.length - 1);
+    openTab(opened);
+  } else if (at >= 0) {
+    byId(`tab${at}`).hidden = !isThere;
+    if (!isThere && opened === at) openTabOf('Change');
+  }
 }
 
 let panesShown = 0;
@@ -309,6 +320,7 @@ function follow() {
 const kTurnMs = 25;   // between two pictures that the processor draws: 30 a second of 60 turns
 
 function tick(now) {
+  if (page.status.kind === 'busy') showState();
   const run = page.run, dt = page.last === undefined ? 0 : Math.min(0.25, (now - page.last) / 1000);
   page.last = now;
   if (run && run.length > 0) {
@@ -361,7 +373,20 @@ function listen() {
     if (page.ended) { page.ended = false; showHint(); }
   });
   stream.addEventListener('e', event => { if (page.run) page.run.addEvent(floatsOf(event.data)); });
-  stream.onerror = () => say('the program has ended, or is gone for a moment', 'bad');
+  stream.onerror = () => {
+    if (page.isGone) return;
+    say('the program has ended, or is gone for a moment', 'bad');
+    page.goneTimer = page.goneTimer || setTimeout(showGone, 1000 * kGoneFor);
+  };
+}
+
+// The stream comes back by itself where the program still runs (told.hello).
+const kGoneFor = 3;   // s
+
+function showGone() {
+  page.isGone = true;
+  showTrouble({ title: 'The program has ended', text: 'This page shows what has come until then; nothing more happens in it.', remedy: 'Start it again in the terminal (./tumble live …) and open the address that it prints: each start has a new one.' });
+  say('the program has ended', 'bad');
 }
 
 tabs.forEach(addTab);

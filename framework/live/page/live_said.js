@@ -21,7 +21,7 @@ function showTrouble(trouble) {
 // ---- What the program says ----
 
 function begin(message) {
-  page.isCompiling = false;
+  page.isCompiling = page.isStarting = false;
   const head = message.head, isBack = head.from_s > 0 && page.run;
   page.pushes = message.pushes;
   page.changes = message.changes;
@@ -63,7 +63,7 @@ function begin(message) {
   panes.change.show(page.run, page.changes, page.chosen);
   document.body.dataset.runs = String(Number(document.body.dataset.runs || 0) + 1);
   document.body.dataset.reason = message.reason;
-  addTimesTab();
+  showTimesTab();
 }
 
 // An arrow stays for 0.12 s behind its force (marks.js), but in a pull only until the next one.
@@ -110,19 +110,32 @@ function showDifference() {
   line.hidden = !message || page.isFormerOnly || isEarly;
   if (isEarly) setTimeout(showDifference, 1000 * kAlikeFor);
   if (line.hidden) return;
-  const isDifferent = message.time_s !== undefined, hasStopped = Boolean(page.run && page.run.stopped), isSave = !isDifferent && !hasStopped && page.reason === 'code' && page.savedId;
+  const isDifferent = message.time_s !== undefined, hasStopped = Boolean(page.run && page.run.stopped);
+  const goesFarther = !isDifferent && !hasStopped && Boolean(page.former && page.former.stopped && page.run && page.run.end > page.former.end);   // than the run before, which stopped
+  const isSave = !isDifferent && !hasStopped && !goesFarther && page.reason === 'code' && page.savedId;
   const change = page.reason === 'code' && page.savedId ? panes.verdicts.changeOf(page.savedId) : null, isWorse = Boolean(change) && change.broken > change.mended;
   line.classList.toggle('worse', isDifferent && isWorse);
   byId('toDifference').hidden = !isDifferent;
   byId('toScenes').hidden = !isSave;
   const tests = change && isDifferent && change.mended + change.broken > 0 ? ` Of the tests this save has mended ${change.mended} and broken ${change.broken}.` : '';
-  line.querySelector('span').textContent = isDifferent ? `Another motion than in the run before, from ${short(message.time_s, 6)} s on: ${differenceInWords(message.what)}.${tests}` : `${hasStopped ? 'This run has stopped; it is the same' : 'The same'} as the run before until ${short(message.same_until_s, 4)} s.${isSave && page.asked ? ` ${adviceOnSame(page.asked, page.savedId)}` : ''}`;
+  line.querySelector('span').textContent = isDifferent ? `Another motion than in the run before, from ${short(message.time_s, 6)} s on: ${differenceInWords(message.what)}.${tests}` : goesFarther ? `The run before stopped at ${short(page.former.end, 4)} s. This one is the same until then, and goes on.` : `${hasStopped ? 'This run has stopped; it is the same' : 'The same'} as the run before until ${short(message.same_until_s, 4)} s.${isSave && page.asked ? ` ${adviceOnSame(page.asked, page.savedId)}` : ''}`;
   document.body.dataset.difference = isDifferent ? String(message.time_s) : '';
 }
 
-function showUnsaved(is) {
-  byId('unsaved').classList.toggle('off', !is);
+// Of the shown scene, or else of others.
+function showUnsaved({ is, others }) {
+  const line = byId('unsaved'), names = listed(others), forgets = 'Ctrl-C in the terminal forgets it; closing this page does not.';
+  line.classList.toggle('off', !is && others.length === 0);
+  line.classList.toggle('elsewhere', !is);
+  line.textContent = is ? 'not saved' : others.length > 0 ? `${names}: not saved` : '';
+  line.title = is ? `What was done by hand is in no file yet. ${forgets}` : `What was done by hand to ${names} is in no file yet: choose it among the scenes to save it. ${forgets}`;
   document.body.dataset.unsaved = String(is);
+}
+
+// Whose it is: of a1, as the run has it.
+function rayFunction() {
+  const source = /(?:^|,)a1=([^,]+)/.exec(page.run.facts.modules || '');
+  return source && source[1] !== 'reference' ? 'your ray function' : `the ray function of ${source ? 'the reference' : 'the framework'}`;
 }
 
 const told = {
@@ -131,8 +144,13 @@ const told = {
     page.speed = message.speed;
     byId('speed').value = String(message.speed);
     beginScene(message);   // all comes again
-    showUnsaved(message.is_unsaved);
+    showUnsaved(message.unsaved);
+    clearTimeout(page.goneTimer);
+    page.goneTimer = 0;
+    page.isGone = page.isStarting = false;
+    showTrouble(null);
     say('connected');
+    if (message.starting) told.starting({ reason: message.starting });
   },
   scene(message) {
     beginScene(message);
@@ -141,7 +159,7 @@ const told = {
     page.ended = page.hadStage = page.isLost = false;
     page.time = 0;
     if (page.picture) page.picture.clear();
-    byId('about').textContent = byId('aimed').textContent = '';
+    byId('about').textContent = byId('aimed').textContent = byId('scales').textContent = showScales.words = '';
     byId('saved').hidden = true;
     byId('body').textContent = '';
     times.clear();
@@ -155,7 +173,7 @@ const told = {
     showTime();
   },
   scenes(message) { page.own = message.own; panes.scenes.set(message); },
-  unsaved(message) { showUnsaved(message.is); },
+  unsaved(message) { showUnsaved(message); },
   asked(message) {
     if (message.scene !== page.scene) return;
     page.asked = message.modules;
@@ -165,15 +183,15 @@ const told = {
     document.body.dataset.asked = JSON.stringify(Object.fromEntries(message.modules.map(module => [module.id, Object.fromEntries(module.functions.filter(([, count]) => count > 0))])));
   },
   run: begin,
-  starting(message) { say({ code: 'compiling …', change: 'starting over …' }[message.reason] || 'starting …', 'busy'); },
-  code_saved(message) { page.isCompiling = true; say(`${message.file} was saved: compiling …`, 'busy'); page.savedId = message.id; panes.verdicts.saved(message.id); showDifference(); document.body.dataset.saved = String(performance.now()); },
+  starting(message) { page.isStarting = true; say({ code: 'compiling …', change: 'starting over …' }[message.reason] || 'starting …', 'busy'); },
+  code_saved(message) { page.isCompiling = page.isStarting = true; say(`${message.file} was saved: compiling …`, 'busy'); page.savedId = message.id; panes.verdicts.saved(message.id); showDifference(); document.body.dataset.saved = String(performance.now()); },
   pace(message) { page.paused = message.paused; page.speed = message.speed; byId('speed').value = String(message.speed); showTime(); },
   aimed(message) {
     const run = page.run;
     if (!run) return;
     if (message.problem) byId('aimed').textContent = message.problem;
-    else if (message.body < 0) byId('aimed').textContent = 'your ray function hits nothing that can move here';
-    else byId('aimed').textContent = `hit ${run.about.bodies[message.body].name}${message.face !== undefined ? `, face ${message.face}` : ''}, at (${message.point_body_m.map(x => short(x, 3)).join(', ')}) m of its frame, by your ray function`;
+    else if (message.body < 0) byId('aimed').textContent = `${rayFunction()} hits nothing that can move here`;
+    else byId('aimed').textContent = `hit ${run.about.bodies[message.body].name}${message.face !== undefined ? `, face ${message.face}` : ''}, at (${message.point_body_m.map(x => short(x, 3)).join(', ')}) m of its frame${message.face !== undefined ? `, by ${rayFunction()}` : ''}`;
     if (page.picture) page.picture.aimed(message.body, message.point_body_m || [0, 0, 0]);
     document.body.dataset.aimed = String(message.body);
   },
@@ -189,23 +207,24 @@ const told = {
     if (isOpen('Change')) panes.change.showWhatGoes();
     document.body.dataset.pushes = String(page.pushes.length);
   },
-  times(message) { times.add(message); addTimesTab(); },
+  times(message) { times.add(message); showTimesTab(); },
   end(message) {
     page.run.stopped = message.stopped_by;
     if (message.stopped_by) showTrouble({ title: 'The run stopped', text: message.stopped_by, where: '' });
     else if (message.faults) showTrouble({ title: 'This run cannot be trusted', text: message.faults, where: '' });
-    say(message.stopped_by ? `stopped at ${short(message.time_s)} s` : `ended at ${short(message.time_s)} s`, message.stopped_by ? 'bad' : '');
+    if (!page.isStarting) say(message.stopped_by ? `stopped at ${short(message.time_s)} s` : `ended at ${short(message.time_s)} s`, message.stopped_by ? 'bad' : '');
     page.ended = true;
     showDifference();
     showHint();
     showTime();
   },
   trouble(message) {
-    page.isCompiling = false;
+    page.isCompiling = page.isStarting = false;
     showTrouble(message);
     if (message.title === 'Does not compile') panes.verdicts.refused();
     if (message.ends_run && page.run) {
       page.ended = true;
+      if (page.follows) page.time = page.run.end;   // nothing more comes that the clock could wait for
       page.run.stopped = page.run.stopped || message.title;
       showDifference();
     }

@@ -19,6 +19,12 @@ function lineOf(story, word) {
   return found ? found[1].trim() : '';
 }
 
+// Lines of a story. What stands behind a word and a colon, "found:    6 N s", goes on below itself.
+function storyLines(story) {
+  const lines = (story || '').replace(/^\n/, '').split('\n');
+  return lines.map((line, i) => html('span', { className: /^ {2}[a-z ]+: +\S/.test(line) ? 'part' : '' }, line + (i + 1 < lines.length ? '\n' : '')));
+}
+
 class VerdictPane {
   // asked: what is shown above the verdicts
   constructor(asked) {
@@ -95,7 +101,7 @@ class VerdictPane {
     if (v.said) { box.append(html('h2', { className: 'bad' }, `${v.file || v.id}: no test ran`), html('pre', {}, v.said)); return; }
     const right = v.tests.filter(test => test.verdict === 'right'), { mended, broken } = this.changeOf(v.id) || { mended: 0, broken: 0 };
     box.append(html('p', { className: 'count' }, this.countInWords(v)));
-    if (mended + broken > 0) box.append(html('p', {}, html('span', { className: 'good' }, `${mended} mended`), ', ', html('span', { className: broken ? 'bad' : '' }, `${broken} broken`), ' by this save.'));
+    if (mended + broken > 0) box.append(html('p', {}, html('span', { className: mended ? 'good' : '' }, `${mended} mended`), ', ', html('span', { className: broken ? 'bad' : '' }, `${broken} broken`), ' by this save.'));
     const choice = html('select', { ariaLabel: 'Grouping of the stories' }, html('option', { value: 'cause' }, 'by likely cause'), html('option', { value: 'group' }, 'by subject of the test'));
     choice.value = this.by;
     choice.addEventListener('change', () => { this.by = choice.value; this.show(); });
@@ -106,6 +112,7 @@ class VerdictPane {
       box.append(html('h2', { className: 'minor' }, `${name} (${tests.length} test${tests.length === 1 ? '' : 's'}, ${points} point${points === '1' ? '' : 's'})`));
       for (const test of tests) box.append(this.story(test, v, open));
     }
+    if (wrong.length === 0) box.append(html('p', { className: 'good' }, 'Every public test is right. Hidden tests ask the same functions about other inputs.'));
     if (right.length > 0) {
       const list = html('details', { className: 'story right' }, html('summary', {}, `${right.length} right`), html('ul', { className: 'list' }, ...right.map(test => html('li', {}, test.title, this.tag(test, v) || ''))));
       list.dataset.test = `right of ${v.id}`;
@@ -152,7 +159,7 @@ class VerdictPane {
     details.dataset.test = `${v.id} ${test.test}`;
     details.open = open.has(details.dataset.test);
     if (where) details.append(html('p', { className: 'soft' }, where));
-    details.append(html('pre', {}, (test.story || '').replace(/^\n/, '')));
+    details.append(html('pre', {}, ...storyLines(test.story)));
     if (test.printed) details.append(html('p', { className: 'soft' }, 'your code printed:'), html('pre', {}, test.printed));
     const link = this.handoutLink(read, v);
     if (link) details.append(html('p', {}, link));

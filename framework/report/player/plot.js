@@ -25,7 +25,7 @@ function html(name, attributes = {}, ...children) {
 // Of tabs, or of buttons of which one holds, one is a stop of the keyboard; arrows go to the others.
 // @param word  the attribute that says which one holds: aria-selected, aria-checked
 function oneStop(list, word) {
-  const all = () => [...list.children], mark = () => { for (const one of all()) one.tabIndex = one.getAttribute(word) === 'true' ? 0 : -1; };
+  const all = () => [...list.children].filter(one => !one.hidden), mark = () => { for (const one of list.children) one.tabIndex = one.getAttribute(word) === 'true' ? 0 : -1; };
   list.addEventListener('keydown', event => {
     const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key], at = all().indexOf(document.activeElement);
     if (!way || at < 0 || event.ctrlKey || event.metaKey || event.altKey) return;
