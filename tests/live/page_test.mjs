@@ -205,6 +205,16 @@ test('what is said beside the run is true of it', async () => {
   await tell({ kind: 'unsaved', is: false, others: ['pong_1'] });
   expect(await unsaved() === 'pong_1: not saved' && /to pong_1 /.test(await page.value('document.getElementById("unsaved").title')), `another one is not saved: ${await unsaved()}`);
   await tell({ kind: 'unsaved', is: false, others: [] });
+  // A body of which a part is in the picture has not left it.
+  const lost = beyond => page.value(`(() => {
+    const { picture, time } = tumble, { camera } = picture, { place, radius } = picture.placesAt(time)[0], stood = camera.position.clone(), ahead = camera.getWorldDirection(stood.clone()), right = ahead.clone().cross(camera.up).normalize();
+    const away = 10 * radius, half = away * Math.tan(camera.fov * Math.PI / 360) * camera.aspect;
+    camera.position.copy(place).addScaledVector(ahead, -away).addScaledVector(right, half + ${beyond} * radius);
+    const is = picture.isLost(time);
+    camera.position.copy(stood);
+    return is;
+  })()`);
+  expect(await lost(0.5) === false && await lost(1.5) === true, `half of a body in the picture: ${await lost(0.5)}; none of it: ${await lost(1.5)}`);
   // A ray of the reference is not the user's; a push by numbers has none.
   const point_body_m = [0.1, 0, 0];
   await tell({ kind: 'aimed', body: 0, face: 3, point_body_m });

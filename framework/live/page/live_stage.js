@@ -346,12 +346,15 @@ class LivePicture {
     this.orbit.update();
   }
 
-  // Whether no movable body is in the picture.
+  // Whether no part of a movable body is in the picture; a body is as large as the ball around it.
   isLost(t) {
     if (!this.stage || !this.camera) return false;
     this.camera.updateMatrixWorld();
-    const places = this.placesAt(t);
-    return places.length > 0 && places.every(({ place }) => { const p = place.clone().project(this.camera); return Math.abs(p.x) > 1.03 || Math.abs(p.y) > 1.03 || p.z > 1; });
+    const { matrixWorldInverse, fov, aspect, far } = this.camera, places = this.placesAt(t);
+    return places.length > 0 && places.every(({ place, radius }) => {
+      const seen = place.clone().applyMatrix4(matrixWorldInverse), half = -seen.z * Math.tan(fov * Math.PI / 360);   // of the picture's height, there
+      return half <= 0 || -seen.z > far || Math.abs(seen.x) - radius > half * aspect || Math.abs(seen.y) - radius > half;
+    });
   }
 
   // The grid goes with the view by whole meshes, and the camera reaches as far as it stands away.
