@@ -214,10 +214,9 @@ void Session::look_for_files() {
       continue;
     }
     const auto now = Clock::now();
-    auto [since, is_new] = gone_.emplace(one.file, now);
-    if (is_new || since->second == Clock::time_point::max() || now - since->second < kGone)
-      continue;
-    since->second = Clock::time_point::max();  // told
+    const auto [since, is_new] = gone_.emplace(one.file, now);
+    // A run that begins takes the words away, and a file that is gone still needs them.
+    if (is_new || now - since->second < kGone || !shown_.trouble().empty()) continue;
     shown_.tell_trouble(
         {{"title", "Your file is gone"},
          {"where", one.file.filename().string()},

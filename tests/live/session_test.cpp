@@ -366,6 +366,12 @@ TEST_F(LiveSession, FileThatIsGoneIsTold) {
   EXPECT_TRUE(hears("event: f"));  // of the code before
   fs::rename(away, file());
   EXPECT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  // A run that begins meanwhile does not bring it back.
+  fs::rename(other_file(), away);
+  EXPECT_TRUE(hears("\"title\":\"Your file is gone\",\"where\":\"other.txt\""));
+  code("right");
+  EXPECT_TRUE(hears("\"kind\":\"run\",\"reason\":\"code\""));
+  EXPECT_TRUE(hears("\"title\":\"Your file is gone\",\"where\":\"other.txt\""));
 }
 
 TEST_F(LiveSession, CallThatNeverReturnedIsAmongThoseThatTheRunAsked) {
