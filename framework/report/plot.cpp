@@ -27,6 +27,7 @@ constexpr double kMostDecades = 40.0;
 constexpr double kFlat = 1.001;
 // on a linear axis: length of the shortest over its largest value; numbers have six digits
 constexpr double kFlatShare = 1e-4;
+constexpr double kRoom = 0.06;  // between a curve and the frame, over the curve's length
 
 // Where things stand, in units of the drawing. Numbers are at the left of the frame, names below
 // it. In a narrow drawing the name of the upright axis stands above the frame.
@@ -61,13 +62,14 @@ Range widened(Range range, Scale scale) {
     // equal values: show a decade on both sides, not the last digits
     if (range.high < kFlat * range.low) return {range.low / 10.0, range.high * 10.0};
     const double decades = std::max(std::log10(range.high / range.low), 0.5),
-                 room = std::pow(10.0, 0.06 * decades);
+                 room = std::pow(10.0, kRoom * decades);
     return {range.low / room, range.high * room};
   }
   // A curve that is constant to four digits is drawn as a straight line, with numbers that differ.
   const double size = range.high - range.low,
                least = kFlatShare * std::max(std::abs(range.low), std::abs(range.high));
-  const double room = size > 0 || least > 0 ? std::max(0.06 * size, 0.5 * (least - size)) : 1.0;
+  const double room = std::max(kRoom * size, 0.5 * (least - size));
+  if (room == 0) return {-kRoom, 1.0};  // 0 alone: counts, shares and errors are never below it
   return {range.low - room, range.high + room};
 }
 
@@ -218,6 +220,16 @@ PlotFrame frame_of(const Plot& plot) {
 constexpr Sheet kWide = {640, 78, 622, 34, 306, 1000, false};
 constexpr double kNarrowWidth = 340, kNarrowHeight = 210;
 
+// The frame begins below the title, of however many lines.
+Sheet wide_sheet(const Plot& plot) {
+  Sheet sheet = kWide;
+  const auto lines = wrapped(plot.title, sheet.letters(kBoldLetter)).size();
+  const double more = kTitleHeight * static_cast<double>(lines - 1);
+  sheet.top += more;
+  sheet.bottom += more;
+  return sheet;
+}
+
 // As wide as numbers at the left need it, below its title and the name of the upright axis.
 Sheet narrow_sheet(const Plot& plot, const Range& up) {
   std::size_t longest = 1;
@@ -268,6 +280,49 @@ std::string covering(const Plot& plot, const Sheet& sheet, double& bottom) {
   return svg;
 }
 
+struct Box {
+  double left, right, top, bottom;
+  bool holds(double x, double y) const { return x > left && x < right && y > top && y < bottom; }
+};
+
+// How much of the curves lies in the box: parts of lines, each an eighth of what is between points.
+std::size_t drawn_in(const Box& box, const Plot& plot, const Scaled& x, const Scaled& y) {
+  constexpr int kParts = 8;
+  std::size_t parts = 0;
+  for (const Curve& curve : plot.curves)
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      const std::size_t next = std::min(i + 1, curve.x.size() - 1);
+      const double x0 = x(curve.x[i]), y0 = y(curve.y[i]), x1 = x(curve.x[next]),
+                   y1 = y(curve.y[next]);
+      for (int part = 0; part < kParts; ++part)
+        parts += box.holds(x0 + part * (x1 - x0) / kParts, y0 + part * (y1 - y0) / kParts);
+    }
+  return parts;
+}
+
+// The name of a limit stands above its line at the right, or where it hides less of the curves.
+std::string name_of(const Limit& limit, const Plot& plot, const Sheet& sheet, const Scaled& x,
+                    const Scaled& y) {
+  constexpr double kInside = 5, kAbove = 5, kBelow = 14, kHeight = 16;
+  const double at = y(limit.y),
+               width = kMeanLetter * static_cast<double>(limit.name.size()) + kInside;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  std::string best;
+  for (const double base : {at - kAbove, at + kBelow})
+    for (const bool is_right : {true, false}) {
+      const double edge = is_right ? sheet.right - kInside : sheet.left + kInside;
+      const Box box{is_right ? edge - width : edge, is_right ? edge : edge + width, base - kHeight,
+                    base + kInside};
+      if (box.top < sheet.top || base > sheet.bottom - 1) continue;
+      const std::size_t hidden = drawn_in(box, plot, x, y);
+      if (hidden >= least) continue;
+      least = hidden;
+      best = text(edge, base, limit.name, is_right ? "end" : "start",
+                  " fill=\"#a82c00\" class=\"halo\"");
+    }
+  return best;
+}
+
 std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& sheet) {
   const double middle = 0.5 * (sheet.left + sheet.right);
   const Scaled x{plot.x.scale, frame.x.low, frame.x.high, sheet.left, sheet.right};
@@ -284,8 +339,7 @@ std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& shee
     const double at = y(limit.y);
     body += line(sheet.left, at, sheet.right, at,
                  "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"");
-    names += text(sheet.right - 5, at > sheet.top + 20 ? at - 5 : at + 14, limit.name, "end",
-                  " fill=\"#a82c00\" class=\"halo\"");
+    names += name_of(limit, plot, sheet, x, y);
   }
   for (std::size_t i = 0; i < plot.curves.size(); ++i)
     body += draw(thinned(plot.curves[i], sheet.parts), i, plot, x, y);
@@ -357,7 +411,7 @@ svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 )";
 }
 
-std::string svg_of(const Plot& plot) { return drawn_on(plot, frame_of(plot), kWide); }
+std::string svg_of(const Plot& plot) { return drawn_on(plot, frame_of(plot), wide_sheet(plot)); }
 
 std::string narrow_svg_of(const Plot& plot) {
   const PlotFrame frame = frame_of(plot);

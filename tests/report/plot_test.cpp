@@ -133,6 +133,43 @@ TEST(Plots, OfOneValueShowTheDecadesAroundIt) {
   EXPECT_EQ(count(svg, ">1e-14<"), 1u) << svg;
 }
 
+// Counts and shares are the most that a plot shows, and none is below 0: an axis from -1 to 1 would
+// say that it might be.
+TEST(Plots, OfZerosAloneBeginAtZero) {
+  const Plot plot{
+      "t", {"integrations"}, {"events not committed", "%"}, {{"a", {1, 2, 3}, {0, 0, 0}}}, {}};
+  for (const std::string& svg : {svg_of(plot), narrow_svg_of(plot)}) {
+    EXPECT_EQ(svg.find(">-"), std::string::npos) << svg;
+    EXPECT_EQ(count(svg, ">0<"), 1u) << svg;
+    EXPECT_EQ(count(svg, ">1<"), 2u) << svg;  // of both axes
+  }
+}
+
+TEST(Plots, ATitleOfTwoLinesStandsAboveTheFrame) {
+  Plot plot{"Chain of 100 links", {"x"}, {"y"}, {{"c", {0, 1}, {1, 2}}}, {}};
+  const auto top_of_frame = [&] {
+    const std::string svg = svg_of(plot), mark = "<rect x=\"78.0\" y=\"";
+    return std::stod(svg.substr(svg.find(mark) + mark.size()));
+  };
+  const double of_one_line = top_of_frame();
+  plot.title += ", hanging: how far its end is from where it belongs";
+  EXPECT_GE(top_of_frame(), of_one_line + 13.5);  // the size of a title's letters
+}
+
+// A curve that ends at the limit's right end must stay visible: the name moves to the left.
+TEST(Plots, NameALimitWhereItHidesNoCurve) {
+  const auto place_of_name = [](std::vector<double> y) {
+    const Plot plot{"t", {"x"}, {"y"}, {{"c", {0, 1, 2, 3}, std::move(y), true}}, {{1.0, "limit"}}};
+    const std::string svg = svg_of(plot);
+    return svg.substr(0, svg.find(">limit<"))
+                   .ends_with("text-anchor=\"end\" fill=\"#a82c00\" class=\"halo\"")
+               ? "right"
+               : "left";
+  };
+  EXPECT_STREQ(place_of_name({1.05, 1.5, 2, 3}), "right");
+  EXPECT_STREQ(place_of_name({3, 2, 1.5, 1.1}), "left");
+}
+
 TEST(Plots, WithoutPointsSaySo) {
   EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
   EXPECT_NE(
