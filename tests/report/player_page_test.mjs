@@ -88,6 +88,20 @@ try {
   expect(cut === 0, `${cut} rows are cut off`);
   expect(await tab.value('document.documentElement.scrollWidth <= 400'), 'the page scrolls sideways');
 
+  console.log('a picture of a new size is drawn before it is shown');
+  tab = await open();
+  const drawn = await tab.value(`new Promise(resolve => {
+    const gl = tumble.picture.renderer.getContext(), scene = document.getElementById('scene');
+    const pixel = new Uint8Array(4);
+    let calls = 0;
+    new ResizeObserver(() => {   // after the page's own, before the browser shows the frame
+      if (++calls < 2) { scene.style.width = scene.clientWidth - 50 + 'px'; return; }
+      gl.readPixels(10, 10, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      resolve([...pixel].join());
+    }).observe(scene);
+  })`);
+  expect(drawn !== '0,0,0,0' && drawn !== '0,0,0,255', `a corner of the picture is ${drawn}`);
+
   console.log('headings leave no level out');
   const levels = await tab.value('[...document.querySelectorAll("h1, h2, h3, h4")].filter(e => e.checkVisibility()).map(e => Number(e.tagName[1]))');
   expect(levels.every((level, i) => i === 0 || level <= levels[i - 1] + 1), `levels ${levels}`);

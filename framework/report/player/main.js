@@ -47,7 +47,7 @@ class Picture {
     this.orbit.screenSpacePanning = true;
     this.orbit.addEventListener('change', () => { this.isDirty = true; });
     player.listeners.push(() => { this.isDirty = true; });
-    new ResizeObserver(() => this.resize()).observe(byId('scene'));
+    new ResizeObserver(() => { this.resize(); this.draw(); }).observe(byId('scene'));   // a canvas of a new size is empty until it is drawn
     this.triad = new Triad();
     this.addPicking();
     this.reset();
