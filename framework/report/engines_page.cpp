@@ -128,7 +128,7 @@ Plot plot_of_energy(const std::vector<EngineRow>& rows) {
   Plot plot;
   plot.title = "Error of the energy";
   plot.x = {"time", "s"};
-  plot.y = {"|E - E0| / (kinetic + |potential|)", "", Scale::kLog};
+  plot.y = {"|E − E(0)| / (kinetic + |potential|)", "", Scale::kLog};
   for (const EngineRow& row : rows)
     if (!row.frame_times.empty())
       plot.curves.push_back(

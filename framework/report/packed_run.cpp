@@ -185,7 +185,7 @@ class RunPacker {
     add("energy", "kinetic", "J", [&](std::size_t k) { return frame(k).kinetic_energy; });
     add("energy", "potential", "J", [&](std::size_t k) { return frame(k).potential_energy; });
     add("energy", "total", "J", [&](std::size_t k) { return total(frame(k)); });
-    add("drift", "E - E(0)", "J", [&](std::size_t k) { return total(frame(k)) - at_start; });
+    add("drift", "E − E(0)", "J", [&](std::size_t k) { return total(frame(k)) - at_start; });
     for (int i = 0; i < 3; ++i)
       add("momentum", std::string(1, "xyz"[i]), "kg m/s",
           [&, i](std::size_t k) { return frame(k).momentum_world[i]; });

@@ -19,7 +19,7 @@ struct Wanted {
   const char *plot, *title, *axis;
 };
 constexpr Wanted kWanted[] = {{"energy", "Energy", "energy"},
-                              {"drift", "Change of the total energy", "E - E(0)"},
+                              {"drift", "Change of the total energy", "E − E(0)"},
                               {"momentum", "Momentum of all movable bodies", "momentum"}};
 
 Curve curve_of(const Series& series, const std::vector<double>& times_s, const std::string& name) {
