@@ -16,6 +16,7 @@
 #include "framework/cli/json_output.h"
 #include "framework/cli/record.h"
 #include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
 #include "framework/core/text.h"
 #include "framework/report/html.h"
 #include "framework/report/peer_rows.h"
@@ -36,6 +37,7 @@ const std::string kOurs = "Tumble";
 struct SceneLine {
   std::string scene;
   std::string problem;  // the error that prevented the measurement; empty: none
+  bool is_unwritten;    // the problem: a function that the scene asks is a stub
   std::optional<MeasuredCost> cost;
 };
 
@@ -76,8 +78,12 @@ report::Table table_of(const std::vector<SceneLine>& lines) {
         line.cost && !line.cost->size.empty() ? line.scene + ", " + line.cost->size : line.scene,
         line.cost ? line.scene + "/index.html" : ""};
     if (!line.cost) {
-      table.rows.push_back(
-          {name, {"failed", "", Look::kBad}, {line.problem, "", Look::kMuted}, {""}, {""}});
+      table.rows.push_back({name,
+                            {line.is_unwritten ? "not written" : "failed", "",
+                             line.is_unwritten ? Look::kMuted : Look::kBad},
+                            {line.problem, "", Look::kMuted},
+                            {""},
+                            {""}});
       continue;
     }
     const report::CostPage& page = line.cost->page;
@@ -172,10 +178,13 @@ SceneLine line_of(const Context& context, const CostWords& words, const std::str
   CostWords own = words;
   own.scene = scene;
   own.budget_s = words.budget_s.value_or(kBudget);
-  SceneLine line{scene, "", std::nullopt};
+  SceneLine line{scene, "", false, std::nullopt};
   try {
     line.cost = measure_cost(context, own);
     report::write_cost_page(line.cost->page, fs::path(words.out) / scene / "index.html");
+  } catch (const NotImplemented& error) {
+    line.problem = error.what();
+    line.is_unwritten = true;
   } catch (const std::exception& error) {  // an error in one scene is shown in its row
     line.problem = error.what();
   }

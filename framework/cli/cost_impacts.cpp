@@ -52,7 +52,7 @@ Problems problems_of(const Context& context) {
 /// One root finder at one tolerance, over all problems: the worst error, and the cost of one
 /// search.
 report::CostPoint point_of(const Problems& problems, const ImpactFinder& find, double tolerance) {
-  report::CostPoint point{"tolerance\u00a0" + few_digits(tolerance), tolerance, 0.0, 0.0, 0.0, ""};
+  report::CostPoint point{tolerance_in_words(tolerance), tolerance, 0.0, 0.0, 0.0, ""};
   for (const ImpactProblem& problem : problems.all) {
     const RootResult found =
         find(problem.gap, problem.gap_rate, problem.low, problem.high, tolerance);

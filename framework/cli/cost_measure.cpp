@@ -62,10 +62,14 @@ struct Refinement {
 };
 
 std::string fineness_of(const CostResult& result) {
-  if (std::isfinite(result.tolerance)) return "tolerance\u00a0" + few_digits(result.tolerance);
+  if (std::isfinite(result.tolerance)) return tolerance_in_words(result.tolerance);
   if (!std::isfinite(result.step_s)) return "no step";
-  return 1.0 / result.step_s >= 10 ? fmt::format("1/{:.0f}\u00a0s", 1.0 / result.step_s)
-                                   : fmt::format("{:.3g} s", result.step_s);
+  const double steps_a_second = 1.0 / result.step_s;
+  constexpr double kFraction = 10;  // from here on a step is read as a fraction of a second
+  const bool is_fraction = steps_a_second >= kFraction ||
+                           (steps_a_second > 1 && steps_a_second == std::round(steps_a_second));
+  return is_fraction ? fmt::format("1/{:.0f}\u00a0s", steps_a_second)
+                     : fmt::format("{:.3g}\u00a0s", result.step_s);
 }
 
 bool is_smooth(const scene::Scene& scene) {
@@ -135,8 +139,8 @@ std::string what_error_is(const CostReference& reference) {
   return fmt::format(
       "Errors are against {}: {} m. The error of a body is the distance of its centre of mass "
       "from the reference, plus the angle of its rotation error times its radius of gyration; the "
-      "largest over all movable bodies and samples counts. An error of {} m, the size of the "
-      "motion, is no answer, and is not drawn.",
+      "largest over all movable bodies and samples counts. An error larger than the motion, {} m, "
+      "is not drawn.",
       reference.what, few_digits(reference.floor_m), few_digits(reference.scale_m));
 }
 
@@ -403,15 +407,28 @@ const report::CostCurve* cheapest_curve(const report::CostPage& page, double mar
   return best;
 }
 
+std::string tolerance_in_words(double tolerance) {
+  constexpr double kPlain = 1e-3;  // 0.1, 0.01, 0.001, 1e-4
+  std::string number = few_digits(tolerance);
+  if (tolerance > 0 && tolerance < kPlain && number.find('e') == number.npos) {
+    const double exponent = std::floor(std::log10(tolerance) + 1e-9);
+    number = few_digits(tolerance / std::pow(10.0, exponent)) + fmt::format("e{:.0f}", exponent);
+  }
+  return "tolerance\u00a0" + number;
+}
+
 std::vector<std::string> verdicts(const report::CostPage& page) {
   std::vector<std::string> words;
   for (const double mark : page.marks) {
     const report::CostCurve* best = cheapest_curve(page, mark);
+    const std::string what =
+        !page.error_unit.empty() ? "An error of " + report::mark_in_words(page, mark)
+        : mark == 1.0            ? "A run that is right"
+                                 : fmt::format("A run within {:g} of what is allowed", mark);
     if (best == nullptr)
-      words.push_back(fmt::format("{}: no run reaches it.", report::mark_in_words(page, mark)));
+      words.push_back(fmt::format("{}: none of these reaches it.", what));
     else
-      words.push_back(fmt::format("{} costs at least {}: {}, {}.",
-                                  report::mark_in_words(page, mark),
+      words.push_back(fmt::format("{} costs at least {}: {}, {}.", what,
                                   report::price_of(report::cheapest(*best, mark)->cpu_s),
                                   best->name, report::cheapest(*best, mark)->fineness));
   }

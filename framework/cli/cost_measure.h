@@ -35,6 +35,9 @@ MeasuredCost measure_cost(const Context& context, const CostWords& words,
 void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws,
                       cost::CostReference& reference);
 
+/// "tolerance 1e-4", all in one style and not broken between lines.
+std::string tolerance_in_words(double tolerance);
+
 /// The cheapest method for each error, one sentence each.
 std::vector<std::string> verdicts(const report::CostPage& page);
 

@@ -266,7 +266,7 @@ void add_module(const Context& context, const modules::ModuleKind& kind, const s
   const ChosenLaws chosen =
       choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
   CostMethod whole;
-  whole.name = fmt::format("{} whole {}", whose(word), kind.id);
+  whole.name = fmt::format("{} {} as a whole", whose(word), kind.id);
   whole.is_subject = is_subject;
   whole.word = kind.id;
   whole.order = kind.methods.back().order;

@@ -281,14 +281,16 @@ nlohmann::ordered_json json_of(const std::vector<Trial>& ways) {
 }
 
 void print_table(const report::Table& table) {
-  for (std::size_t i = 0; i < table.columns.size(); ++i)
-    fmt::print("{:<{}} ", table.columns[i].name, i == 0 ? 52 : 17);
-  fmt::print("\n");
-  for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      fmt::print("{:<{}} ", row[i].text, i == 0 ? 52 : 17);
+  std::size_t longest = 0;
+  for (const auto& row : table.rows) longest = std::max(longest, row.front().text.size());
+  const auto print_row = [&](const auto& text_of) {
+    fmt::print("{:<{}}", text_of(0), longest);
+    for (std::size_t i = 1; i < table.columns.size(); ++i) fmt::print("  {:>17}", text_of(i));
     fmt::print("\n");
-  }
+  };
+  print_row([&](std::size_t i) { return table.columns[i].name; });
+  for (const auto& row : table.rows)
+    print_row([&](std::size_t i) { return i < row.size() ? row[i].text : ""; });
 }
 
 }  // namespace

@@ -191,7 +191,8 @@ std::string reading_of(const CostMethod& method, const std::vector<CostResult>& 
 
 std::string read_refinement(const CostMethod& method, const std::vector<CostResult>& results,
                             const CostReference& reference, bool smooth) {
-  return capitalised(reading_of(method, results, reference, smooth));
+  const std::string text = reading_of(method, results, reference, smooth);
+  return capitalised(text.starts_with("reference ") ? "the " + text : text);
 }
 
 }  // namespace tumble::cost

@@ -11,6 +11,11 @@ namespace {
 
 using Kind = SchedulerReading::Kind;
 
+// At the head of a sentence: "The reference scheduler".
+std::string subject_of(const SchedulerCurve& curve) {
+  return curve.name.starts_with("reference ") ? "The " + curve.name : curve.name;
+}
+
 // times the reference: the variation of correct orders of execution
 constexpr double kAlike = 1.25;
 // bodies rolled back per impact: two take part in one, and sometimes another impact had affected
@@ -150,21 +155,21 @@ SchedulerReading of_trace(const SchedulerCurve& curve) {
       if (!run.is_right() && (wrong == nullptr || (wrong->not_attempted && !run.not_attempted)))
         wrong = &run;
     }
-  if (runs == 0) return {fmt::format("{} was not run.", curve.name), Kind::kWrong};
+  if (runs == 0) return {fmt::format("{} was not run.", subject_of(curve)), Kind::kWrong};
   if (wrong == nullptr) {
     const char* however =
         curve.by_size.empty() ? "for any step" : "for any step and any number of processes";
     return {fmt::format("{} commits what the ordered reference commits, {}: {} events in {} runs, "
                         "to the last bit.",
-                        curve.name, however, events, runs),
+                        subject_of(curve), however, events, runs),
             Kind::kRight};
   }
   if (wrong->not_attempted)
-    return {fmt::format("{}: {}.", curve.name, wrong->stopped_by), Kind::kNotWritten};
+    return {fmt::format("{}: {}.", subject_of(curve), wrong->stopped_by), Kind::kNotWritten};
   const std::string rest = right == 0 ? "in no run" : fmt::format("in {} of {} runs", right, runs);
   return {fmt::format("{} commits what the ordered reference commits {}. With {} it commits {} of "
                       "{} events: {}",
-                      curve.name, rest, in_words(*wrong), wrong->committed, wrong->due,
+                      subject_of(curve), rest, in_words(*wrong), wrong->committed, wrong->due,
                       wrong->stopped_by),
           Kind::kWrong};
 }

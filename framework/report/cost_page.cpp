@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/report/html.h"
 
 namespace tumble::report {
@@ -55,8 +56,8 @@ Plot drawn(const CostPage& page, Axis across, const std::string& title,
 Plot plot_of_energy(const CostPage& page) {
   Plot plot{"Energy against time, at about the same cost",
             {"time", "s"},
-            {page.error_unit.empty() ? "|E - E at the start| / energy"
-                                     : "|E - E of the reference| / energy",
+            {page.error_unit.empty() ? "|E − E at the start| / energy"
+                                     : "|E − E of the reference| / energy",
              "-", Scale::kLog},
             {},
             {},
@@ -91,12 +92,17 @@ Table table_of_prices(const CostPage& page) {
     table.caption = std::string("CPU time for a run that is right by all its numbers") +
                     (page.marks.size() > 1 ? ", or uses a tenth of what they allow" : "") +
                     ", and the setting that reaches it. \u2013: not reached.";
-  table.columns = {{""}, {"order", true}};
+  const bool any_order =
+      std::any_of(page.curves.begin(), page.curves.end(),
+                  [](const CostCurve& curve) { return std::isfinite(curve.order); });
+  table.columns = {{""}};
+  if (any_order) table.columns.push_back({"order", true});
   for (const double mark : page.marks)
     table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
   for (const CostCurve& curve : page.curves) {
-    std::vector<Cell> cells{
-        {curve.name}, {std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "\u2013"}};
+    std::vector<Cell> cells{{curve.name}};
+    if (any_order)
+      cells.push_back({std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "\u2013"});
     for (const double mark : page.marks) {
       const CostPoint* point = cheapest(curve, mark);
       double best = std::numeric_limits<double>::infinity();
@@ -140,19 +146,36 @@ StackedBars bars_of_stages(const CostPage& page) {
   return bars;
 }
 
-std::string all_points(const CostPage& page) {
-  std::string text =
-      fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "",
-                  fmt::format("error [{}]", page.error_unit.empty() ? "-" : page.error_unit), "CPU",
-                  "evaluations");
+Table table_of_points(const CostPage& page) {
+  Table table;
+  table.columns = {{""},
+                   {"by"},
+                   {page.error_unit.empty() ? "error" : "error [" + page.error_unit + "]", true},
+                   {"CPU", true},
+                   {"evaluations", true}};
+  bool any_stopped = false;
   for (const CostCurve& curve : page.curves)
-    for (const CostPoint& point : curve.points) {
-      text += fmt::format("{:32} {:16} ", curve.name, point.fineness);
-      text += point.stopped_by.empty() ? fmt::format("{:>12.2e} {:>10} {:>14.0f}\n", point.error,
-                                                     price_of(point.cpu_s), point.evaluations)
-                                       : point.stopped_by + "\n";
-    }
-  return text;
+    for (const CostPoint& point : curve.points)
+      if (point.stopped_by.empty()) {
+        table.rows.push_back({{curve.name},
+                              {unbroken(point.fineness), "", Look::kMuted},
+                              {few_digits(point.error, 3)},
+                              {price_of(point.cpu_s)},
+                              {fmt::format("{:.0f}", point.evaluations)}});
+      } else {
+        any_stopped = true;
+        table.rows.push_back({{curve.name},
+                              {unbroken(point.fineness), "", Look::kMuted},
+                              {"\u2013"},
+                              {""},
+                              {""},
+                              {point.stopped_by, "", Look::kMuted}});
+      }
+  if (any_stopped) {
+    table.columns.push_back({"stopped by"});
+    for (auto& row : table.rows) row.resize(table.columns.size());
+  }
+  return table;
 }
 
 }  // namespace
@@ -269,7 +292,9 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
     page.paragraph(
         "CPU time is that of the engine without loading models and shapes, the best of up to five "
         "runs, with the overhead of stack samples. Only ratios are meaningful on other machines.");
-  page.fold("Every run", all_points(cost));
+  page.begin(Part::kFold, "Every run");
+  page.table(table_of_points(cost));
+  page.end();
   page.record(cost.record);
   page.write(file);
 }

@@ -19,9 +19,22 @@ TEST_F(CommandLine, CostReadsTheOrderOfEachMethodAndDrawsIt) {
               holds(said.out, "as it should (4)"))
       << said.out;
   const std::string page = contents_of(folder_ / "out" / "cost" / "t_handle" / "index.html");
+  EXPECT_TRUE(holds(page, ">order<"));
   EXPECT_TRUE(holds(page, "Error against CPU time") &&
               holds(page, "error of the reference solution"))
       << page.size() << " bytes";
+}
+
+TEST_F(CommandLine, CostWritesStepsAndTolerancesInOneStyle) {
+  const Said said = type(
+      "cost t_handle --modules library --methods rk4,dopri5 --engines none --steps 0.125,0.0625 "
+      "--tolerances 1e-4,1e-5 --duration-s 1");
+  EXPECT_EQ(said.code, 0) << said.err;
+  const std::string blank = "\u00a0";
+  for (const std::string& words : {"1/8" + blank + "s", "1/16" + blank + "s",
+                                   "tolerance" + blank + "1e-4", "tolerance" + blank + "1e-5"})
+    EXPECT_TRUE(holds(said.err, words)) << words << '\n' << said.err;
+  EXPECT_FALSE(holds(said.err, "tolerance" + blank + "0.0001") || holds(said.err, "0.125"));
 }
 
 TEST_F(CommandLine, AnAccuracyChoosesMethodAndStepAndReportsTheCost) {
@@ -66,6 +79,9 @@ TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
                             "Closed form (ball, plane) has an error of"})
     EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
   EXPECT_FALSE(holds(said.out, "e-0")) << said.out;  // 1e-9, not 1e-09
+  EXPECT_TRUE(holds(said.out, "An error of 1e-9 s costs at least ")) << said.out;
+  const std::string page = contents_of(folder_ / "out" / "cost" / "toi" / "index.html");
+  EXPECT_FALSE(holds(page, ">order<")) << "a column without a number";
   EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));
 }
 
@@ -192,7 +208,7 @@ TEST_F(CommandLine, CostOfAnAssignmentReadsItsMethods) {
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(std::regex_search(
       said.out,
-      std::regex("Reference rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
+      std::regex("The reference rk4_step converges with order [0-9.]+, as it should \\(4\\)")))
       << said.out;
   EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "reference rk4"))
       << "the reference is nobody's own, and its sentence is at the head";

@@ -72,6 +72,18 @@ std::string written(const CostPage& page) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+// Lines of a text are wrapped in the column of a phone, where nobody reads them any more.
+TEST(CostPage, ListsEveryRunInATable) {
+  CostPage page = page_of({counting("RK4", "")});
+  page.error_unit = "m";
+  page.marks = {1e-3};
+  page.curves[0].points.push_back({"1/2 s", 0.5, 0.0, 0.0, 0.0, "body 'A' is lost"});
+  const std::string html = written(page), runs = html.substr(html.find("Every run"));
+  EXPECT_EQ(runs.find("<pre"), std::string::npos) << runs;
+  EXPECT_NE(runs.find(">0.01</td>"), std::string::npos) << runs;
+  EXPECT_NE(runs.find(">body &#39;A&#39; is lost</td>"), std::string::npos) << runs;
+}
+
 TEST(CostPage, ListsWhatWasNotRunAndWhy) {
   CostPage page = page_of({counting("RK4", "")});
   EXPECT_EQ(written(page).find("Not run: "), std::string::npos);
