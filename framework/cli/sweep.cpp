@@ -107,7 +107,8 @@ void print(const Swept& swept) {
   fmt::print(" ");
   for (const Varied& varied : swept.varied) {
     std::size_t widest = varied.word.size();
-    for (const std::string& text : varied.texts) widest = std::max(widest, text.size());
+    for (std::size_t i = 0; i < varied.size(); ++i)
+      widest = std::max(widest, value_in_words(varied, i).size());
     widths.push_back(widest);
     fmt::print(" {:>{}}", varied.word, widest);
   }
@@ -122,7 +123,7 @@ void print(const Swept& swept) {
     if (++printed > kMostPrinted && result.state == PointState::kFine) continue;
     fmt::print(" ");
     for (std::size_t k = 0; k < swept.varied.size(); ++k)
-      fmt::print(" {:>{}}", swept.varied[k].texts[swept.points[i][k]], widths[k]);
+      fmt::print(" {:>{}}", value_in_words(swept.varied[k], swept.points[i][k]), widths[k]);
     for (std::size_t k = 0; k < swept.measures.size(); ++k)
       fmt::print(" {:>{}.5g}", result.values.empty() ? kUnset : result.values[k],
                  widths[swept.varied.size() + k]);

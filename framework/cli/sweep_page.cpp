@@ -9,6 +9,7 @@
 
 #include "framework/cli/record.h"
 #include "framework/core/files.h"
+#include "framework/core/text.h"
 #include "framework/report/html.h"
 
 namespace tumble::cli {
@@ -41,7 +42,7 @@ std::string name_of_curve(const Swept& swept, const GridPoint& point, std::size_
   for (std::size_t i = 0; i < swept.varied.size(); ++i)
     if (i != axis)
       name += fmt::format("{}{} {}", name.empty() ? "" : ", ", swept.varied[i].word,
-                          swept.varied[i].texts[point[i]]);
+                          value_in_words(swept.varied[i], point[i]));
   return name;
 }
 
@@ -52,7 +53,7 @@ std::string quoted(const std::string& text) {
   return safe + '"';
 }
 
-std::string shown(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+std::string shown(double value) { return std::isfinite(value) ? few_digits(value, 4) : ""; }
 
 report::Look look_of(PointState state) {
   return state == PointState::kFine ? report::Look::kGood : report::Look::kBad;
@@ -86,7 +87,7 @@ report::Table table_of(const Swept& swept) {
     const PointResult& result = swept.results[i];
     std::vector<report::Cell> row;
     for (std::size_t k = 0; k < swept.varied.size(); ++k)
-      row.push_back({swept.varied[k].texts[swept.points[i][k]]});
+      row.push_back({value_in_words(swept.varied[k], swept.points[i][k])});
     for (std::size_t k = 0; k < swept.measures.size(); ++k)
       row.push_back({result.values.empty() ? "" : shown(result.values[k])});
     row.push_back({result.reason.empty() ? name_of(result.state)

@@ -22,9 +22,13 @@ struct Varied {
   std::string unit;  // "m"; empty: a number without one, or a word
   bool is_number = true;
   std::vector<double> numbers;     // where it is one
-  std::vector<std::string> texts;  // of each value, as tables and files show it
+  std::vector<std::string> texts;  // of each value, with all digits
   std::size_t size() const { return texts.size(); }
 };
+
+/// A value as people read it: a step as "1/60" where it is such a part of a second, other numbers in
+/// six digits.
+std::string value_in_words(const Varied& varied, std::size_t value);
 
 /// @param over   of each --over: "restitution=0:1:0.05", or several with commas between them
 /// @param scene  for the names of bodies

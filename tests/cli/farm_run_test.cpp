@@ -75,7 +75,12 @@ TEST_F(Farm, ASweepGivesTheSameBytesForAnyNumberOfJobs) {
   };
   EXPECT_LT(change(2), change(0) / 8);
   EXPECT_FALSE(table["points"][0]["measured"].contains("cpu")) << "times are in times.json";
-  EXPECT_TRUE(holds(file("one/t_handle/index.html"), "<svg"));
+  const std::string page = file("one/t_handle/index.html");
+  EXPECT_TRUE(holds(page, "<svg"));
+  // people read a step as what was typed; the table for programs has all digits
+  EXPECT_TRUE(holds(page, ">1/240<") && holds(one.out, " 1/240 ")) << one.out;
+  EXPECT_FALSE(holds(page, "0.0041666")) << page;
+  EXPECT_TRUE(holds(file("one/t_handle/table.csv"), "0.004166666666666667"));
 }
 
 TEST_F(Farm, APointThatCannotBeTrustedIsMarkedAndChangesTheExitCode) {
