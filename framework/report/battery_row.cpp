@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
+
 namespace tumble::report {
 
 bool within(const Measure& measure) {
@@ -80,7 +82,7 @@ std::string shown(double value, const std::string& unit) {
   const bool plain = value == std::round(value) && std::abs(value) < 1e6;
   return (plain                                             ? fmt::format("{:.0f}", value)
           : std::abs(value) >= 0.1 && std::abs(value) < 1e4 ? fmt::format("{:.4g}", value)
-                                                            : fmt::format("{:.1e}", value)) +
+                                                            : few_digits(value)) +
          space;
 }
 
@@ -95,7 +97,7 @@ std::string shown_margin(const Measure& measure) {
   if (std::isnan(margin)) return "-";
   if (std::isinf(margin)) return "exact";
   return margin >= 0.1 && margin < 1e4 ? fmt::format("x {:.2g}", margin)
-                                       : fmt::format("x {:.0e}", margin);
+                                       : "x " + few_digits(margin, 1);
 }
 
 std::string shown_threshold(const Measure& measure) {
