@@ -124,8 +124,13 @@ class Matching {
     }
     std::stable_sort(functions.begin(), functions.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
+    const std::size_t most = functions.empty() ? 0 : functions.front().first;
+    // that which the slip is inside: more tests may be told by a function that only uses it
+    std::stable_partition(functions.begin(), functions.end(),
+                          [&](const auto& part) { return part.second == slip.function; });
     for (const auto& [count, function] : functions)
-      if (kLeastShare * count >= functions.front().first) likely.functions.push_back(function);
+      if (kLeastShare * count >= most || function == slip.function)
+        likely.functions.push_back(function);
     return likely;
   }
 

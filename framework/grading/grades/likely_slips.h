@@ -35,12 +35,13 @@ struct LikelySlip {
   std::string name;
   // other slips that explain the same as well; of two slips: that may stand in place of the second
   std::vector<std::string> equals;
-  std::vector<std::string> tests;      // that it explains
-  std::vector<std::string> functions;  // of these tests, most of them first
-  std::size_t same_numbers = 0;        // of these tests, in how many the same answer came
-  std::string with = {};               // the second of two slips; empty: one slip explains all
-  std::size_t by_both = 0;             // of same_numbers, where neither alone gives that answer
-  std::size_t alone[2] = {0, 0};       // of these tests, how many either of the two fails alone
+  std::vector<std::string> tests;  // that it explains
+  // of these tests: the slip's own first, then those that most of them called last
+  std::vector<std::string> functions;
+  std::size_t same_numbers = 0;   // of these tests, in how many the same answer came
+  std::string with = {};          // the second of two slips; empty: one slip explains all
+  std::size_t by_both = 0;        // of same_numbers, where neither alone gives that answer
+  std::size_t alone[2] = {0, 0};  // of these tests, how many either of the two fails alone
 };
 
 /// Slips that explain failures, the strongest evidence first: greedily, first those whose numbers

@@ -64,7 +64,7 @@ bool is_answer_of_both(Together rule, const Answer& right, const Answer& a, cons
   double scale = 0.0;
   for (const Answer* answer : {&right, &a, &b})
     for (const double number : answer->numbers) scale = std::max(scale, std::abs(number));
-  constexpr double kRoundOff = 1e-10;  // of 12 digits shown, two lost in a sum
+  constexpr double kRoundOff = 2e-7;  // of four numbers shown in 8 digits: half a unit each
   for (std::size_t i = 0; i < found.numbers.size(); ++i) {
     const double both = of_both(rule, right.numbers[i], a.numbers[i], b.numbers[i]);
     if (!is_same_number(found.numbers[i], both) &&
