@@ -271,7 +271,7 @@ std::string show(RootStatus status) {
 void expect_impact(const RootResult& found, const Approach& approach, const Looks& looks,
                    double tolerance, double round_off, const std::string& slip,
                    int equation_number) {
-  const Story story{.scene = approach.scene + ", tolerance " + show(tolerance) + " s",
+  const Story story{.scene = approach.scene + ", tolerance " + show_scale(tolerance) + " s",
                     .slip = slip,
                     .handout = equation(equation_number)};
   const auto because = [&story](const std::string& words) {

@@ -45,8 +45,8 @@ void expect_complementary(const Contacts& contacts, const std::string& scene) {
   const auto& [A, b] = contacts;
   const VectorXd f = forces_of(A, b), a = A * f + b;
   const double size = std::max(1e-3, b.cwiseAbs().maxCoeff()), allowed = 1e-10 * size;
-  const std::string where =
-      scene + ": " + std::to_string(b.size()) + " contacts, |b| up to " + show(size) + " m/s^2";
+  const std::string where = scene + ": " + std::to_string(b.size()) + " contacts, |b| up to " +
+                            show_scale(size) + " m/s^2";
   if (!f.allFinite()) {
     expect_true(false, "forces", "NaN, or not one a contact",
                 {.scene = where,
@@ -58,7 +58,7 @@ void expect_complementary(const Contacts& contacts, const std::string& scene) {
               {.scene = where,
                .slip = "negative forces: a contact pushes, it never pulls",
                .handout = equation(9)});
-  expect_true(a.minCoeff() >= -allowed, "no acceleration < " + show(-allowed) + " m/s^2",
+  expect_true(a.minCoeff() >= -allowed, "no acceleration < " + show_scale(-allowed) + " m/s^2",
               show(a.minCoeff()) + " m/s^2",
               {.scene = where,
                .slip = a.minCoeff() > -0.05 * size

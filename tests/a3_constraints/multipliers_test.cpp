@@ -297,9 +297,10 @@ TEST(ConstraintMultipliers, AreSolvedAsTheChainTheyAre) {
   for (const int links : {kShort, 125, 250, 350, 500, 700, 1000, 1400, 2000}) {
     const double allowed = std::max(kPatience, 8 * a_link * links),
                  seconds = seconds_of(chain(links), allowed, 2);
-    expect_true(seconds <= allowed, "an answer within " + show(allowed) + " s",
+    expect_true(seconds <= allowed, "an answer within " + show_scale(allowed) + " s",
                 show(std::round(seconds * 100) / 100) + " s",
-                {.scene = "a chain of " + std::to_string(links) + " links of 0.1 kg hangs at rest",
+                {.scene = "chains of 50 to 6,000 links of 0.1 kg hang at rest; this one has " +
+                          std::to_string(links),
                  .slip = "A is solved as a dense matrix: its cost grows with the cube of the "
                          "links, and A of a chain has three numbers a row",
                  .handout = equation(7)});
@@ -312,7 +313,7 @@ TEST(ConstraintMultipliers, AreSolvedAsTheChainTheyAre) {
   VectorXd expected(kLinks);
   for (int i = 0; i < kLinks; ++i) expected[i] = -(kLinks - i) * 0.1 * kGravity;
   expect_near(found, expected, 1e-7 * kLinks * 0.1 * kGravity, "N",  // condition 5.8e7
-              {.scene = "a chain of 6,000 links of 0.1 kg hangs at rest",
+              {.scene = "chains of 50 to 6,000 links of 0.1 kg hang at rest; this one has 6,000",
                .slip = "A is not solved as what it is, three numbers a row",
                .handout = equation(7)});
 }

@@ -157,7 +157,7 @@ TEST(RodRow, IsRightAtEveryLength) {
     a.velocity_world = size * Vector3d(1, -2, 0.5);
     const ConstraintRow row = a3_module().rod_row(a, size * kPointA, b, size * kPointB, size * 2.0);
     const Story story{
-        .scene = kScene + ", all lengths times " + show(size) +
+        .scene = kScene + ", all lengths times " + show_scale(size) +
                  "; A moves at (1, -2, 0.5) m/s times the same",
         .slip = std::abs(plain.value - 3.0) > 1e-9
                     ? "the same rod in metres is wrong, too: see the tests before this one"

@@ -125,10 +125,12 @@ Trajectory run_by_the_scheduler(const scene::Scene& scene) {
 Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events,
                                        const std::string& what) {
   const Trajectory run = run_by_the_scheduler(scene);
-  const Story story{
-      .scene = what,
-      .slip = "the story above names the decision; tumble run late_hit --html draws one",
-      .handout = "handouts/a4_timewarp.md#whole-runs"};
+  const Story story{.scene = what,
+                    .slip =
+                        "what was found names the decision; the page of such a run draws it: "
+                        "./tumble run late_hit "
+                        "--html late_hit.html",
+                    .handout = "handouts/a4_timewarp.md#whole-runs"};
   expect_true(run.stopped_by.empty(),
               "every committed event is the ordered reference's, bit for bit", run.stopped_by,
               story);

@@ -206,7 +206,7 @@ TEST(MetropolisStep, PaysForAnAsymmetricProposal) {
     return place(student().metropolis_step(exponential, proposal, at(1, -1),
                                            draws_with(vector({2}), 0.9, uniform)));
   };
-  const Story story{.scene = "ln pi = -x, from 1 to e by multiplication: a = " + show(a) +
+  const Story story{.scene = "ln pi = -x, from 1 to e by multiplication: a = " + show_scale(a) +
                              "; u a little below a, then a little above",
                     .slip =
                         "Hastings' correction is not used, or is the wrong way round: of a "

@@ -41,6 +41,25 @@ TEST(Told, WhatTheAnswerShowsGivesWayOnlyToWhatItShows) {
   EXPECT_EQ(with_slip({.slip = "the law"}, "no number").slip.words, "no number");
 }
 
+// Digits that say nothing are read all the same: a wrong answer is told in eight, with more only
+// where its error is smaller, and an error in three.
+TEST(Told, NumbersHaveTheDigitsThatSayHowWrongTheyAre) {
+  const double pi = std::acos(-1.0);
+  const auto scalar = [&](double found, double allowed) {
+    return told_by([&] { expect_near(found, pi, allowed, "m", {}); });
+  };
+  EXPECT_TRUE(holds(scalar(2 * pi, 1e-15),
+                    "expected: 3.1415927 m\n  found:    6.2831853 m\n"
+                    "  off by:   3.14 m (allowed"))
+      << scalar(2 * pi, 1e-15);
+  EXPECT_TRUE(holds(scalar(pi + 1e-8, 1e-15), "found:    3.14159266359 m")) << scalar(pi + 1e-8, 0);
+  EXPECT_TRUE(holds(scalar(1e5 * pi, 1), "found:    314159.27 m")) << scalar(1e5 * pi, 1);
+  EXPECT_TRUE(holds(scalar(std::nan(""), 1e-15), "expected: 3.1415927 m"));
+  const std::string vector = told_by(
+      [&] { expect_near(Eigen::Vector2d(pi, 1.0 / 3), Eigen::Vector2d(pi, 0), 1e-12, "N", {}); });
+  EXPECT_TRUE(holds(vector, "found:    (3.1415927, 0.33333333) N")) << vector;
+}
+
 TEST(Told, NothingIsSubtractedFromWhatIsNoNumber) {
   const double nan = std::copysign(std::numeric_limits<double>::quiet_NaN(), -1.0);
   const std::string told = told_by([&] { expect_near(nan, 1.0, 0.0, "s", {}); }),

@@ -38,8 +38,53 @@ std::string allowance(double tolerance, double scale, const std::string& with_un
   return text.str();
 }
 
+constexpr int kAllDigits = 12;  // of the 16 of a double: what a formula's roundings leave
+
+double size_of(const Values& values) {
+  return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0;
+}
+
 double largest_difference(const Values& a, const Values& b) {
   return (a - b).cwiseAbs().maxCoeff();
+}
+
+// How many digits of an answer say something: three of its error, or two more than its tolerance
+// leaves. Graded pages find known slips by answers that agree to a millionth, also those of two
+// slips together: eight digits are the least.
+int digits_of(const Values& found, const Values& expected, double tolerance) {
+  constexpr int kLeast = 8;
+  if (!found.allFinite() || found.size() != expected.size()) return kLeast;
+  const double size = std::max(size_of(expected), size_of(found)),
+               told = std::max(tolerance / 100, largest_difference(found, expected) / 1000);
+  if (!(told > 0) || !(size > 0)) return kAllDigits;
+  return std::clamp(static_cast<int>(std::ceil(std::log10(size / told))), kLeast, kAllDigits);
+}
+
+// The digits asked for, and those before the point in any case: 98100, never 9.81e+04.
+int with_whole_part(int digits, double size) {
+  constexpr int kReadable = 7;
+  if (!(size >= 1) || !std::isfinite(size)) return digits;
+  return std::max(digits, std::min(static_cast<int>(std::floor(std::log10(size))) + 1, kReadable));
+}
+
+std::string in_digits(double x, int digits) {
+  if (std::isnan(x)) return "nan";  // its sign says nothing
+  std::ostringstream text;
+  text.precision(with_whole_part(digits, std::abs(x)));
+  text << x;
+  return text.str();
+}
+
+std::string in_digits(const Numbers& m, int digits) {
+  // a vector as scenes and x-rays have it, (1, 2, 3); rows of a matrix stand between semicolons
+  const char* between_rows = m.columns == 1 ? ", " : "; ";
+  const Eigen::IOFormat format(with_whole_part(digits, size_of(values_of(m))), Eigen::DontAlignCols,
+                               ", ", between_rows, "", "", "(", ")");
+  std::ostringstream text;
+  const MatrixXd without_signs = values_of(m).unaryExpr(
+      [](double x) { return std::isnan(x) ? std::numeric_limits<double>::quiet_NaN() : x; });
+  text << without_signs.format(format);
+  return text.str();
 }
 
 }  // namespace
@@ -63,13 +108,7 @@ std::string tell(const Story& story, const std::string& expected, const std::str
   return text.str();
 }
 
-std::string show(double x) {
-  if (std::isnan(x)) return "nan";  // its sign says nothing
-  std::ostringstream text;
-  text.precision(12);
-  text << x;
-  return text.str();
-}
+std::string show(double x) { return in_digits(x, kAllDigits); }
 
 std::string show_scale(double x) {
   int exponent = 0;
@@ -82,16 +121,7 @@ std::string show_scale(double x) {
   return text.str();
 }
 
-std::string show(const Numbers& m) {
-  // a vector as scenes and x-rays have it, (1, 2, 3); rows of a matrix have a semicolon between them
-  const char* between_rows = m.columns == 1 ? ", " : "; ";
-  const Eigen::IOFormat format(12, Eigen::DontAlignCols, ", ", between_rows, "", "", "(", ")");
-  std::ostringstream text;
-  const MatrixXd without_signs = values_of(m).unaryExpr(
-      [](double x) { return std::isnan(x) ? std::numeric_limits<double>::quiet_NaN() : x; });
-  text << without_signs.format(format);
-  return text.str();
-}
+std::string show(const Numbers& m) { return in_digits(m, kAllDigits); }
 
 Mistake slip_in_the_digits(const Numbers& found_numbers, const Numbers& expected_numbers,
                            double tolerance, const Story& story) {
@@ -127,10 +157,11 @@ std::string symbols_of(const std::string& unit) {
 
 // "1e-3 m (allowed 1e-9 m)"; empty where nothing can be subtracted.
 std::string off_by(double difference, double tolerance, double scale, const std::string& unit) {
+  constexpr int kOfADifference = 3;  // digits
   const std::string symbols = symbols_of(unit), with_unit = symbols.empty() ? "" : ' ' + symbols;
-  return std::isfinite(difference)
-             ? show(difference) + with_unit + allowance(tolerance, scale, with_unit)
-             : "";
+  return std::isfinite(difference) ? in_digits(difference, kOfADifference) + with_unit +
+                                         allowance(tolerance, scale, with_unit)
+                                   : "";
 }
 
 bool is_told(const ::testing::TestResult& result, const std::string& told) {
@@ -163,8 +194,9 @@ void expect_near(double found, double expected, double tolerance, const std::str
   const double difference = std::abs(found - expected);
   if (difference <= tolerance) return;
   const Mistake seen = slip_in_the_digits({&found, 1, 1}, {&expected, 1, 1}, tolerance, story);
-  report_failure(tell(with_slip(story, seen), show(expected), show(found), unit,
-                      off_by(difference, tolerance, std::abs(expected), unit)));
+  const int digits = digits_of(values_of({&found, 1, 1}), values_of({&expected, 1, 1}), tolerance);
+  report_failure(tell(with_slip(story, seen), in_digits(expected, digits), in_digits(found, digits),
+                      unit, off_by(difference, tolerance, std::abs(expected), unit)));
 }
 
 void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, double tolerance,
@@ -181,16 +213,18 @@ void expect_near(const Numbers& found_numbers, const Numbers& expected_numbers, 
           : given;
   const std::string off = off_by(difference, tolerance,
                                  expected.size() > 0 ? expected.cwiseAbs().maxCoeff() : 0.0, unit);
+  const int digits = digits_of(found, expected, tolerance);
   constexpr Eigen::Index kReadable = 16;  // numbers in a line
   if (same_size && expected.size() > kReadable && found.allFinite()) {
     Eigen::Index row = 0, column = 0;
     (found - expected).cwiseAbs().maxCoeff(&row, &column);
     const std::string where =
         " at [" + std::to_string(row) + "], the worst of " + std::to_string(expected.size());
-    report_failure(
-        tell(story, show(expected(row, column)) + where, show(found(row, column)), unit, off));
+    report_failure(tell(story, in_digits(expected(row, column), digits) + where,
+                        in_digits(found(row, column), digits), unit, off));
   } else {
-    report_failure(tell(story, show(expected_numbers), show(found_numbers), unit, off));
+    report_failure(tell(story, in_digits(expected_numbers, digits),
+                        in_digits(found_numbers, digits), unit, off));
   }
 }
 

@@ -157,7 +157,7 @@ TEST(HiddenContactNormal2d, IsUnitPerpendicularAndOnTheRightSide) {
     const Vector2d along(std::cos(heading), std::sin(heading)), left(-along.y(), along.x());
     const Vector2d end = start + length * along, off = start + random.unit() * length * along +
                                                        side * random.between(0.01, 1.0) * left;
-    const Story story{.scene = number_of(i, 2109) + ": an edge of " + show(length) + " m",
+    const Story story{.scene = number_of(i, 2109) + ": an edge of " + show_scale(length) + " m",
                       .slip = "not unit, not perpendicular, or pointing from A to B",
                       .handout = equation("7")};
     // An edge's direction is known to eps * 3 / length.
