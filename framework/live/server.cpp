@@ -25,6 +25,26 @@ constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' "
     "data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
+// What a browser shows of an address that is not this page's. It says nothing of the run, and has no
+// script.
+constexpr const char* kRefused = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>Refused</title>
+<meta name="viewport" content="width=device-width">
+<style>:root { color-scheme: light dark; }
+body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; max-width: 38rem; margin: 3rem auto;
+  padding: 0 1rem; } h1 { font-size: 1.4rem; } code { font-size: .95em; }</style></head>
+<body><h1>This is not the address of the page</h1>
+<p><code>tumble live</code> runs here. Its page has a new address after each start, which nobody can
+guess: open the one that its terminal shows now, whole, in a browser on the same machine.</p>
+<ul><li>A tab from before the last start has an old address: close it.</li>
+<li>A link on another page does not open it: copy the address into the browser's address bar.</li>
+<li>The machine's name does not stand for it: keep <code>127.0.0.1</code> or
+<code>localhost</code>.</li></ul></body></html>
+)";
+constexpr const char* kPolicyOfRefused =
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'";
+
 // 128 bits: not to be guessed, and not to be found out by a page of another origin.
 std::string drawn_token() {
   std::array<unsigned char, 16> bytes;
@@ -133,7 +153,9 @@ Server::Server(ServerHooks hooks, int port) : parts_(std::make_unique<Parts>()) 
         const bool is_known = request.method == "GET" || request.method == "POST";
         if (is_known && parts.is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
         response.status = is_known ? 403 : 405;
-        response.set_content("refused", "text/plain");
+        response.headers.erase("Content-Security-Policy");
+        response.set_header("Content-Security-Policy", kPolicyOfRefused);
+        response.set_content(kRefused, "text/html; charset=utf-8");
         return httplib::Server::HandlerResponse::Handled;
       });
   parts.http.Get("/.*", [&parts](const httplib::Request& request, httplib::Response& response) {

@@ -47,7 +47,7 @@ class Live {
   }
 }
 
-const tests = [], kQuick = ['a push', 'the keyboard', 'another origin', 'judges nobody', 'of a save is said', 'said beside the run'];
+const tests = [], kQuick = ['a push', 'the keyboard', 'another origin', 'judges nobody', 'of a save is said', 'said beside the run', 'an earlier start'];
 const test = (name, run, needsReference = true) => tests.push({ name, run, needsReference });
 const browser = new Browser();
 
@@ -454,6 +454,19 @@ test('poking leaks nothing', async () => {
   await live.stop('SIGKILL');   // even so nothing is left
   await sleep(1500);
   expect(children.filter(pid => pid > 0 && existsSync(`/proc/${pid}`) && /tumble/.test((() => { try { return readlinkSync(`/proc/${pid}/exe`); } catch { return ''; } })())).length === 0, 'processes are left');
+});
+
+test('a tab of an earlier start says that its address is old', async () => {
+  const live = await Live.start('drop_a_box', '--modules', 'reference'), port = new URL(live.address).port, page = await browser.open(live.address, { width: 400 });
+  await page.until('tumble.run && tumble.run.length > 1', 'the motion');
+  await live.stop();
+  await page.until('document.body.textContent.includes("the program has ended")', 'that it has ended');
+  const again = await Live.start('drop_a_box', '--modules', 'reference', '--port', port);
+  await page.until('document.body.textContent.includes("open the address that the terminal shows now")', 'what to do', 20);
+  await page.send('Page.navigate', { url: live.address });
+  await page.until('document.title === "Refused"', 'the refused page');
+  expect(await page.value('document.documentElement.scrollWidth <= 400 && getComputedStyle(document.body).maxWidth !== "none"'), 'the refused page has no style, or scrolls sideways');
+  await again.stop();
 });
 
 try {

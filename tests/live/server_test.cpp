@@ -105,6 +105,10 @@ TEST_F(LiveServer, WrongTokenGetsNothing) {
                                   path_ + "/../" + wrong.substr(1), wrong + "stream"})
     EXPECT_NE(status(get(path)), 200) << path;
   EXPECT_EQ(status(get(wrong)), 403);
+  const std::string said = get(wrong);  // what to do, and neither a script nor the right address
+  EXPECT_NE(said.find("open the one that its terminal shows now"), std::string::npos) << said;
+  EXPECT_EQ(said.find("<script"), std::string::npos);
+  EXPECT_EQ(said.find(path_.substr(1, 32)), std::string::npos);
   EXPECT_GE(path_.size(), 34u);  // 128 bits
 }
 

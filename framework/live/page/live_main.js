@@ -373,10 +373,18 @@ function listen() {
     if (page.ended) { page.ended = false; showHint(); }
   });
   stream.addEventListener('e', event => { if (page.run) page.run.addEvent(floatsOf(event.data)); });
-  stream.onerror = () => {
-    if (page.isGone) return;
-    say('the program has ended, or is gone for a moment', 'bad');
-    page.goneTimer = page.goneTimer || setTimeout(showGone, 1000 * kGoneFor);
+  stream.onerror = async () => {
+    if (stream.readyState !== EventSource.CLOSED) {  // it asks again by itself
+      if (page.isGone) return;
+      say('the program has ended, or is gone for a moment', 'bad');
+      page.goneTimer = page.goneTimer || setTimeout(showGone, 1000 * kGoneFor);
+      return;
+    }
+    clearTimeout(page.goneTimer);
+    const isOld = await fetch('').then(answer => answer.status === 403, () => false);
+    say(isOld ? 'this tab is of an earlier start: open the address that the terminal shows now' :
+                'the program takes no more pages: close one, and load this one again',
+        'bad');
   };
 }
 
