@@ -158,7 +158,8 @@ TEST(CostOfASchedulerInAReport, CurvesGoFromLeftToRight) {
     run.step_s = 0.1;
     yours.by_step.push_back(run);
   }
-  const report::Curve& curve = scheduler_plots({yours}).at(0).curves.at(0);
+  const std::vector<report::Plot> plots = scheduler_plots({yours});
+  const report::Curve& curve = plots.at(0).curves.at(0);
   ASSERT_EQ(curve.x.size(), 4u);
   EXPECT_TRUE(std::is_sorted(curve.x.begin(), curve.x.end()));
 }
