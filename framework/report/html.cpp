@@ -160,7 +160,7 @@ const char* class_of(Look look) {
 
 // A link is a path from link_to or an anchor; a scheme (javascript:, http:) is a bug.
 std::string linked(const Cell& cell) {
-  if (cell.link.empty()) return html_escape(cell.text);
+  if (cell.link.empty()) return html_sentence(cell.text);
   require(cell.link.find(':') == std::string::npos,
           "report: a link must be made by link_to or be \"#id\", not: " + cell.link);
   return "<a href=\"" + html_escape(cell.link) + "\">" + html_escape(cell.text) + "</a>";

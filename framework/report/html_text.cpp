@@ -68,7 +68,9 @@ void append_escaped(std::string& html, std::string_view character) {
 
 std::string html_sentence(std::string_view text) {
   static const std::regex with_exponent("[0-9.]+e-[0-9]+");
-  return std::regex_replace(html_escape(text), with_exponent, "<span class=\"unbroken\">$&</span>");
+  std::string html = html_escape(text);
+  if (html.find("e-") == html.npos) return html;  // most cells of a table: a search takes longer
+  return std::regex_replace(html, with_exponent, "<span class=\"unbroken\">$&</span>");
 }
 
 std::string html_heading(std::string_view text) {

@@ -427,6 +427,53 @@ TEST_F(Folder, PagesWriteOutWhatHidesInANameOrAStory) {
   EXPECT_NE(index_page(kind, {grade}).html().find("an\\u{202E}n"), std::string::npos);
 }
 
+// 24 slips in one sentence are not read.
+TEST_F(Folder, APageListsTheSlipsOfOwnTestsForTheGraderOneByOne) {
+  Grade grade = graded("ada", {{result("S.Open", Verdict::kRight)}, ""});
+  grade.own_tests = {.is_there = true,
+                     .score = 1.5,
+                     .possible = 5,
+                     .story = "2 tests",
+                     .names = "slip 1 is sign, caught by Mine.A, Mine.B; slip 2 is <half>"};
+  const std::string html = submission_page(kind, grade, "").html();
+  EXPECT_NE(html.find("<li>slip 1 is sign, caught by Mine.A, Mine.B</li>"), std::string::npos)
+      << html;
+  EXPECT_NE(html.find("<li>slip 2 is &lt;half&gt;</li>"), std::string::npos);
+  EXPECT_NE(html.find("href=\"#own-tests\""), std::string::npos);
+  EXPECT_EQ(submission_page(kind, for_student(grade), "").html().find("slip 2"), std::string::npos);
+}
+
+TEST_F(Folder, PagesCountTheRightNumbersOfASceneInEnglish) {
+  Grade grade = graded("ada", {{result("S.Open", Verdict::kRight)}, ""});
+  grade.media = {{"s", "title", "about", "", "", "", true, {}}};
+  engines::CheckResult right;
+  right.passed = true;
+  for (const auto& [checks, words] :
+       {std::pair<std::size_t, const char*>{1, "Its number is right."},
+        {2, "Both of its numbers are right."},
+        {3, "All 3 of its numbers are right."}}) {
+    grade.media[0].checks.assign(checks, right);
+    EXPECT_NE(submission_page(kind, grade, "").html().find(words), std::string::npos) << checks;
+  }
+}
+
+TEST_F(Folder, PagesDoNotBreakANumberNorPartItFromItsUnit) {
+  Grade grade = graded("ada", {{result("S.Open", Verdict::kRight)}, ""});
+  grade.media = {{"s", "title", "about", "", "", "", true, {}}};
+  engines::CheckResult check;
+  check.kind = "angular_momentum";
+  check.value = 2e-13;
+  check.threshold = 1e-9;
+  check.unit = "kg m^2/s";
+  check.passed = true;
+  grade.media[0].checks = {check};
+  const std::string html = submission_page(kind, grade, "").html(), unit = "\u00a0kg\u00a0m^2/s";
+  EXPECT_NE(html.find("<span class=\"unbroken\">2e-13</span>" + unit +
+                      ", allowed at most <span class=\"unbroken\">1e-9</span>" + unit),
+            std::string::npos)
+      << html;
+}
+
 TEST_F(Folder, PagesShowHostileNamesAndStoriesAsText) {
   const std::string evil = "<script>alert(1)</script>";
   Grade grade = graded(evil, {{result("S.Open", Verdict::kWrong, evil),

@@ -264,9 +264,13 @@ TEST_F(MendFirst, ANumberOfASceneIsToldInSentences) {
   EXPECT_NE(html.find("At t = 0.933 s. Both impulses act at the same point: round-off only."),
             std::string::npos)
       << html;
-  EXPECT_NE(html.find("0.323 kg m^2/s, allowed at most 1e-9 kg m^2/s"), std::string::npos);
+  EXPECT_NE(html.find("0.323\u00a0kg\u00a0m^2/s, allowed at most <span "
+                      "class=\"unbroken\">1e-9</span>\u00a0kg\u00a0m^2/s"),
+            std::string::npos);
   EXPECT_NE(html.find("At t = 0.933 s. Here e = 1, and rods do no work."), std::string::npos);
-  EXPECT_NE(html.find("no number, allowed at least 1e-9 kg m^2/s"), std::string::npos);
+  EXPECT_NE(html.find("no number, allowed at least <span "
+                      "class=\"unbroken\">1e-9</span>\u00a0kg\u00a0m^2/s"),
+            std::string::npos);
 }
 
 // As at the scene's own picture.

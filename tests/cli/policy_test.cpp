@@ -11,6 +11,7 @@
 #include "framework/grading/grades/batch_work.h"
 #include "framework/grading/grades/class_facts.h"
 #include "framework/grading/grades/class_files.h"
+#include "framework/grading/grades/class_page.h"
 #include "framework/grading/grades/policy_file.h"
 
 namespace tumble::grading::policy_test {
@@ -350,6 +351,55 @@ TEST(SlipsOf, AreThoseWhoseTestsAllFailAndWhoseKeywordIsSaid) {
   EXPECT_EQ(slips_of(failing({{"J.B", "of a kind not known"}}), known),
             Slips{"of a kind not known"});
   EXPECT_EQ(slips_of(failing({}), known), Slips{});
+}
+
+// A remark for each of the others would fill the page where a class hands in the starter.
+TEST(EqualFiles, AreNamedInOneRemarkAndTheFirstOfMany) {
+  const PrivateFolder folder;
+  write_whole(folder.path() / "a9_thing.cpp", "int x;\n");
+  const auto remarks_of = [&](std::vector<Submission> submissions) {
+    std::vector<GradedWork> all(submissions.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      submissions[i].source = folder.path() / "a9_thing.cpp";
+      all[i].submission = &submissions[i];
+    }
+    remark_equal_files(all);
+    return all[0].remarks;
+  };
+  std::vector<Submission> submissions;
+  for (const char* name : {"ada", "bo", "cy", "dee", "eve", "fay", "gus", "hal"})
+    submissions.emplace_back().name = name;
+  const auto first = [&](std::size_t n) {
+    return remarks_of({submissions.begin(), submissions.begin() + static_cast<long>(n)});
+  };
+  const std::string same = "the same file, byte for byte, as ";
+  EXPECT_TRUE(first(1).empty());
+  EXPECT_EQ(first(2), std::vector<std::string>{same + "that of bo"});
+  EXPECT_EQ(first(4), std::vector<std::string>{same + "those of bo, cy and dee"});
+  EXPECT_EQ(first(8), std::vector<std::string>{same + "those of bo, cy, dee, eve, fay and 2 more"});
+}
+
+// Of 26 tests a block of 25 and one of a single column would stand below each other; and what all
+// pass is said by the table.
+TEST(ClassPage, DividesTheMatrixEvenlyAndNamesNoLongListOfTests) {
+  Grade grade = scored("ada", 100.0);
+  for (int i = 1; i <= 26; ++i) {
+    ScoredTest test;
+    test.item.test = "S.T" + std::to_string(i);
+    test.item.title = "title " + std::to_string(i);
+    test.result = {test.item.test, Verdict::kRight, ""};
+    grade.tests.push_back(test);
+  }
+  modules::ModuleKind kind;
+  const std::string html = class_page(kind, {grade}, SlipTally({}), {}).html();
+  EXPECT_NE(html.find("Tests 1 to 13"), std::string::npos);
+  EXPECT_NE(html.find("Tests 14 to 26"), std::string::npos);
+  EXPECT_NE(html.find("Nobody fails: 26 of the 26 tests, which the remarks below name."),
+            std::string::npos);
+  grade.tests.resize(1);
+  const std::string of_one = class_page(kind, {grade}, SlipTally({}), {}).html();
+  EXPECT_NE(of_one.find("Nobody fails: 1 title 1."), std::string::npos);
+  EXPECT_EQ(of_one.find("Tests 1 to 1"), std::string::npos);
 }
 
 // The submissions may have been moved away while they were graded.

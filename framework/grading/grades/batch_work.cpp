@@ -113,12 +113,25 @@ void remark_equal_files(std::vector<GradedWork>& all) {
   for (GradedWork& work : all)
     if (!work.submission->source.empty())
       by_digest[digest_of_file(work.submission->source)].push_back(&work);
+  constexpr std::size_t kMostNamed = 5;  // of a class that hands in the starter there are many
   for (const auto& [bytes, equal] : by_digest)
-    for (GradedWork* work : equal)
-      for (const GradedWork* other : equal)
-        if (other != work)
-          work->remarks.push_back("the same file, byte for byte, as that of " +
-                                  plain_name(other->submission->name));
+    for (GradedWork* work : equal) {
+      const std::size_t others = equal.size() - 1, named = std::min(others, kMostNamed);
+      std::string names;
+      std::size_t k = 0;
+      for (auto other = equal.begin(); k < named; ++other) {
+        if (*other == work) continue;
+        const bool ends_list = ++k == named && named == others;
+        names += (k == 1      ? ""
+                  : ends_list ? " and "
+                              : ", ") +
+                 plain_name((*other)->submission->name);
+      }
+      if (named < others) names += fmt::format(" and {} more", others - named);
+      if (others > 0)
+        work->remarks.push_back(fmt::format("the same file, byte for byte, as {} of {}",
+                                            others == 1 ? "that" : "those", names));
+    }
 }
 
 void report_doubles(std::vector<GradedWork>& all, const Notice& notice) {

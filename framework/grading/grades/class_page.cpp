@@ -59,10 +59,14 @@ void add_histogram(report::Page& page, const std::vector<Grade>& grades) {
 // The tests of which `is_one` holds, by number and title.
 template <class IsOne>
 std::string named(const std::vector<TestCount>& counts, const IsOne& is_one) {
+  constexpr std::size_t kMostNamed = 12;  // more are read in the table's last column
   std::string text;
+  std::size_t number = 0;
   for (std::size_t i = 0; i < counts.size(); ++i)
-    if (is_one(counts[i]))
+    if (is_one(counts[i]) && ++number <= kMostNamed)
       text += fmt::format("{}{} {}", text.empty() ? "" : "; ", i + 1, counts[i].item.title);
+  if (number > kMostNamed)
+    return fmt::format("{} of the {} tests, which the remarks below name", number, counts.size());
   return text.empty() ? "none" : text;
 }
 
@@ -146,8 +150,10 @@ constexpr std::size_t kMostInMatrix = 2000;
 // A block of the matrix: of `last` - `first` tests, so that it fits a page.
 report::Table matrix_of(const std::vector<Grade>& grades, const std::vector<TestCount>& counts,
                         std::size_t first, std::size_t last) {
-  report::Table table{
-      fmt::format("Tests {} to {}", first + 1, last), {{"Submission"}, {"Points", true}}, {}};
+  report::Table table{last == first + 1 ? fmt::format("Test {}", last)
+                                        : fmt::format("Tests {} to {}", first + 1, last),
+                      {{"Submission"}, {"Points", true}},
+                      {}};
   for (std::size_t i = first; i < last; ++i) table.columns.push_back({std::to_string(i + 1)});
   for (const Grade& grade : grades) {
     if (table.rows.size() == kMostInMatrix) break;
@@ -168,7 +174,9 @@ report::Table matrix_of(const std::vector<Grade>& grades, const std::vector<Test
 
 void add_matrix(report::Page& page, const std::vector<Grade>& grades,
                 const std::vector<TestCount>& counts) {
-  constexpr std::size_t kTestsOfBlock = 25;
+  constexpr std::size_t kMostOfBlock = 25;  // tests, as a page has room for
+  const std::size_t blocks = (counts.size() + kMostOfBlock - 1) / kMostOfBlock,
+                    each = blocks == 0 ? 1 : (counts.size() + blocks - 1) / blocks;
   page.heading("Tests by submissions", 2, "matrix");
   page.paragraph(
       "+ right, x wrong, o not attempted, ! crashed, t out of time or memory, ? no final verdict; "
@@ -177,8 +185,8 @@ void add_matrix(report::Page& page, const std::vector<Grade>& grades,
   if (grades.size() > kMostInMatrix)
     page.paragraph(fmt::format("The first {} of {} submissions.", kMostInMatrix, grades.size()),
                    Look::kMuted);
-  for (std::size_t first = 0; first < counts.size(); first += kTestsOfBlock)
-    page.table(matrix_of(grades, counts, first, std::min(counts.size(), first + kTestsOfBlock)));
+  for (std::size_t first = 0; first < counts.size(); first += each)
+    page.table(matrix_of(grades, counts, first, std::min(counts.size(), first + each)));
 }
 
 // Distance of the left half, the submission's view, from the right one, the reference's.

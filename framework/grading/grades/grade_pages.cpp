@@ -120,8 +120,10 @@ void add_changes(report::Page& page, const Grade& grade) {
 }
 
 std::string numbers_of(const engines::CheckResult& c) {
-  const std::string unit = c.unit.empty() ? "" : ' ' + c.unit,
-                    reached = std::isfinite(c.value) ? three_digits(c.value) + unit : "no number";
+  std::string unit = c.unit.empty() ? "" : ' ' + c.unit;
+  for (std::size_t at = 0; (at = unit.find(' ', at)) != unit.npos;)
+    unit.replace(at, 1, "\u00a0");  // stays with its number
+  const std::string reached = std::isfinite(c.value) ? three_digits(c.value) + unit : "no number";
   static const std::set<std::string> of_expected = {
       "flips",          "event_count",        "impact_times", "final_position", "final_velocity",
       "centre_of_mass", "distance_travelled", "angle_at",     "link_force",     "reaction"};
@@ -197,8 +199,9 @@ void add_stories(report::Page& page, const Grade& grade, const PageView& view) {
     std::string facts = test.item.test + (test.item.hidden ? " (hidden)" : "");
     if (test.result.calls > 0)
       facts += fmt::format(
-          ": {}, {} {}", counted(static_cast<std::size_t>(test.result.calls), "call"),
-          test.result.verdict == Verdict::kWrong ? "wrong first after one of" : "the last to",
+          ": {}; {} {}", counted(static_cast<std::size_t>(test.result.calls), "call"),
+          test.result.verdict == Verdict::kWrong ? "the first wrong answer follows one of"
+                                                 : "the last one of",
           test.result.last_call);
     page.paragraph(facts, Look::kMuted);
     add_story(page, test.result.story, view);
@@ -234,9 +237,10 @@ void add_scene(report::Page& page, const SceneMedia& scene, const std::filesyste
     page.paragraph(fmt::format("{} of its {} numbers are wrong.", wrong, scene.checks.size()),
                    Look::kBad);
   else if (!scene.checks.empty())
-    page.paragraph(scene.checks.size() == 1
-                       ? "Its number is right."
-                       : fmt::format("All of its {} numbers are right.", scene.checks.size()),
+    page.paragraph(scene.checks.size() == 1 ? "Its number is right."
+                   : scene.checks.size() == 2
+                       ? "Both of its numbers are right."
+                       : fmt::format("All {} of its numbers are right.", scene.checks.size()),
                    Look::kGood);
   if (!scene.picture.empty() || !scene.video.empty()) {
     report::Figure figure;
@@ -312,7 +316,16 @@ void add_own_tests(report::Page& page, const OwnTestsGrade& own) {
                            points_text(own.possible)),
                2, "own-tests");
   page.preformatted(plain_text(own.story));
-  if (!own.names.empty()) page.paragraph("For the grader only: " + own.names + ".", Look::kMuted);
+  if (own.names.empty()) return;
+  page.begin(report::Part::kFold, "For the grader only: which slips and right solutions these are");
+  std::vector<Cell> names;
+  for (std::size_t at = 0; at < own.names.size();) {
+    const std::size_t end = std::min(own.names.find("; ", at), own.names.size());
+    names.push_back({plain_text(own.names.substr(at, end - at))});
+    at = end + 2;
+  }
+  page.list(names);
+  page.end();
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade,
@@ -323,7 +336,9 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   if (!view.is_alone) links.push_back({"All submissions", "../index.html"});
   if (!grade.causes.empty()) links.push_back({"Mend first", "#mend-first"});
   if (!view.bench.own.empty()) links.push_back({"Try the code", "#try"});
-  links.insert(links.end(), {{"Tests", "#tests"}, {"Stories", "#stories"}});
+  links.push_back({"Tests", "#tests"});
+  if (grade.own_tests.is_there) links.push_back({"Own tests", "#own-tests"});
+  links.push_back({"Stories", "#stories"});
   if (!grade.cost.scene.empty()) links.push_back({"What accuracy costs", "#cost"});
   links.push_back({"Scenes", "#scenes"});
   if (!view.handout.empty()) links.push_back({"Handout", view.handout});
