@@ -25,8 +25,8 @@ constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' "
     "data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-// What a browser shows of an address that is not this page's. It says nothing of the run, and has no
-// script.
+// What a browser shows of an address that is not this page's. It says nothing of the run, and has
+// no script.
 constexpr const char* kRefused = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>Refused</title>
 <meta name="viewport" content="width=device-width">

@@ -194,6 +194,15 @@ TEST(PlayerPage, IsSelfContained) {
   EXPECT_LT(page.size(), 600'000u);
 }
 
+// In the plots that scripts draw, in those without scripts, in the table that is saved.
+TEST(PlayerPage, SpellsTheChangeOfEnergyInOneWay) {
+  const std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
+  EXPECT_EQ(page.find("E - E(0)"), std::string::npos);
+  std::size_t places = 0;
+  for (std::size_t at = 0; (at = page.find("E − E(0)", at)) != page.npos; ++at) ++places;
+  EXPECT_GE(places, 3u);
+}
+
 // A report of a hundred pages has the scripts once, and the same motion once a page.
 TEST(PlayerPage, BesideAnotherFileHoldsNoScriptsAndTheSameMotionOnce) {
   PlayerOptions beside;
