@@ -12,9 +12,9 @@ namespace {
 // Margin for the rounding of bounds: with it the result does not depend on the order of the
 // traversal.
 constexpr double kRoundings = 64;
-// Relative to the smaller solid: the cache covers this much more than the reach of the query, and
-// stays valid until the solids have moved that far.
-constexpr double kSkin = 0.02;
+// Relative to the smaller solid: the cache covers so much more than the reach of the query, at
+// least and at most, and stays valid until the solids have moved that far.
+constexpr double kSkin = 0.02, kThickSkin = 0.1;
 // Queries to wait before a cache is filled again that answered none, because its solids move fast.
 constexpr int kPause = 8;
 
@@ -139,7 +139,7 @@ void fill(const Query& query, double reach, PairCache& cache) {
   const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
   // pieces are cores without the rounding radius
   const double apart = reach - query.a.radius() - query.b.radius();
-  cache.reach = reach + std::max(kSkin * size, 0.5 * apart);
+  cache.reach = reach + std::clamp(0.5 * apart, kSkin * size, kThickSkin * size);
   cache.served = 0;
   cache.near.clear();
   const double widened_reach = cache.reach + rounding(query);

@@ -54,8 +54,18 @@ double duration_of_balls(const Vector3d& d, const Vector3d& u, double gap, doubl
   return discriminant < 0 ? kInfinity : excess / (-approach + std::sqrt(discriminant));
 }
 
+// For how long nothing of the two comes by more than `way` nearer. [s]
+double duration_of_way(const Relative& relative, double way) {
+  return first_root_of_quadratic(way, -(relative.velocity.norm() + relative.turning_reach),
+                                 -0.5 * (relative.acceleration.norm() + relative.deviation));
+}
+
 // Of the time that is asked for: shorter bounds are worth a second look.
 constexpr double kShort = 1.0 / 16;
+
+// Solids of so many pairs of pieces are looked ahead until they may have come by a part of the
+// smaller one's radius nearer than they are; fewer are all tested within some ten milliseconds.
+constexpr double kManyPairs = 1e5, kWay = 0.1;
 
 }  // namespace
 
@@ -169,6 +179,14 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a,
   if (nearest.piece_a < 0) return bound;
   shorten_by_pair(nearest.piece_a, nearest.piece_b, nearest.gap);
   if (!a.is_closed_surface() && !b.is_closed_surface()) return bound;
+  // Solids that pass or turn by each other may go far before the nearest pair touches: all pieces
+  // may then meet all others, millions of pairs. Less is looked ahead.
+  if (static_cast<double>(a.pieces().size()) * static_cast<double>(b.pieces().size()) >
+      kManyPairs) {
+    const double way = std::max(nearest.gap.distance - radius, 0.0) +
+                       kWay * std::min(a.bounding_radius(), b.bounding_radius());
+    bound.duration = std::min(bound.duration, duration_of_way(relative, way));
+  }
   for (const auto& [i, j] : pieces_within(query, relative.reach(bound.duration) + radius, cache)) {
     if (i == nearest.piece_a && j == nearest.piece_b) continue;
     const double limit = relative.reach(bound.duration) + radius;
