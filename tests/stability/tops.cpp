@@ -205,9 +205,10 @@ void high_spin(const Given& given, Findings& findings) {
     if (angle < 3) continue;
     findings.must_fail("RK4, w h = 4: orientation", error, 1e-3, "rad",
                        "more than half a turn a step is taken for a turn the other way");
-    bool told = false;
-    for (const std::string& notice : run.counters.notices)
-      told = told || notice.find("turn") != std::string::npos;
+    const std::vector<RunFault>& faults = run.counters.faults;
+    const bool told = std::any_of(faults.begin(), faults.end(), [](const RunFault& fault) {
+      return fault.kind == "turn_unresolved";
+    });
     findings.is_true("w h = 4: the run tells of it", told, "aliasing must not pass in silence");
   }
   plot.curves = {found, predicted};
