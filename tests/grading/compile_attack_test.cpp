@@ -170,7 +170,7 @@ TEST_F(CompileAttack, CpuTimeIsALimitAndWallTimeAloneIsABusyMachine) {
   CompileLimits limits;
   limits.cpu_s = 1;
   // 2^30 lines: more than a second on any machine.
-  std::string text = "#define A0 int;\n";
+  std::string text = "#include \"tests/modules/waist.h\"\n#define A0 int;\n";
   for (int i = 1; i <= 30; ++i)
     text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" +
             std::to_string(i - 1) + "\n";
@@ -200,6 +200,18 @@ TEST_F(CompileAttack, BytesThatAreNotTextAreNamedWithARemedy) {
   EXPECT_EQ(compiled.outcome, Outcome::kRefused);
   EXPECT_NE(compiled.said.find("UTF-16"), std::string::npos) << compiled.said;
   EXPECT_NE(compiled.said.find("Save it as UTF-8"), std::string::npos) << compiled.said;
+}
+
+// It would be a shared object without a module, of which each test says that it has crashed.
+TEST_F(CompileAttack, AFileWithoutTheModulesHeaderDefinesNothing) {
+  for (const char* text : {"", "\n\n", "// to do\n", "int main() { return 0; }\n"}) {
+    const Compiled compiled = compile(text);
+    EXPECT_EQ(compiled.outcome, Outcome::kRefused) << text;
+    EXPECT_NE(compiled.said.find("waist.cpp:1:1: error: the file does not include "
+                                 "\"tests/modules/waist.h\" and defines nothing of waist"),
+              std::string::npos)
+        << compiled.said;
+  }
 }
 
 }  // namespace

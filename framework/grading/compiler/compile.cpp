@@ -236,17 +236,22 @@ Compiled compile_submission(const CompileJob& job) {
   if (const std::string no_text = why_no_text(*source); !no_text.empty())
     return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
 
-  const SandboxUser user = SandboxUser::lease();
-  Stage headers(&user), submission(&user), tools(&user);
-  std::set<std::string> needed = {job.header.string()};
-  collect_headers(job.root, text_of(job.root / job.header), needed);
-  const std::string tests = job.form == CompileJob::Form::kTests
-                                ? "tests/" + job.header.parent_path().filename().string() + "/"
-                                : "";
-  collect_headers(job.root, *source, needed, tests);
-  for (const std::string& header : needed) headers.add_file(job.root / header, header);
   const bool is_native = job.form == CompileJob::Form::kModule,
              is_tests = job.form == CompileJob::Form::kTests;
+  const std::string header = job.header.string(),
+                    tests = is_tests ? "tests/" + job.header.parent_path().filename().string() + "/"
+                                     : "";
+  std::set<std::string> needed;
+  collect_headers(job.root, *source, needed, tests);
+  if (is_native && !needed.contains(header) && !says(*source, {job.header.filename().c_str()}))
+    return {Outcome::kRefused, name + ":1:1: error: the file does not include \"" + header +
+                                   "\" and defines nothing of " + job.id +
+                                   ". Is it empty, or another file?"};
+  if (needed.insert(header).second) collect_headers(job.root, text_of(job.root / header), needed);
+
+  const SandboxUser user = SandboxUser::lease();
+  Stage headers(&user), submission(&user), tools(&user);
+  for (const std::string& file : needed) headers.add_file(job.root / file, file);
   SandboxJob inside = sandbox_job(job.limits);
   const bool is_unwritable = inside.kind == SandboxKind::kNamespaces || user.uid().has_value();
   const bool has_kernels =
