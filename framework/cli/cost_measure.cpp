@@ -64,12 +64,7 @@ struct Refinement {
 std::string fineness_of(const CostResult& result) {
   if (std::isfinite(result.tolerance)) return tolerance_in_words(result.tolerance);
   if (!std::isfinite(result.step_s)) return "no step";
-  const double steps_a_second = 1.0 / result.step_s;
-  constexpr double kFraction = 10;  // from here on a step is read as a fraction of a second
-  const bool is_fraction = steps_a_second >= kFraction ||
-                           (steps_a_second > 1 && steps_a_second == std::round(steps_a_second));
-  return is_fraction ? fmt::format("1/{:.0f}\u00a0s", steps_a_second)
-                     : fmt::format("{:.3g}\u00a0s", result.step_s);
+  return step_in_words(result.step_s) + "\u00a0s";
 }
 
 bool is_smooth(const scene::Scene& scene) {

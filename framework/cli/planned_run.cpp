@@ -74,9 +74,7 @@ std::vector<CostMethod> methods_for(const Context& context, const scene::Scene& 
 
 std::string fineness_of(const CostChoice& choice) {
   if (!choice.method.has_refinement) return "closed form, no step";
-  const std::string step = 1.0 / choice.result.step_s >= 10
-                               ? fmt::format("steps of 1/{:.0f} s", 1.0 / choice.result.step_s)
-                               : fmt::format("steps of {:.3g} s", choice.result.step_s);
+  const std::string step = fmt::format("steps of {} s", step_in_words(choice.result.step_s));
   return choice.method.controlled
              ? fmt::format("tolerance {}, within {}", few_digits(choice.tolerance), step)
              : step;

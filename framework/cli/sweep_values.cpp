@@ -274,14 +274,10 @@ Vector3d way_of_gravity(const scene::Scene& scene) {
 
 std::string value_in_words(const Varied& varied, std::size_t value) {
   if (!varied.is_number) return varied.texts[value];
-  const double number = varied.numbers[value], whole = std::round(1.0 / number);
-  constexpr double kRounding = 1e-9;  // relative
+  const double number = varied.numbers[value];
   const std::string digits = few_digits(number, 6);
   const bool is_long = digits.size() > 5;  // 0.005 is read as it is, 0.0166667 as 1/60
-  if (varied.word == "step_s" && is_long && whole >= 2 &&
-      std::abs(number * whole - 1.0) < kRounding)
-    return fmt::format("1/{:.0f}", whole);
-  return digits;
+  return varied.word == "step_s" && is_long ? step_in_words(number) : digits;
 }
 
 std::vector<Varied> parse_over(const std::vector<std::string>& over, const scene::Scene& scene) {

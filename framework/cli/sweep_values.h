@@ -26,8 +26,8 @@ struct Varied {
   std::size_t size() const { return texts.size(); }
 };
 
-/// A value as people read it: a step as "1/60" where it is such a part of a second, other numbers
-/// in six digits.
+/// A value as people read it: a step as step_in_words (core/text.h) has it where it is long, other
+/// numbers in six digits.
 std::string value_in_words(const Varied& varied, std::size_t value);
 
 /// @param over   of each --over: "restitution=0:1:0.05", or several with commas between them

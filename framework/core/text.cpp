@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -70,6 +71,13 @@ std::string few_digits(double x, int digits) {
 }
 
 std::string three_digits(double x) { return few_digits(x, 3); }
+
+std::string step_in_words(double step_s) {
+  constexpr double kRounding = 1e-6;  // of what decimals leave
+  const double whole = std::round(1.0 / step_s);
+  const bool is_part = whole >= 2 && std::abs(step_s * whole - 1.0) < kRounding;
+  return is_part ? "1/" + std::to_string(std::llround(whole)) : three_digits(step_s);
+}
 
 std::string capitalised(std::string text) {
   const std::size_t end = std::min(text.find_first_of(" ,:"), text.size());

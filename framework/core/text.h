@@ -27,6 +27,9 @@ std::string few_digits(double x, int digits = 2);
 /// The same with three digits.
 std::string three_digits(double x);
 
+/// A step [s] as people read it: "1/60" where it is such a part of a second, else in three digits.
+std::string step_in_words(double step_s);
+
 /// The text with a capital letter at its beginning where that is a word of more than two letters:
 /// "Midpoint", and not the name of an engine ("ca"), a function ("rk4_step") or a method ("RK4").
 std::string capitalised(std::string text);

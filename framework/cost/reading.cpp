@@ -81,7 +81,7 @@ std::string of_numbers(const CostMethod& method, const std::vector<CostResult>& 
                        method.controlled ? "tolerance" : "step", worst);
   const std::string from = std::isfinite(coarsest->tolerance)
                                ? "tolerance " + few_digits(coarsest->tolerance)
-                               : fmt::format("1/{:.0f} s", 1.0 / coarsest->step_s);
+                               : step_in_words(coarsest->step_s) + " s";
   return fmt::format("{} is right by all numbers at {}; at best {}.", method.name, from, worst);
 }
 

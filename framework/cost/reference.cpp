@@ -184,10 +184,10 @@ long steps_a_sample(const scene::Scene& scene, const Window& window) {
 
 std::string two_steps_in_words(long steps, const Window& window) {
   return fmt::format(
-      "a run by Fehlberg 7(8) with tolerance {} at steps of 1/{:.0f} s; its error floor is the "
+      "a run by Fehlberg 7(8) with tolerance {} at steps of {} s; its error floor is the "
       "difference to twice the step",
       few_digits(engines::kSolverRounding),
-      static_cast<double>(steps * window.samples) / window.duration_s);
+      step_in_words(window.duration_s / static_cast<double>(steps * window.samples)));
 }
 
 Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& window) {

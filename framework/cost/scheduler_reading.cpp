@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/cost/scheduler_work.h"
 
 namespace tumble::cost {
@@ -40,9 +41,8 @@ struct Sum {
 };
 
 std::string in_words(const SchedulerRun& run) {
-  const std::string step = run.step_s < 0.1 ? fmt::format("1/{:.0f} s", 1.0 / run.step_s)
-                                            : fmt::format("{:.3g} s", run.step_s);
-  return run.n > 0 ? fmt::format("{} processes", run.processes) : fmt::format("steps of {}", step);
+  return run.n > 0 ? fmt::format("{} processes", run.processes)
+                   : fmt::format("steps of {} s", step_in_words(run.step_s));
 }
 
 const SchedulerRun* same_run(const SchedulerRun& run, const SchedulerCurve& reference) {

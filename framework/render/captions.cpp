@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
+
 namespace tumble::render {
 namespace {
 
@@ -19,16 +21,8 @@ std::string engine_name(const std::string& id) {
   return id.empty() ? "unknown engine" : id;
 }
 
-// 1/60 reads better than 0.0166667.
-std::string step_text(double step_s) {
-  const double per_second = step_s > 0.0 ? 1.0 / step_s : 0.0;
-  const bool is_fraction =
-      per_second >= 2.0 && std::abs(per_second - std::round(per_second)) < 1e-6 * per_second;
-  return is_fraction ? fmt::format("1/{:.0f} s", per_second) : fmt::format("{:g} s", step_s);
-}
-
 std::string made_by(const TrajectoryInfo& info) {
-  std::string text = engine_name(info.engine) + ", step " + step_text(info.step_s);
+  std::string text = engine_name(info.engine) + ", step " + step_in_words(info.step_s) + " s";
   if (!info.impulse_source.empty() && info.impulse_source != "none")
     text += " · impulses: " + info.impulse_source;
   if (!info.integrator_source.empty() && info.integrator_source != "none")

@@ -52,6 +52,16 @@ TEST(FewDigits, HaveAPowerOfTenOnlyWhereTheyWouldBeLong) {
   EXPECT_EQ(few_digits(2.5e6), "2.5e6");
 }
 
+TEST(StepInWords, IsAPartOfASecondWhereItIsOne) {
+  EXPECT_EQ(step_in_words(0.016666666666666666), "1/60");
+  EXPECT_EQ(step_in_words(0.0166667), "0.0167");  // rounded elsewhere: not that step
+  EXPECT_EQ(step_in_words(0.125), "1/8");
+  EXPECT_EQ(step_in_words(1e-7), "1/10000000");
+  EXPECT_EQ(step_in_words(0.3), "0.3");
+  EXPECT_EQ(step_in_words(2.0), "2");
+  EXPECT_EQ(step_in_words(0.0), "0");  // of an engine without steps
+}
+
 TEST(Capitalised, IsAWordAndNoNameOfTheProgram) {
   EXPECT_EQ(capitalised("symplectic Euler, order 1"), "Symplectic Euler, order 1");
   EXPECT_EQ(capitalised("midpoint"), "Midpoint");
