@@ -74,8 +74,9 @@ std::string three_digits(double x) { return few_digits(x, 3); }
 
 std::string step_in_words(double step_s) {
   constexpr double kRounding = 1e-6;  // of what decimals leave
+  constexpr double kMost = 1e5;       // "1e-7" is read sooner than "1/10000000"
   const double whole = std::round(1.0 / step_s);
-  const bool is_part = whole >= 2 && std::abs(step_s * whole - 1.0) < kRounding;
+  const bool is_part = whole >= 2 && whole < kMost && std::abs(step_s * whole - 1.0) < kRounding;
   return is_part ? "1/" + std::to_string(std::llround(whole)) : three_digits(step_s);
 }
 

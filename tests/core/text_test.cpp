@@ -56,7 +56,7 @@ TEST(StepInWords, IsAPartOfASecondWhereItIsOne) {
   EXPECT_EQ(step_in_words(0.016666666666666666), "1/60");
   EXPECT_EQ(step_in_words(0.0166667), "0.0167");  // rounded elsewhere: not that step
   EXPECT_EQ(step_in_words(0.125), "1/8");
-  EXPECT_EQ(step_in_words(1e-7), "1/10000000");
+  EXPECT_EQ(step_in_words(1e-7), "1e-7");
   EXPECT_EQ(step_in_words(0.3), "0.3");
   EXPECT_EQ(step_in_words(2.0), "2");
   EXPECT_EQ(step_in_words(0.0), "0");  // of an engine without steps

@@ -2,16 +2,27 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/scene/load_scene.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/engines/scenes.h"
+#include "tests/support/places.h"
 
 namespace tumble::testing {
+
+inline const Vector3d kEarthGravity(0, 0, -9.81);  // [m/s^2]
+
+/// Of tests/engines/broken_scenes.
+inline scene::Scene broken_scene(const std::string& name) {
+  return scene::load_scene(std::filesystem::path(test::source_dir()) /
+                           "tests/engines/broken_scenes" / (name + ".json"));
+}
 
 inline Trajectory run_by(const std::string& engine, scene::Scene scene,
                          const Laws& laws = reference_laws()) {
