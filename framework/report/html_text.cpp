@@ -4,33 +4,10 @@
 #include <cstdint>
 #include <regex>
 
+#include "framework/core/utf8.h"
+
 namespace tumble::report {
 namespace {
-
-struct Decoded {
-  std::uint32_t code;  // kInvalid for bytes that are not UTF-8
-  std::size_t length;  // bytes consumed, at least 1
-};
-constexpr std::uint32_t kInvalid = 0xffffffff;
-
-// One character. Overlong forms, surrogates and codes past U+10FFFF are invalid (Unicode 15, table
-// 3-7).
-Decoded decode(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(at);
-  if (first < 0x80) return {first, 1};
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || at + length > text.size()) return {kInvalid, 1};
-  std::uint32_t code = first & (0xff >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xc0) != 0x80) return {kInvalid, 1};
-    code = (code << 6) | (byte(at + i) & 0x3f);
-  }
-  constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xd800 && code <= 0xdfff;
-  if (code < kSmallest[length] || surrogate || code > 0x10ffff) return {kInvalid, 1};
-  return {code, length};
-}
 
 // Characters that hide or reorder their neighbours (the "Trojan source" set), and the C0 and C1
 // controls.
@@ -94,8 +71,8 @@ std::string html_escape(std::string_view text) {
       at += skipped;
       continue;
     }
-    const Decoded character = decode(text, at);
-    if (character.code == kInvalid)
+    const Character character = character_at(text, at);
+    if (!character.is_valid)
       html += "\xef\xbf\xbd";
     else if (!is_dropped(character.code))
       append_escaped(html, text.substr(at, character.length));

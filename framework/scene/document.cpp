@@ -11,6 +11,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "framework/core/utf8.h"
+
 namespace tumble::scene {
 namespace {
 
@@ -238,7 +240,33 @@ void Document::refuse(const std::string& pointer, const std::string& problem,
       remedy);
 }
 
+namespace {
+
+/// JSON is UTF-8. Said before a parser prints bytes that no terminal shows.
+void refuse_what_is_no_utf8(const std::string& text, const std::filesystem::path& file) {
+  if (const auto no_text = why_no_text(text))
+    throw UserError(file.string(), "the file " + no_text->problem, no_text->remedy);
+  const auto at = first_that_is_no_utf8(text);
+  if (!at) return;
+  throw UserError(
+      file.string() + ':' + line_and_column(text, *at + 1),
+      fmt::format("found the byte {:#04x}, which is not UTF-8", character_at(text, *at).code),
+      "Save the file as UTF-8: letters with accents are two bytes there.");
+}
+
+/// What is wrong at the place where the parser stopped.
+std::string what_is_no_json(const std::string& text, const json::parse_error& error) {
+  const std::size_t at = std::max<std::size_t>(error.byte, 1) - 1;
+  const bool is_ascii = at >= text.size() || character_at(text, at).code < 0x80;
+  if (is_ascii) return "this is not JSON: " + essence(error.what());
+  return "this is not JSON: found " + text.substr(at, character_at(text, at).length) +
+         " outside of a text in double quotes";
+}
+
+}  // namespace
+
 Document parse_document(const std::string& text, const std::filesystem::path& file) {
+  refuse_what_is_no_utf8(text, file);
   Document document;
   document.file = file;
   const char* seen = text.data();
@@ -255,7 +283,7 @@ Document parse_document(const std::string& text, const std::filesystem::path& fi
                     "Check its brackets.");
   } catch (const json::parse_error& error) {
     throw UserError(file.string() + ':' + line_and_column(text, error.byte),
-                    "this is not JSON: " + essence(error.what()),
+                    what_is_no_json(text, error),
                     "JSON wants double quotes, a comma between entries and none after the last, "
                     "and no NaN or infinity.");
   } catch (const json::exception& error) {  // a number beyond a double

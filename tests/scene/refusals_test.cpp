@@ -236,6 +236,17 @@ TEST(SceneRefusals, BracketsThatNeverCloseAreRefusedBeforeTheyAreRead) {
   expect_words(refusal("[\n" + std::string(3000, '[')), {"s.json:2", "deeper", "brackets"});
 }
 
+// Where the parser stops at a byte of several, its own message ends in half a character.
+TEST(SceneRefusals, TextInAnotherEncodingIsNamedWithARemedy) {
+  std::string wide = "\xff\xfe";
+  for (const char c : scene_with(kBall)) wide += c, wide += '\0';
+  expect_words(refusal(wide), {"s.json: the file is written in UTF-16", "Save it as UTF-8"});
+  expect_words(refusal("{\n\"title\": \"Caf\xe9\"}"),
+               {"s.json:2:14: found the byte 0xe9, which is not UTF-8", "Save the file as UTF-8"});
+  expect_words(refusal("{\n\u201ctitle\u201d: \"\"}"),
+               {"s.json:2:1", "found \u201c outside of a text in double quotes"});
+}
+
 TEST(SceneRefusals, ATrailingCommaIsNotJson) {
   expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"});
 }

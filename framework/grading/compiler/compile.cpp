@@ -14,6 +14,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/utf8.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox.h"
 
@@ -154,18 +155,6 @@ std::string drain(int fd) {
   return bytes;
 }
 
-// Editors on Windows may write two bytes per letter. Empty where a compiler can read the text.
-std::string why_no_text(const std::string& text) {
-  const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
-  if (is_utf16)
-    return "is written in UTF-16, which no C++ compiler reads. Save it as UTF-8 (in Visual Studio: "
-           "Save As, Save with Encoding; in Notepad: Encoding UTF-8)";
-  if (text.find('\0') != std::string::npos)
-    return "contains bytes that are not text (a NUL at byte " + std::to_string(text.find('\0')) +
-           "). Save it as UTF-8 text; a compiled file or an archive is not source code";
-  return "";
-}
-
 bool says(const std::string& text, std::initializer_list<const char*> words) {
   for (const char* word : words)
     if (text.find(word) != std::string::npos) return true;
@@ -233,8 +222,9 @@ Compiled compile_submission(const CompileJob& job) {
   std::string why;
   const auto source = read_plain_file(job.source, job.limits.source_bytes, why);
   if (!source) return {Outcome::kRefused, name + ": " + why};
-  if (const std::string no_text = why_no_text(*source); !no_text.empty())
-    return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
+  if (const auto no_text = why_no_text(*source))
+    return {Outcome::kRefused,
+            name + ":1:1: error: the file " + no_text->problem + ". " + no_text->remedy};
 
   const bool is_native = job.form == CompileJob::Form::kModule,
              is_tests = job.form == CompileJob::Form::kTests;

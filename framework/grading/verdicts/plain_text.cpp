@@ -3,33 +3,10 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "framework/core/utf8.h"
+
 namespace tumble::grading {
 namespace {
-
-struct Character {
-  std::uint32_t code = 0;
-  std::size_t length = 1;  // bytes
-  bool is_valid = false;
-};
-
-// UTF-8 by Unicode 15, table 3-7: no overlong forms, no surrogates, nothing above U+10FFFF.
-Character character_at(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
-  };
-  const std::uint32_t first = byte(at);
-  if (first < 0x80) return {first, 1, true};
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || at + length > text.size()) return {first, 1, false};
-  std::uint32_t code = first & (0xffu >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xc0) != 0x80) return {first, 1, false};
-    code = (code << 6) | (byte(at + i) & 0x3f);
-  }
-  const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  if (overlong || (code >= 0xd800 && code <= 0xdfff) || code > 0x10ffff) return {first, 1, false};
-  return {code, length, true};
-}
 
 bool is_unseen(std::uint32_t code) {
   // controls, the no-break space
