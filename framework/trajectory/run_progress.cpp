@@ -74,12 +74,12 @@ void RunProgress::report(double now_s) {
   constexpr double kPatience = 5.0;  // s
   if (time_ == reported_time_ && (!pace_.rewrites || now_s - came_s_ >= kPatience)) {
     const double waited = now_s - came_s_;
-    line += is_of_a_beat_
-                ? fmt::format(", for {:.0f} s now. Ctrl-C ends the run", waited)
-                : fmt::format(
-                      ", for {:.0f} s no frame has come: steps have become very short there. "
-                      "Ctrl-C ends the run",
-                      waited);
+    line += is_of_a_beat_ ? fmt::format(", for {:.0f} s now. Ctrl-C ends the run", waited)
+                          : fmt::format(
+                                ", for {:.0f} s no frame has come: steps are very short there, or "
+                                "each takes long. "
+                                "Ctrl-C ends the run",
+                                waited);
     if (time_ > 0 && !is_of_a_beat_)
       line += fmt::format("; --duration-s {:.4g} shows what came before", time_);
   } else if (time_ > 0 && !is_of_a_beat_) {
