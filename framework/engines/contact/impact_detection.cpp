@@ -27,17 +27,19 @@ std::optional<Earliest> ImpactDetection::earliest(const std::vector<Pair>& pairs
 }
 
 void ImpactDetection::refuse_overlap(const std::string& where, const scene::Scene& scene) const {
+  std::vector<collision::SweptBox> boxes;
+  for (const int body : colliding_)
+    boxes.push_back(start_box(moving_.shape(body), moving_.motion_at(body, 0.0).pose,
+                              !moving_.world().bodies[body].immovable()));
   std::vector<StartPair> near;
-  for (int i = 0; i < moving_.size(); ++i) {
-    for (int j = i + 1; j < moving_.size(); ++j) {
-      if (!moving_.may_collide(i, j)) continue;
-      const collision::Pose pose_i = moving_.motion_at(i, 0.0).pose,
-                            pose_j = moving_.motion_at(j, 0.0).pose;
-      look_at_start(
-          i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j,
-          kRoundOff * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j),
-          near);
-    }
+  for (const auto& [place_a, place_b] : collision::overlapping_pairs(boxes)) {
+    const int a = colliding_[place_a], b = colliding_[place_b];
+    if (!moving_.may_collide(a, b)) continue;
+    const collision::Pose pose_a = moving_.motion_at(a, 0.0).pose,
+                          pose_b = moving_.motion_at(b, 0.0).pose;
+    look_at_start(
+        a, b, moving_.shape(a), pose_a, moving_.shape(b), pose_b,
+        kRoundOff * collision::gap_scale(moving_.shape(a), pose_a, moving_.shape(b), pose_b), near);
   }
   refuse_overlaps(where, scene, near);
 }

@@ -123,13 +123,11 @@ bool FlightWorld::may_collide(int a, int b) const {
 
 // Refuses bodies that overlap by more than rounding; separates those that overlap by rounding.
 void FlightWorld::refuse_overlap(const scene::Scene& scene) {
-  // Candidate pairs: boxes of the start positions, with a margin for rounding.
+  // Candidate pairs, by boxes.
   std::vector<collision::SweptBox> boxes;
-  for (int i = 0; i < size(); ++i) {
-    const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kCoordinateRounding)) +
-                            kCoordinateRounding * first_[i].com_world.cwiseAbs();
-    boxes.push_back({first_[i].com_world - margin, first_[i].com_world + margin, can_move(i)});
-  }
+  for (int i = 0; i < size(); ++i)
+    boxes.push_back(
+        start_box(shape(i), {first_[i].com_world, first_[i].world_from_body}, can_move(i)));
   auto pairs = collision::overlapping_pairs(boxes);
   std::erase_if(pairs, [&](const auto& pair) { return !may_collide(pair.first, pair.second); });
   near_at_start_ = pairs;

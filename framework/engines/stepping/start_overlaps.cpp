@@ -97,6 +97,17 @@ bool OverlapAtStart::is_explained() const {
   });
 }
 
+// The rounding that explains an overlap is at most the sum of what it is for each of the two.
+collision::SweptBox start_box(const collision::CollisionShape& shape, const collision::Pose& pose,
+                              bool can_move) {
+  const double explained = static_cast<double>(std::numeric_limits<float>::epsilon()) *
+                           (pose.com_world.cwiseAbs().maxCoeff() + extent(shape));
+  const Vector3d margin = Vector3d::Constant(shape.bounding_radius() * (1 + kCoordinateRounding) +
+                                             kFewRoundings * explained) +
+                          kCoordinateRounding * pose.com_world.cwiseAbs();
+  return {pose.com_world - margin, pose.com_world + margin, can_move};
+}
+
 void look_at_start(int a, int b, const collision::CollisionShape& shape_a,
                    const collision::Pose& pose_a, const collision::CollisionShape& shape_b,
                    const collision::Pose& pose_b, double touching, std::vector<StartPair>& near) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/collision/gap.h"
+#include "framework/collision/sweep.h"
 #include "framework/core/error.h"
 #include "framework/scene/scene.h"
 
@@ -46,6 +47,11 @@ class OverlapAtStart : public UserError {
  private:
   std::vector<StartPair> near_;
 };
+
+/// A box about a body at the start, so wide that the boxes of two bodies overlap where
+/// look_at_start would keep the pair.
+collision::SweptBox start_box(const collision::CollisionShape& shape, const collision::Pose& pose,
+                              bool can_move);
 
 /// Looks at one pair for an engine, and keeps it where it matters.
 /// @param touching  an overlap this deep is a rounding of doubles [m]
