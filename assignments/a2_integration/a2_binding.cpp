@@ -11,6 +11,9 @@ void bind(const Module& module, Laws& laws) {
   laws.state_derivative = module.rigid_body_derivative;
   laws.renormalize = module.renormalize;
   laws.find_impact_time = module.impact_time_newton;
+  laws.step_function = "rk4_step";
+  laws.derivative_function = "rigid_body_derivative";
+  laws.impact_time_function = "impact_time_newton";
 }
 
 void register_module(modules::Registry& registry) {

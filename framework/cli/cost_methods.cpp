@@ -35,6 +35,7 @@ CostMethod method_by_integrator(const Method& integrator, const Laws& laws) {
   method.controlled = integrator.controlled;
   method.laws = laws;
   method.laws.integrator_source = integrator.name + " of the library";
+  method.laws.step_function = Laws().step_function;
   return method;
 }
 
@@ -242,6 +243,7 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
     method.order = named.order;
     method.laws = laws;
     method.laws.integrator_source = fmt::format("{} ({})", named.name, word);
+    method.laws.step_function = named.name;
     subject.methods.push_back(std::move(method));
   }
 }

@@ -21,7 +21,7 @@ Row row_of(const engines::CheckResult& check) {
   Row row;
   row.verdict = check.passed ? "right" : "WRONG";
   row.quantity = check.kind + (check.subject == "all" ? "" : " of " + check.subject);
-  row.found = short_number(check.value) + unit;
+  row.found = (engines::is_off_by(check) ? "off by " : "") + short_number(check.value) + unit;
   row.allowed = (check.at_least ? ">= " : "<= ") + short_number(check.threshold) + unit;
   row.why = check.why;
   const bool is_telling = !check.passed || check.kind == "flips" || check.kind == "event_count";

@@ -230,12 +230,19 @@ class Choice {
   }
 
  private:
-  /// Else on a reference, on a file that was named, or on the library.
+  /// Else on a reference, on a file that was named, or on the library. As choose_laws has it: a
+  /// scene of no assignment runs on the student's files.
   bool runs_on_student(const live::OfferedScene& scene, const std::string& id) const {
     const ModuleWords modules = parse_module_words(modules_, context_.registry);
     const auto word = modules.contains(id) ? modules.find(id) : modules.find("");
     if (word != modules.end()) return word->second == "student";
-    return scene.home == id || !fs::exists(context_.build / "modules" / (id + "_reference.so"));
+    const auto kinds = context_.registry.all();
+    const bool is_for_scheduler = std::any_of(kinds.begin(), kinds.end(), [&](const auto* kind) {
+      return kind->is_scheduler && modules.contains(kind->id);
+    });
+    const bool is_of_none = scene.home.empty() && !is_for_scheduler;
+    return scene.home == id || is_of_none ||
+           !fs::exists(context_.build / "modules" / (id + "_reference.so"));
   }
 
   const Context& context_;

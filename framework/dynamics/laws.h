@@ -81,6 +81,9 @@ struct Laws : LawList {
   // which module provides the impulse laws, for pictures and records
   std::string impulse_source = "none";
   std::string integrator_source = "none";  // which module provides integration
+  // what that module calls integrate_step, state_derivative and find_impact_time, for messages
+  std::string step_function = "integrate_step", derivative_function = "state_derivative",
+              impact_time_function = "find_impact_time";
   // which module provides springs, rods and contact forces
   std::string constraint_source = "none";
   std::string scheduling_source = "none";  // which module provides the scheduler

@@ -25,6 +25,9 @@ void set_library_motion(Laws& laws) {
   laws.renormalize = library.renormalize;
   laws.find_impact_time = library.find_impact_time;
   laws.integrator_source = library.integrator_source;
+  laws.step_function = library.step_function;
+  laws.derivative_function = library.derivative_function;
+  laws.impact_time_function = library.impact_time_function;
   laws.scheduling = {};
   laws.scheduling_source = Laws().scheduling_source;
 }

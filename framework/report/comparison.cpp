@@ -22,6 +22,17 @@ double apart(const BodyPose& a, const BodyPose& b, double radius_m) {
   return shift + radius_m * a.world_from_body.angularDistance(b.world_from_body);
 }
 
+// "ball is 0.062 m from where it is in the run before", of a body that has mostly turned "handle is
+// turned by 0.01 rad from how it is in the run before".
+std::string apart_in_words(const std::string& name, const BodyPose& a, const BodyPose& b,
+                           double radius_m, const std::string& label_b) {
+  const double shift = (a.com_world - b.com_world).norm(),
+               angle = a.world_from_body.angularDistance(b.world_from_body);
+  if (std::isfinite(radius_m) && radius_m * angle > shift)
+    return fmt::format("{} is turned by {:.2g} rad from how it is in {}", name, angle, label_b);
+  return fmt::format("{} is {:.2g} m from where it is in {}", name, apart(a, b, radius_m), label_b);
+}
+
 // "collision of ball and wall", "a force on box begins": before "at 2 s in ..." or "only in ...".
 std::string in_words(const Event& event, const Trajectory& run) {
   const auto name = [&](int body) { return run.bodies[static_cast<std::size_t>(body)].name; };
@@ -142,11 +153,12 @@ Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_
     }
     result.apart_m.push_back(farthest);
     if (!moved && !(farthest <= threshold))
-      moved =
-          Difference{frame.time,
-                     fmt::format("{} is {:.2g} m from where it is in {}",
-                                 a.bodies[static_cast<std::size_t>(body)].name, farthest, label_b),
-                     body};
+      moved = Difference{frame.time,
+                         apart_in_words(a.bodies[static_cast<std::size_t>(body)].name,
+                                        frame.poses[static_cast<std::size_t>(body)],
+                                        b.frames[at].poses[static_cast<std::size_t>(body)],
+                                        radius_m[static_cast<std::size_t>(body)], label_b),
+                         body};
   }
   result.first = first_event(a, label_a, b, label_b);
   if (moved && (!result.first || moved->time_s < result.first->time_s)) result.first = moved;

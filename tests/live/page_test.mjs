@@ -178,7 +178,7 @@ test('what is said of a save is said of the saved code', async () => {
   await tell({ kind: 'trouble', title: 'Crashed', text: 'SIGSEGV', ends_run: true, shows_former: true });
   const clock = await page.value('document.getElementById("clock").textContent');
   expect(await text('difference') === '', `nothing is said of a run that is none: ${await text('difference')}`);
-  expect(/^The run before, at its end: the file as it was saved last has moved nothing/.test(await text('hint')), `the picture is called what it is: ${await text('hint')}`);
+  expect(/^The run of the code before your last save, at its end: the saved code has not moved anything/.test(await text('hint')), `the picture is called what it is: ${await text('hint')}`);
   expect(Number(await page.value('getComputedStyle(document.getElementById("picture")).opacity')) < 0.7, 'the picture is grey');
   await tell({ kind: 'difference', same_until_s: 35.7 });
   expect(await text('difference') === '', 'a comparison that comes late is not shown');

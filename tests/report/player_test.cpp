@@ -139,6 +139,9 @@ TEST(Comparison, FindsADifferenceInRotationOnly) {
       compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference");
   ASSERT_TRUE(found.first.has_value());
   EXPECT_EQ(found.first->body, 1);
+  EXPECT_NE(found.first->what.find("box is turned by 0.1 rad from how it is in reference"),
+            std::string::npos)
+      << found.first->what;
   EXPECT_NEAR(found.apart_m.back(), 0.374 * 0.1, 1e-9);  // radius times angle
 }
 

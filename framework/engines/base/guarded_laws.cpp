@@ -12,7 +12,8 @@ namespace {
 
 /// Puts a law under its guard, where there is one.
 template <class Law, class Check>
-void guard(Law& law, const char* effect, const char* name, const std::string& source, Check check) {
+void guard(Law& law, const char* effect, const std::string& name, const std::string& source,
+           Check check) {
   if (law) law = guarded_function(LawGuard(effect, name, source), std::move(law), check);
 }
 
@@ -59,13 +60,13 @@ void guard_impulses(Laws& laws) {
 
 void guard_motion(Laws& laws) {
   const std::string& source = laws.integrator_source;
-  guard(laws.integrate_step, "integration", "integrate_step", source,
+  guard(laws.integrate_step, "integration", laws.step_function, source,
         [](const LawGuard& by, const VectorXd& end, const OdeFunction&, double, const VectorXd& y,
            double) {
           by.need_size(end.size(), y.size());
           by.need_number(end);
         });
-  guard(laws.state_derivative, "integration", "state_derivative", source,
+  guard(laws.state_derivative, "integration", laws.derivative_function, source,
         [](const LawGuard& by, const VectorXd& rate, const RigidBodyState& state, const Inertia&,
            const Wrench&) {
           by.need_size(rate.size(), kStateSize);
@@ -73,7 +74,8 @@ void guard_motion(Laws& laws) {
           if (!is_number(rate) && is_finite(state)) by.need_number(rate);
         });
   guard(laws.renormalize, "integration", "renormalize", source, kNumber);
-  guard(laws.find_impact_time, "time of impact", "find_impact_time", source, [](const auto&...) {});
+  guard(laws.find_impact_time, "time of impact", laws.impact_time_function, source,
+        [](const auto&...) {});
 }
 
 void guard_constraints(Laws& laws) {

@@ -392,6 +392,13 @@ CheckResult judge(const RunFault& fault) {
 
 }  // namespace
 
+bool is_off_by(const CheckResult& check) {
+  static const std::set<std::string> kinds = {
+      "flips",          "event_count",        "impact_times", "final_position", "final_velocity",
+      "centre_of_mass", "distance_travelled", "angle_at",     "link_force",     "reaction"};
+  return kinds.contains(check.kind);
+}
+
 void refuse_other_units(const Scene& scene) {
   for (std::size_t i = 0; i < scene.checks.size(); ++i) {
     const CheckSpec& check = scene.checks[i];

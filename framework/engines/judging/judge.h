@@ -92,6 +92,10 @@ struct CheckResult {
   std::string detail;     // place and time of the worst value
 };
 
+/// Whether a check's value is how far the run was from what the scene expects, and not the quantity
+/// itself: 0 flips off, where three are expected and found.
+bool is_off_by(const CheckResult& check);
+
 /// A check's unit is a label for people: a number in another unit would be compared as if it were
 /// in metres.
 /// @throws UserError at the first check with a unit that is not its kind's

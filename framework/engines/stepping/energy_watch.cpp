@@ -241,8 +241,8 @@ std::string runaway_message(double time, const World& world, const Runaway& runa
   if (runaway.by_impacts >= 0.5 * (runaway.energy - runaway.first_energy))
     effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
   else if (effect.empty())
-    effect =
-        fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);
+    effect = fmt::format("integration ({}, {} of {})", laws.step_function, laws.derivative_function,
+                         laws.integrator_source);
   return fmt::format(
       "at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} "
       "J{}. Most likely it comes from {}; a shorter step or another method "

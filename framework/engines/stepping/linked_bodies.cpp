@@ -300,9 +300,9 @@ VectorXd LinkedBodies::rates_of_bodies(const VectorXd& y) const {
 void LinkedBodies::need_size(const VectorXd& stage, const VectorXd& y) const {
   if (stage.size() == y.size()) return;
   throw StoppedRun(
-      fmt::format("integration (integrate_step of {}) asked for the derivative of a state of {} "
+      fmt::format("integration ({} of {}) asked for the derivative of a state of {} "
                   "numbers instead of {}",
-                  laws_.integrator_source, stage.size(), y.size()));
+                  laws_.step_function, laws_.integrator_source, stage.size(), y.size()));
 }
 
 std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodyState>& states,

@@ -320,7 +320,7 @@ RigidBodyState MovingWorld::integrate(int body, double duration, double start_ti
   const OdeFunction derivative = [&](double, const VectorXd& y) {
     ++counters_.derivative_evaluations;
     if (y.size() != start.size())
-      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source +
+      throw StoppedRun("integration (" + laws_.step_function + " of " + laws_.integrator_source +
                        ") asked for the derivative of a state of " + std::to_string(y.size()) +
                        " numbers instead of " + std::to_string(start.size()));
     // Stages of a method stand off unit length by (w h)^2 / 32, and R of such a quaternion is no

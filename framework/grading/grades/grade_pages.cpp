@@ -124,11 +124,8 @@ std::string numbers_of(const engines::CheckResult& c) {
   for (std::size_t at = 0; (at = unit.find(' ', at)) != unit.npos;)
     unit.replace(at, 1, "\u00a0");  // stays with its number
   const std::string reached = std::isfinite(c.value) ? three_digits(c.value) + unit : "no number";
-  static const std::set<std::string> of_expected = {
-      "flips",          "event_count",        "impact_times", "final_position", "final_velocity",
-      "centre_of_mass", "distance_travelled", "angle_at",     "link_force",     "reaction"};
   const std::string threshold = three_digits(c.threshold) + unit;
-  if (of_expected.contains(c.kind)) return fmt::format("off by {}, allowed {}", reached, threshold);
+  if (engines::is_off_by(c)) return fmt::format("off by {}, allowed {}", reached, threshold);
   return fmt::format("{}, allowed at {} {}", reached, c.at_least ? "least" : "most", threshold);
 }
 

@@ -170,7 +170,7 @@ function showHint() {
   if (!run) { byId('hint').textContent = ''; return; }
   const words = { push: 'Drag from a body and let go: a force pushes it.', pull: run.facts.can_pull ? 'Drag a body: the spring of a3 holds it.' : 'Pulling needs the engine rd and the spring of a3.', look: 'Drag turns the view.' };
   if (page.ended) words.push = words.pull = `The run has ended${run.stopped ? '' : `, because it lasts ${short(run.facts.duration_s)} s`}: start over, or go back to an earlier instant.`;
-  const former = !page.isFormerOnly ? '' : page.ended ? 'The run before, at its end: the file as it was saved last has moved nothing. ' : 'The run before goes on: the file as it was saved last has moved nothing yet. ';
+  const former = !page.isFormerOnly ? '' : page.ended ? 'The run of the code before your last save, at its end: the saved code has not moved anything. ' : 'The run of the code before your last save: the saved code has not moved anything yet. ';
   if (page.isFormerOnly && page.ended) words.push = words.pull = words.look = 'Go back to an earlier instant to look at it.';
   const lost = page.isLost ? ' All bodies have left the picture: “All” finds them, “Follow” keeps the chosen one in it.' : '';
   byId('hint').textContent = former + (page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.') + lost;

@@ -100,8 +100,8 @@ const kAlikeFor = 1;   // s of the run, or of the clock
 
 function isTooEarly(message) { return message.time_s === undefined && !page.ended && message.same_until_s < kAlikeFor && performance.now() - page.begunAt < 1000 * kAlikeFor; }
 
-// "handle is 0.062 m from where it is in the run before"
-function differenceInWords(what) { return what.replace(/ is (\S+ m) from where it is in the run before$/, ' is then $1 away from its place in the run before'); }
+// "handle is 0.062 m from where it is in the run before", "handle is turned by 0.01 rad from how it is in the run before"
+function differenceInWords(what) { return what.replace(/ is (\S+ m) from where it is in the run before$/, ' is then $1 away from its place in the run before').replace(/ is turned by (\S+ rad) from how it is in the run before$/, ' is then turned by $1 from how it is in the run before'); }
 
 // Whether the run differs from the one before; after a save that changed nothing in it, why that may be. A difference is no fault:
 // the line has the colour of one only where the same save has broken tests.
