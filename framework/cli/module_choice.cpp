@@ -60,6 +60,11 @@ fs::path build_student(const Context& context, const ModuleKind& kind) {
   static std::set<std::string> fresh;  // ids, built by this process
   if (fresh.contains(kind.id)) return object;
   if (!fs::exists(source)) throw missing_file(context, kind.id, source);
+  if (const std::string why = grading::why_nothing(source.filename().string(), text_of(source),
+                                                   grading::header_in(kind.folder));
+      !why.empty())
+    throw UserError(student_file(context, kind), "does not compile:\n" + why,
+                    "Correct it, or name another file after --modules.");
   std::error_code missing;
   const auto made = fs::last_write_time(object, missing);
   if (missing || made < fs::last_write_time(source))

@@ -208,7 +208,7 @@ TEST_F(CompileAttack, AFileWithoutTheModulesHeaderDefinesNothing) {
     const Compiled compiled = compile(text);
     EXPECT_EQ(compiled.outcome, Outcome::kRefused) << text;
     EXPECT_NE(compiled.said.find("waist.cpp:1:1: error: the file does not include "
-                                 "\"tests/modules/waist.h\" and defines nothing of waist"),
+                                 "\"tests/modules/waist.h\" and defines nothing of it"),
               std::string::npos)
         << compiled.said;
   }

@@ -107,6 +107,19 @@ TEST_F(CompilerWords, NumbersBeyondEveryLineAreNoPlaces) {
   EXPECT_EQ(story.find("99999999999999"), std::string::npos) << story;
 }
 
+TEST_F(CompilerWords, AFileThatDoesNotNameTheHeaderDefinesNothing) {
+  const fs::path header = "assignments/a2_integration/a2_integration.h";
+  const auto why = [&](const std::string& text) { return why_nothing("mine.cpp", text, header); };
+  EXPECT_EQ(why("#include \"assignments/a2_integration/a2_integration.h\"\n"), "");
+  EXPECT_EQ(why("#include \"helpers.h\"\n"), "") << "it may include the header";
+  EXPECT_EQ(why("// to do\n#include <vector>\n"),
+            "mine.cpp:1:1: error: the file does not include "
+            "\"assignments/a2_integration/a2_integration.h\" and defines nothing of it. Is it "
+            "empty, or another file?");
+  const std::string other = why(" # include \"assignments/a1_impulse/a1_impulse.h\"\n");
+  EXPECT_TRUE(other.ends_with(" Is it the file of a1_impulse?")) << other;
+}
+
 // A hostile file causes very long lines: they are cut, because a regex would recurse too deep.
 TEST_F(CompilerWords, LinesOfAMegabyteDoNoHarm) {
   const std::string longest(1u << 20, 'a');

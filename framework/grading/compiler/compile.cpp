@@ -15,6 +15,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/utf8.h"
+#include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox.h"
 
@@ -95,12 +96,7 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
                      const std::string& tests = "") {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
-    const auto first = line.find_first_not_of(" \t");
-    if (first == std::string::npos || line[first] != '#') continue;
-    const auto open = line.find('"'), close = line.rfind('"');
-    if (line.find("include") == std::string::npos || open == std::string::npos || close <= open)
-      continue;
-    const std::string name = line.substr(open + 1, close - open - 1);
+    const std::string name = included_in_quotes(line);
     const bool is_of_tests =
         !tests.empty() && (name.starts_with(tests) || name == "tests/support/story.h");
     const bool students =
@@ -233,10 +229,9 @@ Compiled compile_submission(const CompileJob& job) {
                                      : "";
   std::set<std::string> needed;
   collect_headers(job.root, *source, needed, tests);
-  if (is_native && !needed.contains(header) && !says(*source, {job.header.filename().c_str()}))
-    return {Outcome::kRefused, name + ":1:1: error: the file does not include \"" + header +
-                                   "\" and defines nothing of " + job.id +
-                                   ". Is it empty, or another file?"};
+  if (is_native && !needed.contains(header))
+    if (const std::string why = why_nothing(name, *source, job.header); !why.empty())
+      return {Outcome::kRefused, why};
   if (needed.insert(header).second) collect_headers(job.root, text_of(job.root / header), needed);
 
   const SandboxUser user = SandboxUser::lease();

@@ -245,6 +245,31 @@ std::string compiler_story(const std::string& said, const fs::path& source,
   return (story.empty() ? said.substr(0, kShownWhole) : story) + advice_on(said);
 }
 
+std::string included_in_quotes(const std::string& line) {
+  const auto first = line.find_first_not_of(" \t");
+  if (first == std::string::npos || line[first] != '#') return "";
+  const auto open = line.find('"'), close = line.rfind('"');
+  if (line.find("include") == std::string::npos || open == std::string::npos || close <= open)
+    return "";
+  return line.substr(open + 1, close - open - 1);
+}
+
+std::string why_nothing(const std::string& name, const std::string& text, const fs::path& header) {
+  if (text.find(header.filename().string()) != std::string::npos) return "";
+  std::string question = "Is it empty, or another file?";
+  for (const std::string& line : lines_of(text)) {
+    const std::string file = included_in_quotes(line);
+    if (file.starts_with("assignments/"))
+      question =
+          fmt::format("Is it the file of {}?", fs::path(file).parent_path().filename().string());
+    else if (!file.empty() && !file.starts_with("framework/"))
+      return "";  // a file of the student's own, which may include the header
+  }
+  return fmt::format(
+      "{}:1:1: error: the file does not include \"{}\" and defines nothing of it. {}", name,
+      header.string(), question);
+}
+
 std::string compiler_warnings(const std::string& said, const fs::path& source) {
   // An argument that is not used yet is fine.
   constexpr const char* kUnusedParameter = "[-Wunused-parameter]";

@@ -18,6 +18,15 @@ namespace tumble::grading {
 std::string compiler_story(const std::string& said, const std::filesystem::path& source,
                            const std::filesystem::path& header = {});
 
+/// The file that a line of code includes in quotes; empty where it includes none.
+std::string included_in_quotes(const std::string& line);
+
+/// Why a file defines nothing of a module, as the compiler says errors: it does not so much as name
+/// the module's header. Empty where it does.
+/// @param name  of the file  @param header  of the module, from the root of the tree
+std::string why_nothing(const std::string& name, const std::string& text,
+                        const std::filesystem::path& header);
+
 /// The warnings in the student's file, at most ten; empty where there is none.
 std::string compiler_warnings(const std::string& said, const std::filesystem::path& source);
 
