@@ -45,20 +45,24 @@ std::string how_to_read(const Grade& grade) {
 }
 
 // "the 40 failed tests": wrong, crashed, or out of time or memory.
-std::string failed_tests(std::size_t failing) {
-  return failing == 1 ? "the one failed test" : fmt::format("the {} failed tests", failing);
+// Some of the failed tests, or all.
+std::string of_failed_tests(std::size_t n, std::size_t failing) {
+  if (n < failing) return fmt::format("{} of the {} failed tests", n, failing);
+  return failing == 1   ? "the one failed test"
+         : failing == 2 ? "both failed tests"
+                        : fmt::format("all {} failed tests", failing);
 }
 
 // How sure two mistakes are, and the share of each.
 std::string evidence_of_two(const Cause& cause, std::size_t failing) {
   const std::size_t n = cause.tests.size();
   return fmt::format(
-      "Together they explain {} of {}: in {} your answer is the one that follows from both, and in "
+      "Together they explain {}: in {} your answer is the one that follows from both, and in "
       "{} neither alone gives it. Alone, the first fails {} of these tests, the second {}. Both "
       "may "
       "stand in one line. Correct both before you run the tests again: while one is left, some of "
       "these tests still fail.",
-      n, failed_tests(failing),
+      of_failed_tests(n, failing),
       cause.same_numbers == n ? "all of them" : fmt::format("{} of them", cause.same_numbers),
       cause.by_both == cause.same_numbers ? "all these" : std::to_string(cause.by_both),
       cause.alone[0], cause.alone[1]);
@@ -67,7 +71,7 @@ std::string evidence_of_two(const Cause& cause, std::size_t failing) {
 // How sure it is, in a sentence.
 std::string evidence_of(const Cause& cause, std::size_t failing) {
   const std::size_t n = cause.tests.size();
-  const std::string of_them = fmt::format("{} of {}", n, failed_tests(failing));
+  const std::string of_them = of_failed_tests(n, failing);
   switch (cause.kind) {
     case Cause::Kind::kSlip:
       if (!cause.and_also.empty()) return evidence_of_two(cause, failing);
@@ -87,7 +91,8 @@ std::string evidence_of(const Cause& cause, std::size_t failing) {
                          n == 1 ? "One test was" : counted(n, "test") + " were");
     case Cause::Kind::kUnknown:
       return fmt::format("In {} it was the function called last.", of_them);
-    default: return fmt::format("{} {} in this way.", of_them, n == 1 ? "ends" : "end");
+    default:
+      return capitalised(fmt::format("{} {} in this way.", of_them, n == 1 ? "ends" : "end"));
   }
 }
 
