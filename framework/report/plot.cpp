@@ -28,6 +28,9 @@ constexpr double kFlat = 1.001;
 // on a linear axis: length of the shortest over its largest value; numbers have six digits
 constexpr double kFlatShare = 1e-4;
 constexpr double kRoom = 0.06;  // between a curve and the frame, over the curve's length
+// more of it below a limit under all curves, where its name hides none of them: together with kRoom
+// 19 units of the lowest drawing's 210
+constexpr double kRoomForName = 0.04;
 
 // Where things stand, in units of the drawing. Numbers are at the left of the frame, names below
 // it. In a narrow drawing the name of the upright axis stands above the frame.
@@ -212,9 +215,18 @@ PlotFrame frame_of(const Plot& plot) {
     }
   }
   const bool is_empty = !(xs.low <= xs.high);
+  bool is_limit_lowest = false;
   for (const Limit& limit : plot.limits)
-    if (drawable(limit.y, plot.y.scale)) ys.hold(limit.y);
-  return {widened(xs, plot.x.scale), widened(ys, plot.y.scale), is_empty};
+    if (drawable(limit.y, plot.y.scale)) {
+      is_limit_lowest |= limit.y <= ys.low;
+      ys.hold(limit.y);
+    }
+  Range up = widened(ys, plot.y.scale);
+  if (is_limit_lowest && !is_empty)
+    up.low -= plot.y.scale == Scale::kLog
+                  ? up.low * (1.0 - std::pow(up.low / up.high, kRoomForName))
+                  : kRoomForName * (up.high - up.low);
+  return {widened(xs, plot.x.scale), up, is_empty};
 }
 
 constexpr Sheet kWide = {640, 78, 622, 34, 306, 1000, false};
@@ -303,7 +315,7 @@ std::size_t drawn_in(const Box& box, const Plot& plot, const Scaled& x, const Sc
 // The name of a limit stands above its line at the right, or where it hides less of the curves.
 std::string name_of(const Limit& limit, const Plot& plot, const Sheet& sheet, const Scaled& x,
                     const Scaled& y) {
-  constexpr double kInside = 5, kAbove = 5, kBelow = 14, kHeight = 16;
+  constexpr double kInside = 5, kAbove = 5, kBelow = 15, kHeight = 14;
   const double at = y(limit.y),
                width = kMeanLetter * static_cast<double>(limit.name.size()) + kInside;
   std::size_t least = std::numeric_limits<std::size_t>::max();
@@ -398,7 +410,11 @@ std::vector<std::string> coinciding(const Plot& plot) {
         names.push_back(plot.curves[j].name);
         is_named[j] = true;
       }
-    if (names.size() > 1) groups.push_back(fmt::format("{}", fmt::join(names, " and ")));
+    const bool has_comma = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+      return name.find(',') != std::string::npos;
+    });
+    if (names.size() > 1)
+      groups.push_back(fmt::format("{}", fmt::join(names, has_comma ? "; " : " and ")));
   }
   return groups;
 }

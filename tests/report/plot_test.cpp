@@ -170,6 +170,24 @@ TEST(Plots, NameALimitWhereItHidesNoCurve) {
   EXPECT_STREQ(place_of_name({3, 2, 1.5, 1.1}), "left");
 }
 
+// Errors that come close to the error of their reference everywhere leave room only below its line.
+// Numbers of a drawing grow downwards.
+TEST(Plots, NameALimitUnderAllCurvesBelowItsLine) {
+  const Plot plot{"t",
+                  {"x"},
+                  {"error", "m", Scale::kLog},
+                  {{"c", {0, 1, 2, 3, 4}, {1e-14, 1e-14, 1e-2, 1e-14, 1e-14}, true}},
+                  {{1e-15, "error of the reference"}}};
+  for (const std::string& svg : {svg_of(plot), narrow_svg_of(plot)}) {
+    const auto number_after = [&](std::size_t from, const std::string& mark) {
+      return std::stod(svg.substr(svg.find(mark, from) + mark.size()));
+    };
+    const std::size_t name = svg.rfind("<text", svg.find(">error of the reference<"));
+    const double line = number_after(svg.rfind("<line", name), " y1=\"");
+    EXPECT_GT(number_after(name, " y=\""), line + 10) << svg;  // 10: the height of its letters
+  }
+}
+
 TEST(Plots, WithoutPointsSaySo) {
   EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
   EXPECT_NE(
@@ -309,6 +327,8 @@ TEST(Plot, NamesCurvesThatCoverEachOther) {
                  {"D", {1, 2, 4}, {1, 10, 100}}};     // at another place
   EXPECT_EQ(coinciding(plot), std::vector<std::string>{"A and B"});
   EXPECT_NE(svg_of(plot).find("One covers the other: A and B</text>"), std::string::npos);
+  plot.curves[1].name = "B, order 4";  // a comma in a name leaves open where the next one begins
+  EXPECT_EQ(coinciding(plot), std::vector<std::string>{"A; B, order 4"});
 }
 
 TEST(Plot, SortsPointsOfAMeasuredPrice) {
