@@ -13,7 +13,7 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kExact = 1e-17;  // m: where an error of exactly 0 is drawn
+constexpr double kExact = 1e-17;  // [m] or [-]: where an error of exactly 0 is drawn
 
 /// Runs that did not finish, or whose error is too large, are not drawn.
 bool is_drawn(const CostPage& page, const CostPoint& point) {
@@ -63,15 +63,20 @@ Plot plot_of_energy(const CostPage& page) {
             {},
             "Each curve is the run of its method whose cost is closest to the median of all: "};
   std::string which;
+  bool is_any_exact = false;
   for (const CostCurve& curve : page.curves) {
     plot.curves.push_back(
         {curve.times.empty() ? "" : curve.name, curve.times, curve.energy_errors});
-    for (double& error : plot.curves.back().y) error = std::max(error, kExact);
+    for (double& error : plot.curves.back().y) {
+      is_any_exact |= error < kExact;
+      error = std::max(error, kExact);
+    }
     if (!curve.times.empty())
       which += fmt::format("{}{} ({})", which.empty() ? "" : ", ", curve.name,
                            curve.points[curve.example].fineness);
   }
   plot.caption += which + ".";
+  if (is_any_exact) plot.caption += fmt::format(" A difference of 0 is drawn at {:g}.", kExact);
   return plot;
 }
 
@@ -218,11 +223,19 @@ std::string price_of(double seconds) {
 }
 
 Plot plot_of_price(const CostPage& page) {
+  std::string caption =
+      "Left is cheaper, down is more accurate. The error of a method of order p falls by p decades "
+      "where its cost rises by one.";
+  const auto is_below_floor = [&](const CostPoint& point) {
+    return is_drawn(page, point) && point.error < page.floor;
+  };
+  if (std::any_of(page.curves.begin(), page.curves.end(), [&](const CostCurve& curve) {
+        return std::any_of(curve.points.begin(), curve.points.end(), is_below_floor);
+      }))
+    caption += " An error smaller than that of the reference solution is drawn as large as it.";
   return drawn(
       page, {"CPU time", "s", Scale::kLog}, "Error against CPU time",
-      [](const CostPoint& point) { return point.cpu_s; },
-      "Left is cheaper, down is more accurate. The error of a method of order p falls by p decades "
-      "where its cost rises by one.");
+      [](const CostPoint& point) { return point.cpu_s; }, caption);
 }
 
 std::vector<Plot> plots_of_evaluations(const CostPage& page) {

@@ -72,6 +72,20 @@ std::string written(const CostPage& page) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+// What a logarithmic axis cannot show as it is, the caption says.
+TEST(CostPage, SaysWhereErrorsBelowTheReferencesAndOfZeroAreDrawn) {
+  CostPage page = page_of({counting("RK4", "")});
+  EXPECT_EQ(plot_of_price(page).caption.find("smaller than that of the reference"),
+            std::string::npos);
+  page.curves[0].points[1].error = 0.1 * page.floor;
+  EXPECT_NE(plot_of_price(page).caption.find("smaller than that of the reference"),
+            std::string::npos);
+
+  page.curves[0].times = {0.0, 1.0};
+  page.curves[0].energy_errors = {0.0, 1e-9};
+  EXPECT_NE(written(page).find("A difference of 0 is drawn at "), std::string::npos);
+}
+
 // Lines of a text are wrapped in the column of a phone, where nobody reads them any more.
 TEST(CostPage, ListsEveryRunInATable) {
   CostPage page = page_of({counting("RK4", "")});
