@@ -203,16 +203,13 @@ report::Table table_of(const std::vector<Trial>& ways) {
                    {"worlds that do it", true},
                    {"accepted", true},
                    {"R-hat", true}};
+  bool has_problem = false;
   for (const Trial& way : ways) {
     if (way.points.empty()) {
-      table.rows.push_back({{way.name},
-                            {"\u2013 (" + way.problem + ")", "", report::Look::kMuted},
-                            {""},
-                            {""},
-                            {""},
-                            {""},
-                            {""},
-                            {""}});
+      has_problem = true;
+      table.rows.push_back({{way.name}, {"\u2013", "", report::Look::kMuted}});
+      table.rows.back().resize(table.columns.size());
+      table.rows.back().push_back({way.problem, "", report::Look::kMuted});
       continue;
     }
     table.rows.push_back(
@@ -225,6 +222,10 @@ report::Table table_of(const std::vector<Trial>& ways) {
          {way.is_chain() ? fmt::format("{:.0f} %", 100.0 * way.answers.acceptance) : "\u2013"},
          {digits_of(way.answers.worst_r_hat, 3), "",
           way.answers.worst_r_hat < 1.05 ? report::Look::kPlain : report::Look::kWarning}});
+  }
+  if (has_problem) {  // a sentence: in a column of numbers it would not break
+    table.columns.push_back({"why without a price"});
+    for (auto& row : table.rows) row.resize(table.columns.size());
   }
   return table;
 }

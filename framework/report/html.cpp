@@ -69,8 +69,10 @@ pre.code { white-space: pre; overflow-wrap: normal; }
 .card .figures { float: right; width: 19rem; max-width: 100%; margin: .3rem 0 .6rem 1.2rem; }
 @media screen and (max-width: 60rem) { .card .figures { float: none; margin: .6rem 0; } }
 details { margin: .5rem 0; } summary { cursor: pointer; font-weight: 600; }
-.figures { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: 1rem 0; }
-figure { margin: 0; flex: 1 1 20rem; max-width: 100%; }
+/* as many columns as there is room for, and no last figure larger than those before it */
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(20rem, 100%), 1fr));
+  gap: 1.2rem; margin: 1rem 0; }
+figure { margin: 0; max-width: 100%; }
 figure img, figure video { max-width: 100%; height: auto; display: block;
   border: 1px solid var(--line); } figure .in-print { display: none; }
 /* Controls stand below the picture, where they cover no scale of lengths: the hidden picture gives
@@ -128,7 +130,7 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   .blocks caption, .story caption { display: block; } .blocks td:empty { display: none; }
   .blocks thead { display: none; } .blocks tr { padding: .35rem 0; }
   .blocks td { border: 0; padding: .1rem .4rem; overflow-wrap: anywhere; }
-  .blocks td.number { text-align: left; }
+  .blocks td.number { text-align: left; white-space: normal; }
   .blocks td[data-name]::before { content: attr(data-name) ": "; color: var(--soft);
     font-weight: 400; }
   .story tr { padding: .2rem 0; }
