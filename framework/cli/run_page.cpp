@@ -10,6 +10,7 @@
 
 #include "framework/cli/planned_run.h"
 #include "framework/cli/stop_by_hand.h"
+#include "framework/core/text.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker/worker_connection.h"
@@ -51,7 +52,7 @@ std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const Tra
     label = info.integrator_source;  // a method in place of the module's own
   if (info.engine != other.engine) label += (label.empty() ? "" : ", ") + ("engine " + info.engine);
   if (info.step_s != other.step_s)
-    label += (label.empty() ? "" : ", ") + fmt::format("step {:.4g} s", info.step_s);
+    label += (label.empty() ? "" : ", ") + fmt::format("step {} s", step_in_words(info.step_s));
   return label;
 }
 

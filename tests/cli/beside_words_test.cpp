@@ -34,7 +34,7 @@ TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
       "run t_handle --modules library --duration-s 0.5 --step-s 0.02 --beside step-s=0.01 --html "
       "beside.html");
   const std::string page = contents_of(folder_ / "beside.html");
-  EXPECT_TRUE(holds(page, "\"label\":\"step 0.02 s\"") && holds(page, "\"label\":\"step 0.01 s\""))
+  EXPECT_TRUE(holds(page, "\"label\":\"step 1/50 s\"") && holds(page, "\"label\":\"step 1/100 s\""))
       << beside.err;
   const Said recorded = type(
       "run t_handle --modules library --duration-s 0.5 --beside recording=first.run --html "

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/cost/showcase.h"
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/course/laws_around.h"
@@ -188,7 +189,7 @@ report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
         std::vector<report::Cell> cells{
             {curve.name},
             {std::to_string(run.processes)},
-            {fmt::format("{:.3g}", run.step_s)},
+            {step_in_words(run.step_s)},
             {fmt::format("{} of {}", run.committed, run.due), "",
              run.is_right() ? report::Look::kGood : report::Look::kBad}};
         for (const std::uint64_t count : {run.integrations, run.undone, run.rollbacks,
