@@ -193,6 +193,19 @@ TEST_F(MendFirst, CausesThatBelongTogetherSaySo) {
   EXPECT_NE(html.find("Cause 1 is about the same function"), std::string::npos);
 }
 
+// A fault names its body in quotation marks, a number of the scene does not: one column, one style.
+TEST_F(MendFirst, ABodyOfATableStandsWithoutQuotationMarks) {
+  SceneMedia scene;
+  scene.scene = scene.title = "boxes";
+  scene.checks.resize(2);
+  scene.checks[0].subject = "'handle'";
+  scene.checks[1].subject = "'left' and 'right'";
+  grade.media = {scene};
+  const std::string html = page(grade);
+  EXPECT_NE(html.find(">handle</td>"), std::string::npos);
+  EXPECT_NE(html.find("&#39;left&#39; and &#39;right&#39;</td>"), std::string::npos);
+}
+
 // A smaller step mends no wrong law.
 TEST_F(MendFirst, AFaultOfARunIsNoRemedyOfAStepWhereALawIsWrong) {
   SceneMedia scene;

@@ -135,6 +135,14 @@ std::string title_of_check(std::string kind) {
   return kind;
 }
 
+// A fault's subject is a name in quotation marks, as sentences have it; a cell needs none.
+std::string subject_of(const engines::CheckResult& c) {
+  const std::string& name = c.subject;
+  const bool is_quoted = name.size() > 2 && name.front() == '\'' && name.back() == '\'' &&
+                         name.find('\'', 1) == name.size() - 1;
+  return is_quoted ? name.substr(1, name.size() - 2) : name;
+}
+
 // The remedy of a fault is that of a scene which somebody writes: a smaller step, another method.
 // Where a law is wrong, it is the law that is to be mended.
 std::string reason_of(const engines::CheckResult& c, bool has_causes) {
@@ -155,7 +163,7 @@ void add_checks(report::Page& page, const SceneMedia& scene, bool passed, bool h
     if (c.passed == passed)
       table.rows.push_back(
           {{title_of_check(c.kind)},
-           {c.subject},
+           {subject_of(c)},
            {c.passed ? "right" : "wrong", "", c.passed ? Look::kGood : Look::kBad},
            {numbers_of(c)},
            {c.passed ? sentence(c.why) : sentences(c.detail, reason_of(c, has_causes)), "",
