@@ -146,7 +146,7 @@ void write_index(const Context& context, const std::vector<Graded>& all,
       "students make. Each was compiled and run in a sandbox (" +
       grading::protection_in_words(grading::chosen_sandbox()) +
       "), "
-      "and judged from outside it. The names link to the student's page.");
+      "and judged from outside it. The names link to the TA's page.");
   add_scores(page, all);
   for (const Graded& graded : all) add_scenes(page, graded);
   page.record(record_of(context));
