@@ -138,6 +138,18 @@ void write_side_by_side_picture(const std::filesystem::path& png, const scene::S
             notes_of(scene, runs.front().trajectory, painters.front()->drawn_s(time_s)));
 }
 
+double distance_of_views(const Image& both) {
+  // titles of two lines and the label above, what the picture shows in two lines below
+  const int top = both.height / 5, bottom = both.height - both.height / 8;
+  Image left((both.width - kSeam) / 2, bottom - top), right = left;
+  for (int y = top; y < bottom; ++y) {
+    const std::size_t row = static_cast<std::size_t>(left.width) * 3;
+    std::copy_n(both.pixel(0, y), row, left.pixel(0, y - top));
+    std::copy_n(both.pixel(both.width - left.width, y), row, right.pixel(0, y - top));
+  }
+  return colour_distance(left, right);
+}
+
 double telling_instant(const Trajectory& run) {
   if (run.frames.empty()) return 0.0;
   const double end = run.frames.back().time;

@@ -55,6 +55,11 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
                               const std::vector<LabelledRun>& runs,
                               const PictureOptions& options = {});
 
+/// How far the two views of a picture by write_side_by_side_picture are apart: root mean square
+/// difference of their bytes, in [0, 255]. 0 for two runs that are drawn alike: the bands at the
+/// top and at the bottom, where the words differ, do not count.
+double distance_of_views(const Image& both);
+
 /// An instructive instant of a run, for poster frames: just after its strongest collision, else a
 /// third of its duration. [s]
 double telling_instant(const Trajectory& run);

@@ -36,6 +36,25 @@ TEST(Picture, SameRunSameBytes) {
 // The run ends at 0.5 s.
 TEST(Picture, FileHasTheTimeOfTheFrameThatIsDrawn) { EXPECT_EQ(png_bytes(99.0), png_bytes(0.5)); }
 
+// A right submission is drawn as the reference is: its distance is none, whatever the words say.
+TEST(Picture, ViewsOfTheSameRunAreNotApart) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("tumble_views_" + std::to_string(getpid()) + ".png");
+  PictureOptions options = small();
+  options.width = 400;  // as in a graded page: words stay as large where a picture is smaller
+  options.height = 300;
+  const auto apart = [&](double other_m) {
+    write_side_by_side_picture(file, falling_ball(),
+                               {{ball_at(2.0), "submission"}, {ball_at(other_m), "reference"}}, 0.0,
+                               options);
+    const double distance = distance_of_views(read_png(file));
+    std::filesystem::remove(file);
+    return distance;
+  };
+  EXPECT_EQ(apart(2.0), 0.0);
+  EXPECT_GT(apart(1.5), 1.0);  // of 255: a ball of another place covers some percent of a view
+}
+
 // 5000 km away, floats are half a metre apart. The shift is a multiple of the strong lines' 5 m, so
 // that the grid is the same.
 TEST(Picture, FarFromTheOriginIsAsNearIt) {

@@ -11,7 +11,7 @@
 #include "framework/core/version.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/verdicts/plain_text.h"
-#include "framework/render/image.h"
+#include "framework/render/picture.h"
 #include "framework/trajectory/record.h"
 
 namespace tumble::grading {
@@ -189,19 +189,6 @@ void add_matrix(report::Page& page, const std::vector<Grade>& grades,
     page.table(matrix_of(grades, counts, first, std::min(counts.size(), first + each)));
 }
 
-// Distance of the left half, the submission's view, from the right one, the reference's.
-double distance_in(const fs::path& file) {
-  const render::Image both = render::read_png(file);
-  render::Image left(both.width / 2, both.height), right = left;
-  for (int y = 0; y < both.height; ++y)
-    for (int x = 0; x < left.width; ++x)
-      for (int c = 0; c < 3; ++c) {
-        left.pixel(x, y)[c] = both.pixel(x, y)[c];
-        right.pixel(x, y)[c] = both.pixel(both.width - left.width + x, y)[c];
-      }
-  return render::colour_distance(left, right);
-}
-
 std::string line_of(const std::vector<std::string>& lines, std::size_t number) {
   if (number == 0 || number > lines.size()) return "";
   std::string text = lines[number - 1], indented;
@@ -277,7 +264,8 @@ report::Page pictures_page(const modules::ModuleKind& kind, const std::vector<Gr
     for (const SceneMedia& media : grade.media) {
       if (media.picture.empty()) continue;
       const fs::path picture = fs::path(grade.folder) / "media" / media.picture;
-      scenes[media.title].push_back({distance_in(out / picture), &grade, picture});
+      scenes[media.title].push_back(
+          {render::distance_of_views(render::read_png(out / picture)), &grade, picture});
     }
   if (scenes.empty())
     page.paragraph("No pictures were made: run grade without --no-media.", Look::kMuted);
@@ -298,8 +286,8 @@ report::Page pictures_page(const modules::ModuleKind& kind, const std::vector<Gr
   }
   page.paragraph(
       "Each number is the root mean square difference of colours between the submission's half of "
-      "a "
-      "picture and the reference's.",
+      "a picture and the reference's, without the words at the edges: 0 where both are drawn "
+      "alike.",
       Look::kMuted);
   page.record(version_in_words(kProgramVersion));
   return page;
