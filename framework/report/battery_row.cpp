@@ -96,8 +96,7 @@ std::string shown_margin(const Measure& measure) {
   const double margin = margin_of(measure);
   if (std::isnan(margin)) return "-";
   if (std::isinf(margin)) return "exact";
-  return margin >= 0.1 && margin < 1e4 ? fmt::format("x {:.2g}", margin)
-                                       : "x " + few_digits(margin, 1);
+  return margin >= 0.1 && margin < 1e4 ? "x " + few_digits(margin) : "x " + few_digits(margin, 1);
 }
 
 std::string shown_threshold(const Measure& measure) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/report/html_text.h"
 #include "framework/report/ticks.h"
 
@@ -83,6 +85,13 @@ std::string name_of(const StackedBars::Row& row, double y, const BarSheet& sheet
               fmt::format(" font-size=\"{:.3g}\"", size));
 }
 
+bool is_whole(double value) { return value == std::round(value); }
+
+// "1.2" of milliseconds: without its decimals it would be "1", as 0.7 is.
+std::string number_of(double value) {
+  return value < 10.0 && !is_whole(value) ? few_digits(value) : fmt::format("{:.0f}", value);
+}
+
 std::string bar(const StackedBars::Row& row, double y, double longest, const BarSheet& sheet,
                 const std::string& number) {
   std::string svg = name_of(row, y, sheet);
@@ -101,8 +110,8 @@ std::string bar(const StackedBars::Row& row, double y, double longest, const Bar
             : fmt::format(" paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"3\"",
                           paint_of(part).ground);
     if (wide >= kRoomForNumber)
-      svg += text(x + 0.5 * wide, y + 0.5 * kBar + 4, fmt::format("{:.0f}", row.values[part]),
-                  "middle", fmt::format(" fill=\"{}\"{}", paint_of(part).ink, halo));
+      svg += text(x + 0.5 * wide, y + 0.5 * kBar + 4, number_of(row.values[part]), "middle",
+                  fmt::format(" fill=\"{}\"{}", paint_of(part).ink, halo));
     x += wide;
   }
   return svg;
@@ -146,8 +155,13 @@ std::string axis_of(const StackedBars& bars, const BarSheet& sheet, double longe
                     double bottom) {
   std::string svg;
   if (longest > 0.0) {
-    const std::vector<double> ticks =
-        ticks_of(0.0, longest, Scale::kLinear, sheet.is_narrow ? 4 : 6);
+    std::vector<double> ticks = ticks_of(0.0, longest, Scale::kLinear, sheet.is_narrow ? 4 : 6);
+    const bool counts = bars.axis.unit.empty() &&
+                        std::all_of(bars.rows.begin(), bars.rows.end(), [](const auto& row) {
+                          return std::all_of(row.values.begin(), row.values.end(), is_whole);
+                        });
+    if (counts)  // there is no half of a submission
+      ticks.erase(std::remove_if(ticks.begin(), ticks.end(), std::not_fn(is_whole)), ticks.end());
     const std::vector<std::string> numbers = tick_words(ticks, Scale::kLinear);
     for (std::size_t i = 0; i < ticks.size(); ++i) {
       const double x = sheet.left + ticks[i] / longest * (sheet.right - sheet.left);

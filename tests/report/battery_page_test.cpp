@@ -29,6 +29,7 @@ TEST(BatteryRows, MarginIsHowManyTimesBetter) {
   EXPECT_EQ(shown_margin(at_most(0.0, 1e-3)), "exact");
   EXPECT_EQ(shown_margin(at_most(0.0, 0.0)), "exact");
   EXPECT_EQ(shown_margin(at_most(1e-13, 1e-6)), "x 1e7");  // as axes write it, not 1e+07
+  EXPECT_EQ(shown_margin(at_most(4.7e-10, 7e-8)), "x 150");
   EXPECT_EQ(shown_threshold(at_most(5e-11, 1e-6)), "<= 1e-6 m");
   Measure gap = at_most(-1e-5, 0.0);
   gap.at_least = true;

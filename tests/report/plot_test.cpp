@@ -231,6 +231,19 @@ TEST(StackedBars, HaveTheLengthsOfTheirPartsAndNumberTheWideOnes) {
                PreconditionError);
 }
 
+// Rounded to whole numbers, a time of 0.7 ms would be the same as one of 1.2 ms.
+TEST(StackedBars, NumberSmallPartsWithDecimalsAndCountsInWholeNumbers) {
+  const std::string times =
+      svg_of(StackedBars{"t", {"CPU time", "ms"}, {"a"}, {{"ca", {0.709}}, {"rd", {1.15}}}});
+  EXPECT_EQ(count(times, ">0.71<"), 1u) << times;
+  EXPECT_EQ(count(times, ">1.1<") + count(times, ">1.2<"), 1u) << times;
+  EXPECT_EQ(count(times, ">0.2<"), 1u) << times;  // a tick
+  const std::string submissions =
+      svg_of(StackedBars{"t", {"submissions"}, {"a"}, {{"0 to 10 %", {1}}, {"to 100 %", {2}}}});
+  EXPECT_EQ(submissions.find(">0.5<"), std::string::npos) << submissions;
+  EXPECT_EQ(count(submissions, ">2<"), 2u) << submissions;  // at the axis and in the bar
+}
+
 TEST(StackedBars, EightPartsHaveEightFills) {
   StackedBars bars{"t", {"share"}, {}, {{"row", {}}}};
   for (int k = 0; k < 8; ++k)
