@@ -139,11 +139,29 @@ Plot plot_of_energy(const std::vector<EngineRow>& rows) {
   return plot;
 }
 
+namespace {
+
+std::vector<EngineRow>::const_iterator fastest_of(const std::vector<EngineRow>& rows) {
+  return std::min_element(rows.begin(), rows.end(), [](const EngineRow& x, const EngineRow& y) {
+    return (x.stopped_by.empty() ? x.cpu_s : 1e300) < (y.stopped_by.empty() ? y.cpu_s : 1e300);
+  });
+}
+
+std::string headline_of(const std::vector<EngineRow>& rows) {
+  std::string others;
+  const auto fastest = fastest_of(rows);
+  for (auto row = rows.begin(); row != rows.end(); ++row)
+    if (row != fastest && row->stopped_by.empty())
+      others += fmt::format("{} {} {:.3g} times as long", others.empty() ? "" : ",", row->label,
+                            row->cpu_s / fastest->cpu_s);
+  if (others.empty()) return "";
+  return fmt::format("{} takes the least time in this run:{}.", fastest->label, others);
+}
+
+}  // namespace
+
 Table table_of_engines(const std::vector<EngineRow>& rows) {
-  const auto fastest =
-      std::min_element(rows.begin(), rows.end(), [](const EngineRow& x, const EngineRow& y) {
-        return (x.stopped_by.empty() ? x.cpu_s : 1e300) < (y.stopped_by.empty() ? y.cpu_s : 1e300);
-      });
+  const auto fastest = fastest_of(rows);
   // One column per engine, because there are few.
   Table table;
   table.columns = {{""}};
@@ -174,6 +192,8 @@ void write_engines_page(const std::string& title, const std::string& about,
                         const std::vector<std::vector<EngineRow>>& ladder,
                         const std::string& record, const std::filesystem::path& file) {
   Page page("Engines side by side", title);
+  if (const std::string headline = headline_of(rows); !headline.empty())
+    page.paragraph(headline, Look::kGood);
   if (!about.empty()) page.paragraph(about);
   page.table(table_of_engines(rows));
   for (const EngineRow& row : rows) {

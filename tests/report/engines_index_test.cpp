@@ -117,6 +117,16 @@ TEST(TablesOfEngines, CountStepsAndWork) {
   EXPECT_EQ(table_of_model(ladder()).rows.size(), 5U);
 }
 
+TEST(PageOfEngines, BeginsWithTheFastestAndHowMuchLongerTheOthersTake) {
+  const PrivateFolder folder;
+  write_engines_page("Atoms", "About.", ladder().front(), {}, "", folder.path() / "index.html");
+  std::ifstream in(folder.path() / "index.html");
+  const std::string html{std::istreambuf_iterator<char>(in), {}};
+  const auto headline = html.find(
+      "TW takes the least time in this run: RD-1/30 30 times as long, CA 5 times as long.");
+  EXPECT_LT(headline, html.find("About.")) << html;
+}
+
 TEST(BarsOfEngines, ShowKeptAndUndoneWorkAndTime) {
   std::vector<EngineRow> rows = ladder().front();
   rows[2].counts = {{"integrations", 4000}, {"undone_integrations", 1000}, {"pair_checks", 70}};
