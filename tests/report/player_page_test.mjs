@@ -88,6 +88,15 @@ try {
   expect(cut === 0, `${cut} rows are cut off`);
   expect(await tab.value('document.documentElement.scrollWidth <= 400'), 'the page scrolls sideways');
 
+  console.log('on a phone the names of two bodies that meet are read whole');
+  const game = join(folder, 'game.html');
+  execFileSync(tumble, ['run', 'billiards', '--engine', 'ca', '--modules', 'reference', '--html', game], { cwd: root, env: { ...process.env, TUMBLE_ROOT: root }, stdio: 'ignore' });
+  tab = await browser.open(`file://${game}#t=0&tab=events`, { width: 400, height: 900 });
+  await tab.until('document.body.dataset.ready', 'the page');
+  await tab.until('document.querySelector(".event .bodies")', 'the events');
+  const short = await tab.value('[...document.querySelectorAll(".event .bodies")].filter(names => names.scrollWidth > names.clientWidth).map(names => names.textContent)');
+  expect(short.length === 0, `cut off: ${short.slice(0, 3)}`);
+
   console.log('a picture of a new size is drawn before it is shown');
   tab = await open();
   const drawn = await tab.value(`new Promise(resolve => {
