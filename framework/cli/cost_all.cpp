@@ -192,13 +192,14 @@ SceneLine line_of(const Context& context, const CostWords& words, const std::str
 }
 
 void write_page(const Context& context, const std::vector<report::Table>& tables,
-                const CostWords& words, bool has_peers) {
+                const CostWords& words, bool has_peers, const std::string& missing = "") {
   report::Page page("What accuracy costs, scene by scene",
                     "Every scene over its methods, steps, tolerances and engines");
   page.paragraph(
       "Each scene has a page of its own, with curves. Costs are CPU times of this machine in this "
       "run: only ratios matter. Where the reference solution holds for a part of a scene only, "
       "runs were compared over that part.");
+  if (!missing.empty()) page.paragraph(missing, Look::kWarning);
   for (const report::Table& table : tables) page.table(table);
   if (!has_peers)
     page.paragraph(
@@ -232,8 +233,14 @@ void cost_of_all(Context& context, const CostWords& words, KeptAtStop& stop) {
                                               static_cast<double>(scenes.size() - k) / 60.0)));
     lines.push_back(line_of(context, words, scenes[k]));
     if (!lines.back().problem.empty()) context.exit = ExitCode::kCheckFailed;
-    stop.keep(lines.size(), scenes.size(), (fs::path(words.out) / "index.html").string(),
-              [&] { write_page(context, {table_of(lines)}, words, false); });
+    stop.keep(lines.size(), scenes.size(), (fs::path(words.out) / "index.html").string(), [&] {
+      const bool is_all = lines.size() == scenes.size();
+      write_page(context, {table_of(lines)}, words, false,
+                 is_all ? ""
+                        : fmt::format("Only {} of {} scenes: the command has not come "
+                                      "to its end.",
+                                      lines.size(), scenes.size()));
+    });
   }
   std::vector<report::Table> tables{table_of(lines)};
   const fs::path rows = fs::path("out") / "peers" / "rows";
