@@ -55,6 +55,29 @@ std::string quoted(const std::string& text) {
 
 std::string shown(double value) { return std::isfinite(value) ? few_digits(value, 4) : ""; }
 
+// Between which values a measure lies in the points that are fine, and where; nothing where it is
+// the same in all of them, or of a time.
+std::string range_of(const Swept& swept, std::size_t m) {
+  std::vector<std::size_t> fine;
+  for (std::size_t i = 0; i < swept.points.size(); ++i)
+    if (swept.results[i].state == PointState::kFine && std::isfinite(swept.results[i].values[m]))
+      fine.push_back(i);
+  if (fine.empty() || swept.measures[m].word == kTime) return "";
+  const auto [low, high] =
+      std::minmax_element(fine.begin(), fine.end(), [&](std::size_t i, std::size_t j) {
+        return swept.results[i].values[m] < swept.results[j].values[m];
+      });
+  const auto told = [&](std::size_t i) {
+    const std::string unit = swept.measures[m].unit;
+    return fmt::format("{}{} ({})", shown(swept.results[i].values[m]),
+                       unit.empty() ? "" : " " + unit,
+                       name_of_curve(swept, swept.points[i], swept.varied.size()));
+  };
+  if (swept.results[*low].values[m] == swept.results[*high].values[m]) return "";
+  return fmt::format("{}: from {} to {}.", capitalised(swept.measures[m].title), told(*low),
+                     told(*high));
+}
+
 report::Look look_of(PointState state) {
   return state == PointState::kFine ? report::Look::kGood : report::Look::kBad;
 }
@@ -232,6 +255,8 @@ void write_sweep(const Context& context, const Swept& swept, const std::filesyst
               {"missing", {fmt::format("{}", count_of(swept, PointState::kMissing))}}});
   page.paragraph(fmt::format("{}; {:.3g} s of CPU time in all.", swept.laws, cpu_s));
   if (!swept.lost.empty()) page.paragraph(swept.lost, report::Look::kBad);
+  for (std::size_t m = 0; m < swept.measures.size(); ++m)
+    if (const std::string range = range_of(swept, m); !range.empty()) page.paragraph(range);
   const std::vector<Plot> plots = plots_of(swept);
   if (!plots.empty()) page.heading("Curves");
   for (const Plot& plot : plots) page.plot(plot);
