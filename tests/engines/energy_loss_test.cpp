@@ -282,7 +282,8 @@ TEST(EnergyLost, ByAMethodThatDampsPendulums) {
     }
 }
 
-// Beside bodies that lie on the floor and slide, which may lose what they have.
+// Beside bodies that lie on the floor and slide, which may lose what they have. 30 steps of
+// w h = 1.18 leave 0.39 of what swings along the spring (kept_by_a_step).
 TEST(EnergyLost, IsNotHiddenByOthersThatLoseRightly) {
   scene::Scene scene = swing(2.0, 1e4, 0.1, 1.0 / 60, 0.5);
   scene.bodies.push_back(plane("floor", {0, 0, -1}, Vector3d::UnitZ()));
@@ -291,10 +292,12 @@ TEST(EnergyLost, IsNotHiddenByOthersThatLoseRightly) {
   scene.bodies[1].friction = scene.bodies[2].friction = 0.5;
   effects::set_gravity(scene, Vector3d(0, 0, -9.81));
   scene.contact.emplace();
-  const Trajectory run = run_by("rd", scene);
-  const auto fault = lost_in(run);
-  ASSERT_TRUE(fault) << said(run);
-  EXPECT_EQ(fault->subject, "'bob'");
+  for (const std::string& engine : kEngines) {
+    const Trajectory run = run_by(engine, scene);
+    const auto fault = lost_in(run);
+    ASSERT_TRUE(fault) << engine << said(run);
+    EXPECT_EQ(fault->subject, "'bob'") << engine;
+  }
 }
 
 // The same swing from an anchor that moves evenly, in gravity that the spring holds: by Galileo's

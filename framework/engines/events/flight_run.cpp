@@ -281,11 +281,18 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
                       {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
-// Contacts that come and go between two frames of an island are seen by none.
+// A contact that lasts holds from a segment's start to its end, and one that begins or ends is an
+// event, noted where it is committed. Where impacts are solved in steps, bodies also meet and part
+// within one, and no event says so.
 void FlightRun::note_islands_in_contact(const FlightOf& flight_of) {
   if (!world_.processes() || !world_.processes()->holds_contacts()) return;
-  for (int body = 0; body < world_.size(); ++body)
-    if (flight_of(body).segment >= 0) energy_watch_.note_touch(body, -1);
+  const bool in_steps = world_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep;
+  for (int body = 0; body < world_.size(); ++body) {
+    const int segment = flight_of(body).segment;
+    if (segment < 0) continue;
+    if (in_steps || !world_.processes()->segments().start(segment).lasting.empty())
+      energy_watch_.note_touch(body, -1);
+  }
 }
 
 void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {

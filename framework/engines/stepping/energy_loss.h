@@ -18,7 +18,7 @@
 /// Not watched: what is linked with bodies that are driven differently, what an effect acts on that
 /// says of no entry what it takes (effects::Takes::kUnknown), balls at rest without contacts; and
 /// where looks are taken at frames (event engines), what is dragged, damped, driven or hangs on
-/// what is shaken, and islands of scenes with persistent contacts.
+/// what is shaken, and islands of scenes whose impacts are solved in steps.
 #pragma once
 
 #include <optional>
