@@ -253,6 +253,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
     if (callback.time <= 0) pushed.insert(callback.bodies.begin(), callback.bodies.end());
   StartWatch watch(scene, std::move(pushed), sink);
   if (const auto shared = notice_of_shared_forces(scene, laws)) watch.add(*shared);
+  if (const auto stretched = notice_of_stretched_links(scene, laws)) watch.add(*stretched);
   DiscontinuityCount counted(watch);
   counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);

@@ -254,5 +254,99 @@ TEST(Loops, APlaneLinkageSharesNothingInItsPlane) {
   EXPECT_EQ(said_of_shares(linkage(points, axes)), "");
 }
 
+// ---- What no force holds
+
+/// Balls on a rope of rods between two walls, along these points; the walls hold its ends.
+scene::Scene rope(const std::vector<Vector3d>& points) {
+  std::vector<scene::BodySpec> bodies;
+  for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+    bodies.push_back(ball(fmt::format("ball {}", k), 0.05, 1.0, points[k], Vector3d::Zero()));
+    bodies.back().collides = false;
+  }
+  scene::Scene scene = scene_of(std::move(bodies), 0.1, kEarth);
+  const auto anchor = [&](std::size_t k) {
+    return k == 0 || k + 1 == points.size()
+               ? scene::AnchorSpec{"", points[k]}
+               : scene::AnchorSpec{fmt::format("ball {}", k), Vector3d::Zero()};
+  };
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    effects::RodSpec rod;
+    rod.name = fmt::format("rod {}", k);
+    rod.a = anchor(k - 1);
+    rod.b = anchor(k);
+    rod.length_m = (points[k] - points[k - 1]).norm();
+    scene.effects.of<effects::RodSpec>().push_back(rod);
+  }
+  scene.stabilisation = scene::StabilisationSpec{};
+  return scene;
+}
+
+std::string said_of_stretched(const scene::Scene& scene, const std::string& engine = "rd") {
+  for (const std::string& notice : run_on(engine, scene).counters.notices)
+    if (const auto end = notice.find(" hold their bodies as a rope"); end != std::string::npos)
+      return notice.substr(0, end);
+  return "";
+}
+
+// Stretched straight, two rods pull at a weight in the middle with F = m g / (2 sin 0).
+TEST(Loops, ARopeThatIsStretchedStraightHoldsNothingAcross) {
+  const Vector3d left(-1, 0, 0), right(1.2, 0, 0), middle(0.1, 0, 0), one(-0.3, 0, 0);
+  for (const std::string engine : {"rd", "ordered"})
+    EXPECT_EQ(said_of_stretched(rope({left, middle, right}), engine), "'rod 1', 'rod 2'");
+  EXPECT_EQ(said_of_stretched(rope({left, one, middle, right})), "'rod 1', 'rod 2', 'rod 3'");
+  // it hangs through, or its weight pulls along it, or nothing pulls at it, or it is let go
+  EXPECT_EQ(said_of_stretched(rope({left, middle - 0.01 * Vector3d::UnitZ(), right})), "");
+  EXPECT_EQ(said_of_stretched(rope({-Vector3d::UnitZ(), Vector3d::Zero(), Vector3d::UnitZ()})), "");
+  scene::Scene still = rope({left, middle, right}), loose = rope({left, middle, right});
+  effects::set_gravity(still, Vector3d::Zero());
+  EXPECT_EQ(said_of_stretched(still), "");
+  loose.effects.of<effects::RodSpec>().pop_back();
+  EXPECT_EQ(said_of_stretched(loose), "");
+}
+
+// Flat, a parallelogram of a bar on cranks goes on as long as all cranks turn alike. Where one turns
+// and one stands the bar would stretch: by the square of the angle.
+TEST(Loops, AFlatLinkageIsNamedWhereItCannotGoOn) {
+  const auto flat = [](double rate_of_last) {
+    std::vector<scene::BodySpec> bodies;
+    const auto add = [&](const std::string& name, const Vector3d& at, double rate, double radius) {
+      bodies.push_back(box(name, {0.2, 0.02, 0.02}, 1.0, at, {0, 0, rate * radius}));
+      bodies.back().omega_world_rad_s = {0, -rate, 0};
+      bodies.back().collides = false;
+    };
+    add("first", {0.2, 0, 0}, 5, 0.2);
+    add("second", {0.7, 0, 0}, 5, 0.2);
+    add("third", {1.2, 0, 0}, rate_of_last, 0.2);
+    bodies.push_back(
+        box("bar", {0.5, 0.02, 0.02}, 1.0, {0.9, 0, 0}, {0, 0, 0.4 * (5 + rate_of_last) / 2}));
+    // its ends go up by 0.4 m times the rates of the first crank and the last
+    bodies.back().omega_world_rad_s = {0, -0.4 * (rate_of_last - 5), 0};
+    bodies.back().collides = false;
+    scene::Scene scene = scene_of(std::move(bodies), 0.1, Vector3d::Zero());
+    scene.stabilisation = scene::StabilisationSpec{};
+    const auto hinge = [&](const std::string& a, const std::string& b, double x) {
+      scene.effects.of<effects::JointSpec>().push_back({a + " at " + (b.empty() ? "base" : b),
+                                                        effects::JointKind::kHinge,
+                                                        a,
+                                                        b,
+                                                        {x, 0, 0},
+                                                        Vector3d::UnitY()});
+    };
+    hinge("first", "", 0.0);
+    hinge("third", "", 1.0);
+    hinge("first", "bar", 0.4);
+    hinge("third", "bar", 1.4);
+    if (rate_of_last == 5) {
+      hinge("second", "", 0.5);
+      hinge("second", "bar", 0.9);
+    } else {
+      scene.bodies.erase(scene.bodies.begin() + 1);
+    }
+    return scene;
+  };
+  EXPECT_EQ(said_of_stretched(flat(5)), "");
+  EXPECT_NE(said_of_stretched(flat(0)), "");
+}
+
 }  // namespace loops_test
 }  // namespace tumble::testing

@@ -120,6 +120,10 @@ class LinkedBodies final : effects::GroupPlaces {
   /// rows that say what others say may share their load, over all multipliers. 0: statics alone
   /// tell its force. Nothing of contacts is looked at.
   void measure_shared(const std::vector<RigidBodyState>& states, double t, LinkForces& shared);
+  /// Raises, for each of its links that would have to stretch along the way that bodies take from
+  /// these states, though at first nothing holds them: by its part in that, of 1 at most.
+  void measure_stretched(const std::vector<RigidBodyState>& states, double t,
+                         LinkForces& stretched);
 
  private:
   std::string subject() const;  // of messages
@@ -147,6 +151,10 @@ class LinkedBodies final : effects::GroupPlaces {
   struct Directions;
   Directions directions(const std::vector<Constraint>& all, const std::vector<Body>& bodies) const;
   bool has_redundant_rows();
+  std::vector<Vector6d> way_from(const std::vector<RigidBodyState>& local,
+                                 const std::vector<Body>& bodies,
+                                 const std::vector<Constraint>& all);
+  static double fastest(const std::vector<Vector6d>& way, const std::vector<Body>& bodies);
   static std::vector<Constraint> those_of(const std::vector<char>& chosen,
                                           std::vector<Constraint> all);
   VectorXd rates_of_bodies(const VectorXd& y) const;

@@ -11,8 +11,10 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/core/disjoint_sets.h"
+#include "framework/dynamics/free_rotation.h"
 #include "framework/dynamics/state_units.h"
 #include "framework/effects/registry.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/linked_bodies.h"
 
 namespace tumble::engines {
@@ -197,6 +199,87 @@ void LinkedBodies::measure_shared(const std::vector<RigidBodyState>& states, dou
       }
       at += count;
     }
+  }
+}
+
+// Along which bodies begin to move, by place: their velocities or, at rest, their accelerations; 0
+// where links hold them, but for rounding, against all that acts.
+std::vector<Vector6d> LinkedBodies::way_from(const std::vector<RigidBodyState>& local,
+                                             const std::vector<Body>& bodies,
+                                             const std::vector<Constraint>& all) {
+  std::vector<Wrench> wrenches = forces(local, bodies);
+  const std::vector<ConstrainedBody> held = constrained(bodies);
+  const auto accelerations = [&] {
+    std::vector<Vector6d> found(bodies_.size(), Vector6d::Zero());
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+      found[i] << held[i].inverse_mass * wrenches[i].force_world,
+          held[i].inverse_inertia_world * wrenches[i].torque_world;
+    return found;
+  };
+  const double without_links = fastest(accelerations(), bodies);
+  add_constraint_forces(all, bodies, local, wrenches);
+  std::vector<Vector6d> way(bodies_.size(), Vector6d::Zero());
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    way[i] << bodies[i].velocity_world, bodies[i].omega_world;
+  // at rest: slower than what falls by a millionth of the links' length
+  const double speed = fastest(way, bodies);
+  if (speed * speed > kSixDigits * without_links * length_) return way;
+  way = accelerations();
+  if (!(fastest(way, bodies) > kSixDigits * without_links))
+    std::fill(way.begin(), way.end(), Vector6d::Zero());
+  return way;
+}
+
+double LinkedBodies::fastest(const std::vector<Vector6d>& way, const std::vector<Body>& bodies) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < way.size(); ++i)
+    most = std::max(most, way[i].head<3>().norm() +
+                              radius_of_gyration(bodies[i].inertia) * way[i].tail<3>().norm());
+  return most;
+}
+
+// Along the way that bodies take from here, q + e v, rows change by e^2 v H v / 2. Of a mechanism
+// that can go there, other places by e^2 take that back: it is in the range of J. What is left of
+// it across all of these, along a null vector of J^T, is as much as links would have to stretch.
+void LinkedBodies::measure_stretched(const std::vector<RigidBodyState>& states, double t,
+                                     LinkForces& stretched) {
+  // of the length of links; what is left of a mechanism's motion is of third order in it
+  constexpr double kWay = 1e-3, kLeft = 0.05;
+  if (!has_redundant_rows() || !(length_ > 0.0)) return;
+  const std::vector<RigidBodyState> local = take(states);
+  time_of_stage_ = t;
+  const std::vector<Body> bodies = place_bodies(local, t);
+  const std::vector<Constraint> all = rows(bodies);
+  const std::vector<Vector6d> way = way_from(local, bodies, all);
+  const double most = fastest(way, bodies);
+  if (!(most > 0.0)) return;
+  std::vector<RigidBodyState> moved = local;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    moved[i].com_world += kWay * length_ / most * way[i].head<3>();
+    moved[i].world_from_body =
+        turned(moved[i].world_from_body, kWay * length_ / most * way[i].tail<3>());
+  }
+  const std::vector<Constraint> there = rows(place_bodies(moved, t));
+  const Directions found = directions(all, bodies);
+  VectorXd change(static_cast<Eigen::Index>(all.size()));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    change[static_cast<Eigen::Index>(k)] = there[k].row.value - all[k].row.value;
+  change = change.cwiseQuotient(found.lengths);
+  const SymmetricEigen modes = symmetric_eigen(MatrixXd(found.rows * found.rows.transpose()));
+  const double redundant = left_of_redundant(open_part(bodies, all));
+  VectorXd left = VectorXd::Zero(change.size());
+  for (Eigen::Index mode = 0; mode < modes.values.size(); ++mode)
+    if (modes.values[mode] <= redundant)
+      left += modes.vectors.col(mode).dot(change) * modes.vectors.col(mode);
+  if (!(left.norm() > kLeft * kWay * kWay * length_)) return;
+  left = left.cwiseQuotient(found.lengths) / left.norm();
+  Eigen::Index at = 0;
+  for (const Terms& terms : terms_) {
+    const auto count = static_cast<Eigen::Index>(terms.acting->row_count());
+    std::vector<double>& of_links = stretched.of_effects[terms.effect];
+    if (!of_links.empty() && count > 0)
+      terms.acting->measure(bodies, left.segment(at, count), of_links);
+    at += count;
   }
 }
 

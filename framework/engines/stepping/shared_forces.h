@@ -1,4 +1,4 @@
-/// Whether statics alone tell what each rod and joint carries.
+/// Whether statics alone tell what each rod and joint carries, and whether any force could.
 #pragma once
 
 #include <optional>
@@ -14,5 +14,10 @@ namespace tumble::engines {
 /// where the scene begins, under gravity; in loops of at most 120 rows.
 /// @return nothing where each force is the only one
 std::optional<std::string> notice_of_shared_forces(const scene::Scene& scene, const Laws& laws);
+
+/// Where bodies begin to move as rods and joints allow to first order and not to second, as the
+/// middle of a rope of two rods that is stretched straight between two walls: that no finite force
+/// holds them, and by which. Looked at as above.
+std::optional<std::string> notice_of_stretched_links(const scene::Scene& scene, const Laws& laws);
 
 }  // namespace tumble::engines
