@@ -302,6 +302,21 @@ TEST(Loops, ARopeThatIsStretchedStraightHoldsNothingAcross) {
   EXPECT_EQ(said_of_stretched(still), "");
   loose.effects.of<effects::RodSpec>().pop_back();
   EXPECT_EQ(said_of_stretched(loose), "");
+  // and nothing pulls at a rope that moves evenly with its walls
+  const Vector3d velocity(0, 1, 0);
+  scene::Scene moving = still;
+  moving.bodies[0].velocity_m_s = velocity;
+  auto& rods = moving.effects.of<effects::RodSpec>();
+  for (auto [name, anchor] : {std::pair{"left", &rods[0].a}, std::pair{"right", &rods[1].b}}) {
+    scene::BodySpec wall = box(name, {0.1, 0.1, 0.1}, 1.0, anchor->point_m, Vector3d::Zero());
+    wall.mass_kg.reset();
+    wall.immovable = true;
+    wall.collides = false;
+    wall.motion.emplace().velocity_m_s = velocity;
+    moving.bodies.push_back(wall);
+    *anchor = {name, Vector3d::Zero()};
+  }
+  EXPECT_EQ(said_of_stretched(moving), "");
 }
 
 // Flat, a parallelogram of a bar on cranks goes on as long as all cranks turn alike. Where one turns

@@ -121,7 +121,8 @@ class LinkedBodies final : effects::GroupPlaces {
   /// tell its force. Nothing of contacts is looked at.
   void measure_shared(const std::vector<RigidBodyState>& states, double t, LinkForces& shared);
   /// Raises, for each of its links that would have to stretch along the way that bodies take from
-  /// these states, though at first nothing holds them: by its part in that, of 1 at most.
+  /// these states, though at first nothing holds them: by its part in that, of 1 at most. Not asked
+  /// of groups that hang on driven bodies.
   void measure_stretched(const std::vector<RigidBodyState>& states, double t,
                          LinkForces& stretched);
 

@@ -246,6 +246,10 @@ void LinkedBodies::measure_stretched(const std::vector<RigidBodyState>& states, 
   // of the length of links; what is left of a mechanism's motion is of third order in it
   constexpr double kWay = 1e-3, kLeft = 0.05;
   if (!has_redundant_rows() || !(length_ > 0.0)) return;
+  if (std::any_of(fixed_.begin(), fixed_.end(), [&](int fixed) {
+        return fixed >= 0 && is_driven(world_.bodies[static_cast<std::size_t>(fixed)].motion);
+      }))
+    return;  // they go a way of their own
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
