@@ -103,7 +103,8 @@ report::CostCurve curve_of(const Refinement& refinement, const CostReference& re
   curve.counted = counted_in_words(refinement.method.counted);
   curve.is_subject = refinement.method.is_subject;
   const auto fit = cost::order_of(refinement.method, refinement.results, reference);
-  if (fit && !refinement.method.controlled) curve.order = fit->order;
+  if (fit && fit->pairs >= kPairsOfAnOrder && !refinement.method.controlled)
+    curve.order = fit->order;
   double closest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < refinement.results.size(); ++k) {
     const CostResult& result = refinement.results[k];

@@ -6,6 +6,9 @@
 
 namespace tumble {
 
+/// Slopes that show an order: one alone may be any.
+inline constexpr int kPairsOfAnOrder = 2;
+
 struct FittedOrder {
   double order;  // p of  error ~ C h^p
   // between the two closest slopes behind the order: small where the order has settled

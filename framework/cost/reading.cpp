@@ -176,7 +176,7 @@ std::string reading_of(const CostMethod& method, const std::vector<CostResult>& 
                        method.name, shown, fit->order);
   if (fit->order < kNoOrder && least <= kWrongLimit * reference.floor_m)
     return of_exact(method, least, reference);
-  if (fit->pairs < 2)
+  if (fit->pairs < kPairsOfAnOrder)
     return fmt::format("{} gets to {} m; too few resolutions to show an order.", method.name,
                        shown);
   if (fit->order < kNoOrder && least > kWrongLimit * reference.floor_m)

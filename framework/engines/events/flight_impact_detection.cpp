@@ -8,6 +8,7 @@
 
 #include "framework/collision/time_bound.h"
 #include "framework/core/numbers.h"
+#include "framework/core/text.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
 
@@ -180,10 +181,10 @@ void FlightImpactDetection::require_searchable(int body, const Flight& flight,
   if (flight.segment >= 0 || world_.is_ball(body)) return;
   const double turn = flight.omega_body.norm() * duration;
   if (!(turn > kMostTurning)) return;
-  throw StoppedRun(
-      fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, too far to find its collisions: "
-                  "make the step (\"step_s\") shorter or the body slower",
-                  world_.world().bodies[static_cast<std::size_t>(body)].name, turn, duration));
+  throw StoppedRun(fmt::format(
+      "body '{}' turns {:.3g} rad a step of {} s, too far to find its collisions: "
+      "make the step (\"step_s\") shorter or the body slower",
+      world_.world().bodies[static_cast<std::size_t>(body)].name, turn, step_in_words(duration)));
 }
 
 // The limits of windows are fixed; within a window, each smooth part of the motion is searched at

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/text.h"
 #include "framework/dynamics/rotation_bounds.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/tolerances.h"
@@ -186,8 +187,9 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs,
       ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower";
   const double asked = target_ - time_;
   const auto turning_of = [&](int body, double step) {
-    return fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[body].name,
-                       omega_of(states_[body], world_.bodies[body].inertia).norm() * step, step);
+    return fmt::format("body '{}' turns {:.3g} rad a step of {} s", world_.bodies[body].name,
+                       omega_of(states_[body], world_.bodies[body].inertia).norm() * step,
+                       step_in_words(step));
   };
   double duration = asked;
   int fastest = -1;
