@@ -31,6 +31,7 @@ CostMethod method_by_integrator(const Method& integrator, const Laws& laws) {
   method.word = integrator.word;
   method.step_function = [integrator](double tolerance) { return step_of(integrator, tolerance); };
   method.steps_in_units = needs_units(integrator);
+  method.has_library_step = true;
   method.order = integrator.order;
   method.controlled = integrator.controlled;
   method.laws = laws;

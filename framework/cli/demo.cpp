@@ -129,7 +129,7 @@ void write_index(const Context& context, const std::vector<Graded>& all,
                  const DemoOptions& options) {
   const fs::path out = fs::absolute(options.out);
   const std::string scenes = options.scenes > 1
-                                 ? fmt::format("the first {} scenes of each", options.scenes)
+                                 ? fmt::format("at most {} scenes of each", options.scenes)
                              : options.scenes == 1 ? "the first scene of each"
                                                    : "every scene";
   report::Page page("Tumble", "three submissions of each assignment, graded; " + scenes +

@@ -44,7 +44,8 @@ struct CostMethod {
   std::string engine = "rd", propagator = "laws";
   // in place of the laws' integration; empty: theirs, or a closed form
   std::function<StepFunction(double tolerance)> step_function;
-  bool steps_in_units = false;  // of step_function: see Laws
+  bool steps_in_units = false;    // of step_function: see Laws
+  bool has_library_step = false;  // of step_function: what lowers its order is a law
   // sets what else in the laws depends on the tolerance: a root finder, a solver
   std::function<void(double tolerance, Laws& laws)> tuned;
   std::string counted = "derivative_evaluations";  // the counter of its evaluations

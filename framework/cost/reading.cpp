@@ -106,6 +106,11 @@ std::string of_order(const CostMethod& method, const FittedOrder& fit, bool smoo
         "{} where the method has {:.0f}: here impacts, rods or contacts may determine the order, "
         "not the method.",
         seen, method.order);
+  if (method.has_library_step && method.is_subject)
+    return fmt::format(
+        "{} where {:.0f} is expected: the steps are the library's, so a law is wrong, or a term of "
+        "it is missing.",
+        seen, method.order);
   if (method.order >= 4 && fit.order > 0.6)
     return fmt::format(
         "{} where {:.0f} is expected: a stage is wrong (its weight, its time, or the slope it "

@@ -107,11 +107,12 @@ std::vector<SchedulerReading> beside(const Sum& own, const Sum& right) {
          Kind::kWasteful});
   if (own.states > kAlike * right.states)
     readings.push_back(
-        {fmt::format("It keeps {} as many states as the reference: at most {:.1f} per body, where "
-                     "{:.1f} suffice. States before global virtual time are not discarded "
-                     "(states_to_purge), or global virtual time lags.",
-                     times(ratio(own.states, right.states)), own.states / own.processes,
-                     right.states / right.processes),
+        {fmt::format(
+             "It keeps {} as many states as the reference: {:.1f} per body at its fullest, where "
+             "{:.1f} suffice. States before global virtual time are not discarded "
+             "(states_to_purge), or global virtual time lags.",
+             times(ratio(own.states, right.states)), own.states / own.processes,
+             right.states / right.processes),
          Kind::kWasteful});
   if (readings.empty())
     readings.push_back(
@@ -127,7 +128,7 @@ std::vector<SchedulerReading> alone(const Sum& own) {
   const double sent = own.rollbacks / own.impacts;
   const std::string pays = fmt::format(
       "It pays {:.2f} integrations per event, rolls back {:.2f} of them, checks pairs {:.1f} times "
-      "and keeps at most {:.1f} states per body.",
+      "and keeps {:.1f} states per body at its fullest.",
       own.integrations / own.events, own.undone / own.events, own.checks / own.events,
       own.states / own.processes);
   if (sent > kOfOne)

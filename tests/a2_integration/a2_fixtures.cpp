@@ -286,7 +286,8 @@ void expect_impact(const RootResult& found, const Approach& approach, const Look
   const bool is_early = found.time >= approach.t_low && gap >= 0;
   Story of_time =
       because(slip + (is_early ? "; or the search ends too early: the bracket must be smaller than "
-                                 "the tolerance, however many steps it takes"
+                                 "the tolerance, or hold no number between its ends, however many "
+                                 "steps it takes"
                                : ""));
   of_time.iterates = true;
   expect_near(found.time, approach.time_of_impact, tolerance + round_off, "s", of_time);

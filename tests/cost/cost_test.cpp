@@ -70,9 +70,13 @@ TEST(Cost, AWrongStageIsReported) {
       return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
     };
   };
-  const std::string reading =
-      cost::read_refinement(method, refinement_of(scene, method, reference), reference, true);
+  const auto results = refinement_of(scene, method, reference);
+  const std::string reading = cost::read_refinement(method, results, reference, true);
   EXPECT_NE(reading.find("a stage is wrong"), std::string::npos) << reading;
+  // Where the library steps, the module under test has no stages.
+  method.has_library_step = method.is_subject = true;
+  const std::string of_laws = cost::read_refinement(method, results, reference, true);
+  EXPECT_NE(of_laws.find("a law is wrong"), std::string::npos) << of_laws;
 }
 
 TEST(Cost, AWrongLawDoesNotConverge) {

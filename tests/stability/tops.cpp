@@ -365,7 +365,7 @@ void heavy_top(const Given& given, Findings& findings) {
       {"tilt", "rad", report::Scale::kLog},
       {},
       {},
-      "Above the critical spin a tilt stays as small as it was; below it the top falls."};
+      "Above the critical spin a tilt stays small; below it the top falls."};
   for (const double part : {1.1, 0.9}) {
     const scene::Scene scene =
         top_on_its_tip(m, l, across, axial, Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::UnitY())),

@@ -367,10 +367,15 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   page.heading("Stories", 2, "stories");
   if (const auto stories = std::count_if(grade.tests.begin(), grade.tests.end(), has_story_in_page);
       grade.state == GradeState::kJudged && grade.count(Verdict::kRight) < grade.tests.size()) {
-    page.begin(report::Part::kFold,
-               fmt::format("Of all tests that are not right: {} to read", stories));
-    add_stories(page, grade, view);
-    page.end();
+    if (stories == 0) {
+      page.paragraph("None: a function that is not written yet has no story.", Look::kMuted);
+    } else {
+      page.begin(report::Part::kFold,
+                 fmt::format("{} of tests that are not right",
+                             stories == 1 ? "1 story" : std::to_string(stories) + " stories"));
+      add_stories(page, grade, view);
+      page.end();
+    }
   }
   if (grade.state != GradeState::kJudged)
     page.paragraph("No test ran.", Look::kMuted);
