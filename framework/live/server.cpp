@@ -38,7 +38,7 @@ body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; max-width: 38rem; margin
 guess: open the one that its terminal shows now, whole, in a browser on the same machine.</p>
 <ul><li>A tab from before the last start has an old address: close it.</li>
 <li>A link on another page does not open it: copy the address into the browser's address bar.</li>
-<li>The machine's name does not stand for it: keep <code>127.0.0.1</code> or
+<li>Do not write the machine's name in place of <code>127.0.0.1</code> or
 <code>localhost</code>.</li></ul></body></html>
 )";
 constexpr const char* kPolicyOfRefused =

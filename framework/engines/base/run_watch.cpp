@@ -32,8 +32,8 @@ const Words& words_of(RunWatch::Kind kind) {
        "by this part of the speed",
        "less friction where there is any, or masses that differ less"},
       {"energy_rises",
-       "beside what forces and motors bring in, nothing does: what rises is made by the step, over "
-       "all that the scene has to give",
+       "beside what forces and motors bring in, energy cannot rise: the steps have made this part "
+       "of the energy that the scene has",
        "another method (a2's rk4_step)"},
       {"energy_lost",
        "nothing takes energy from these bodies but what has been counted: the rest is lost by the "
@@ -44,9 +44,8 @@ const Words& words_of(RunWatch::Kind kind) {
        "and what hangs on them, are not to be trusted",
        "a slower body, or --propagator auto where nothing but gravity acts on it"},
       {"turns_wrong",
-       "what nothing turns keeps its angular momentum and turns as that says: its steps have "
-       "turned "
-       "it wrong by this angle, and what hangs on it is off as much",
+       "without a torque the angular momentum stays, and tells how the body turns: its steps have "
+       "turned it wrong by this angle [rad]",
        "--propagator auto where nothing but gravity acts on it, or --engine ordered: both turn it "
        "in closed form"},
       {"overlap_left",

@@ -72,9 +72,9 @@ std::string named(const std::vector<TestCount>& counts, const IsOne& is_one) {
 
 void add_tests(report::Page& page, const std::vector<TestCount>& counts) {
   page.heading("Tests", 2, "tests");
-  page.paragraph("Nobody passes: " +
+  page.paragraph("Tests that nobody passes: " +
                  named(counts, [](const TestCount& count) { return count.right == 0; }) + ".");
-  page.paragraph("Nobody fails: " +
+  page.paragraph("Tests that nobody fails: " +
                  named(counts, [](const TestCount& count) { return count.right == count.judged; }) +
                  ".");
   report::Table table{"Numbers are those of the matrix below.",

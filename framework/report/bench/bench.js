@@ -105,8 +105,8 @@ class Bench {
     this.scrub = $('input', '', { type: 'range', min: 0, max: 0, step: 1, value: 0, 'aria-label': 'Time' });
     this.clock = $('output', '', { class: 'bench-clock' });
     this.play = $('button', 'Play', { type: 'button' });
-    const again = $('button', 'Controls as before', { type: 'button' });
-    this.clear = $('button', 'Take pushes back', { type: 'button' });
+    const again = $('button', 'Reset controls', { type: 'button' });
+    this.clear = $('button', 'Undo pushes', { type: 'button' });
     this.state = $('p', '', { id: 'bench-state', role: 'status', 'aria-live': 'polite' });
     this.difference = $('p');
     this.numbers = $('div', '', { class: 'wide', tabindex: 0 });
@@ -175,7 +175,7 @@ class Bench {
       else if (!own.stopped) this.difference.textContent = 'Every call of this file answers as the right law does, to 1e-12.';
     } else if (own.facts.length > 0) {
       this.difference.className = wrong > 0 ? 'bad' : 'good';
-      this.difference.textContent = wrong > 0 ? `${wrong} of ${own.facts.length} numbers below are not as they have to be.` : 'The numbers below are as they have to be.';
+      this.difference.textContent = wrong === 1 ? 'One of the numbers below is not as it has to be.' : wrong > 0 ? `${wrong} of the numbers below are not as they have to be.` : 'The numbers below are as they have to be.';
     }
     this.root.dataset.shown = String(this.shownRuns = (this.shownRuns || 0) + 1);
     this.table(own, right);
