@@ -152,7 +152,7 @@ TEST(LinkTrouble, ADraggedBodysMotionThatIsNotANumberIsNamed) {
                            : right(state, inertia, wrench);
   };
   expect_stopped(run(swinging("drag"), clock.laws),
-                 {"t = 0.5", "'bob'", "integration", "state_derivative", "not a number"}, 0.45,
+                 {"t = 0.5", "'bob'", "integration", "rigid_body_derivative", "not a number"}, 0.45,
                  0.55);
 }
 
@@ -251,7 +251,7 @@ TEST(LinkTrouble, EnergyOfAnIntegrationIsTheIntegrations) {
     return (1 + h) * right(f, t, y, h);
   };
   expect_runaway(scene_of({ball("ball", 0.1, 1.0, {0, 0, 0}, {1, 0, 0})}, 20.0), laws,
-                 {"'ball'", "comes from integration", "integrate_step"});
+                 {"'ball'", "comes from integration", "rk4_step"});
 }
 
 // A stage of RK4 stands off unit length, and R of such a quaternion tilts L: a stick of 1 m by 2 cm
