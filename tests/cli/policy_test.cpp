@@ -387,7 +387,8 @@ TEST(ClassPage, DividesTheMatrixEvenlyAndNamesNoLongListOfTests) {
     ScoredTest test;
     test.item.test = "S.T" + std::to_string(i);
     test.item.title = "title " + std::to_string(i);
-    test.result = {test.item.test, Verdict::kRight, ""};
+    test.result.test = test.item.test;
+    test.result.verdict = Verdict::kRight;
     grade.tests.push_back(test);
   }
   modules::ModuleKind kind;
