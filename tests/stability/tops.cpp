@@ -359,13 +359,12 @@ void heavy_top(const Given& given, Findings& findings) {
   // asleep.
   const double m = 1.0, l = 0.1, across = 0.02, axial = 0.01,
                critical = 2 * std::sqrt(across * m * kG * l) / axial;
-  report::Plot plot{
-      "Tilt of a sleeping top",
-      {"time", "s"},
-      {"tilt", "rad", report::Scale::kLog},
-      {},
-      {},
-      "Above the critical spin a tilt stays small; below it the top falls."};
+  report::Plot plot{"Tilt of a sleeping top",
+                    {"time", "s"},
+                    {"tilt", "rad", report::Scale::kLog},
+                    {},
+                    {},
+                    "Above the critical spin a tilt stays small; below it the top falls."};
   for (const double part : {1.1, 0.9}) {
     const scene::Scene scene =
         top_on_its_tip(m, l, across, axial, Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::UnitY())),
