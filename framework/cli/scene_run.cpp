@@ -21,6 +21,7 @@
 #include "framework/cli/stop_by_hand.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
+#include "framework/core/text.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/judging/judge.h"
@@ -92,8 +93,10 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   fmt::print("  laws     {}\n", modules_line(scene, laws));
   fmt::print("{}", searched);
   const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
-  fmt::print("  run      engine {}, step {:.6g} s, {:.6g} s simulated, {} bodies, {} frames\n",
-             run.info.engine, run.info.step_s, end, run.bodies.size(), run.frames.size());
+  fmt::print("  run      engine {}, step {} s, {:.6g} s simulated, {}, {} frames\n",
+             run.info.engine, step_in_words(run.info.step_s), end,
+             run.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", run.bodies.size()),
+             run.frames.size());
   std::string events;
   for (const auto& [name, count] : count_events(run))
     events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);

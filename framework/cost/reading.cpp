@@ -106,7 +106,7 @@ std::string of_order(const CostMethod& method, const FittedOrder& fit, bool smoo
         "{} where the method has {:.0f}: here impacts, rods or contacts may determine the order, "
         "not the method.",
         seen, method.order);
-  if (method.has_library_step && method.is_subject)
+  if (method.has_library_step)
     return fmt::format(
         "{} where {:.0f} is expected: the steps are the library's, so a law is wrong, or a term of "
         "it is missing.",

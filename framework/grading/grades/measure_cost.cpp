@@ -55,6 +55,7 @@ std::vector<CostMethod> methods_of(const ModuleKind& kind, const AnyModule& modu
   if (!kind.methods.empty()) all.order = kind.methods.back().order;
   if (kind.methods.empty()) {  // its laws, with the library's classical method
     all.step_function = [](double) { return step_of(method_named("rk4"), kUnset); };
+    all.has_library_step = true;
     all.order = method_named("rk4").order;
   }
   methods.push_back(std::move(all));
