@@ -44,6 +44,14 @@ void print_solved(const char* what, const Factors& factors, const VectorXd& b) {
   print(what, x);
   print(what, VectorXd(b - factors.solve(2 * b)));
   std::printf("%s %a\n", what, b.dot(factors.solve(b)));
+  const MatrixXd A = some(3, b.size()), square = some(b.size(), b.size());
+  print(what, VectorXd(A * factors.solve(b)));
+  print(what, VectorXd(-square.transpose() * factors.solve(b - x)));
+  print(what, MatrixXd(square * factors.solve(square.leftCols(1))));
+  x = square * factors.solve(x);
+  print(what, x);
+  x.noalias() -= 0.5 * square * factors.solve(b);
+  print(what, x);
 }
 
 /// A chain's: each row meets the next one, some meet a far one.
