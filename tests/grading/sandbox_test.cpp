@@ -6,6 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox.h"
 #include "tests/grading/attack_fixture.h"
@@ -236,6 +239,32 @@ TEST_F(SandboxEnds, StagesAreReadableOnlyByTheSandboxAndRemoved) {
               std::filesystem::perms::none);
   }
   EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST_F(SandboxEnds, AFileIsShownWhereItLiesIfItsUserCanReadIt) {
+  namespace fs = std::filesystem;
+  std::string name = (fs::temp_directory_path() / "tumble-shown-XXXXXX").string();
+  const fs::path folder = ::mkdtemp(name.data()), file = folder / "text";
+  std::ofstream(file) << "as it lies\n";
+  const auto may = [&](int of_folder, int of_file) {
+    EXPECT_EQ(::chmod(folder.c_str(), static_cast<mode_t>(of_folder)), 0);
+    EXPECT_EQ(::chmod(file.c_str(), static_cast<mode_t>(of_file)), 0);
+    return stage_->can_be_shown(file);
+  };
+  EXPECT_FALSE(stage_->can_be_shown(folder / "missing"));
+  if (user_->uid()) {
+    EXPECT_FALSE(may(0755, 0640));
+    EXPECT_FALSE(may(0750, 0644));
+  }
+  EXPECT_TRUE(may(0755, 0644));
+  if (SandboxJob job = shell("cat /shown; echo mine > /shown || exit 3");
+      job.kind == SandboxKind::kNamespaces) {
+    job.binds = {{file, "/shown"}};
+    const SandboxOutcome outcome = Sandbox::start(job).wait();
+    EXPECT_TRUE(outcome.printed.starts_with("as it lies\n")) << outcome.printed;
+    EXPECT_NE(outcome.code, 0) << "it was written to";
+  }
+  fs::remove_all(folder);
 }
 
 TEST_F(SandboxEnds, StagesHaveTheirMakersProcessId) {

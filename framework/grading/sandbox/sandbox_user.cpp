@@ -141,13 +141,22 @@ std::filesystem::path Stage::add_file(const std::filesystem::path& from, const s
   return to;
 }
 
-std::filesystem::path Stage::link_file(const std::filesystem::path& from, const std::string& name) {
-  const auto to = path_ / name;
+bool Stage::link_file(const std::filesystem::path& from, const std::string& name) {
   struct stat about {};
   const bool all_may_read = ::stat(from.c_str(), &about) == 0 && (about.st_mode & 0444) == 0444;
-  // Not across file systems, and of a foreign file only where the kernel permits it.
-  if (all_may_read && ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), 0) == 0) return to;
-  return add_file(from, name);
+  return all_may_read && ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, (path_ / name).c_str(), 0) == 0;
+}
+
+bool Stage::can_be_shown(const std::filesystem::path& file) const {
+  if (!owner_) return ::access(file.c_str(), R_OK) == 0;
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  struct stat about {};
+  if (error || ::stat(real.c_str(), &about) != 0 || (about.st_mode & S_IROTH) == 0) return false;
+  for (std::filesystem::path folder = real.parent_path();; folder = folder.parent_path()) {
+    if (::stat(folder.c_str(), &about) != 0 || (about.st_mode & S_IXOTH) == 0) return false;
+    if (folder == folder.root_path()) return true;
+  }
 }
 
 std::filesystem::path Stage::add_text(const std::string& text, const std::string& name) {

@@ -51,9 +51,14 @@ class Stage {
   /// @return path of the copy
   std::filesystem::path add_file(const std::filesystem::path& from, const std::string& name,
                                  bool executable = false);
-  /// The file itself under one more name, where that can be; else a copy. Not for secrets.
+  /// The file itself under one more name, which takes neither time nor room. Not for secrets.
   /// @pre what runs inside cannot change the file: another user's, or bound for reading only
-  std::filesystem::path link_file(const std::filesystem::path& from, const std::string& name);
+  /// @return false, with nothing done: it lies on another file system, or the kernel does not
+  ///   permit it for a file of another user
+  bool link_file(const std::filesystem::path& from, const std::string& name);
+  /// Whether the sandbox's user can read a file where it lies, so that it can be a Bind there: as
+  /// its mode and its folders' modes say.
+  bool can_be_shown(const std::filesystem::path& file) const;
   std::filesystem::path add_text(const std::string& text, const std::string& name);
 
  private:
