@@ -27,8 +27,11 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     const bool is_cut = candidate.starts_with(word);
     const bool unit_differs = word.starts_with(candidate.substr(0, candidate.find('_')) + '_');
     const std::size_t letters = edit_distance(word, candidate);
-    const std::size_t distance =
-        is_cut || unit_differs ? std::min<std::size_t>(letters, 1) : letters;
+    // "--output" for "--out"; behind what is nearer, since "pong_2000" is rather "pong_200"
+    const bool is_longer = candidate.size() >= 3 && word.starts_with(candidate);
+    const std::size_t distance = is_cut || unit_differs ? std::min<std::size_t>(letters, 1)
+                                 : is_longer            ? std::min<std::size_t>(letters, 2)
+                                                        : letters;
     // nothing in common: not a typing error
     if (distance >= least || letters >= std::max(word.size(), candidate.size())) continue;
     least = distance;

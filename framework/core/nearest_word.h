@@ -14,7 +14,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b);
 
 /// The candidate at the smallest edit distance, which is at most 2 or a third of the word; the
 /// first of equals. A word cut short ("mass" for "mass_kg", "insp" for "inspect") or with another
-/// unit ("mass_lb") counts as one error.
+/// unit ("mass_lb") counts as one error, one written out ("output" for "out") as two.
 /// @return "" when no candidate is near
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
 

@@ -25,6 +25,7 @@ TEST(NearestWord, AnotherUnitIsOneError) {
   const std::vector<std::string> keys = {"radius_m", "mass_kg", "velocity_m_s"};
   EXPECT_EQ(nearest_word("mass", keys), "mass_kg");
   EXPECT_EQ(nearest_word("mass_pounds", keys), "mass_kg");
+  EXPECT_EQ(nearest_word("--output-folder", {"--on", "--out"}), "--out");
 }
 
 TEST(NearestWord, FarOrEmptyWordHasNoSuggestion) {
