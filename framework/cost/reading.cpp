@@ -20,6 +20,8 @@ constexpr double kNoOrder = 0.3;  // a slope below this is no convergence
 constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;
 // of the scale: errors as large as the motion have no common cause
 constexpr double kStaysBelow = 0.6;
+// of the scale: an error this large may come from a turn so fast that every step passes over it
+constexpr double kMissesEvents = 0.01;
 // of the scale: larger errors mean that the motion was not found
 constexpr double kNoMotion = 0.3;
 constexpr double kRoundOff = 1e-10;  // of the scale: smaller errors are round-off
@@ -85,11 +87,23 @@ std::string of_numbers(const CostMethod& method, const std::vector<CostResult>& 
   return fmt::format("{} is right by all numbers at {}; at best {}.", method.name, from, worst);
 }
 
-std::string of_wrong_limit(const CostMethod& method, double least) {
+std::string of_wrong_limit(const CostMethod& method, const std::vector<CostResult>& results,
+                           double least, const CostReference& reference) {
+  double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
+  for (const CostResult& result : results)
+    if (result.stopped_by.empty() && result.error_m <= kAlikeErrors * least)
+      longest = std::max(longest, result.step_s), shortest = std::min(shortest, result.step_s);
+  const std::string over =
+      longest > shortest
+          ? fmt::format("from steps of {} to {} s", step_in_words(longest), step_in_words(shortest))
+          : "at the finest steps";
   return fmt::format(
-      "{} does not converge: its error stays at {} m however small the step. It computes "
-      "another motion (a wrong law, or a missing term).",
-      method.name, few_digits(least));
+      "{} does not converge: its error stays at {} m {}. It computes another motion: a law is "
+      "wrong, or a term of it is missing{}.",
+      method.name, few_digits(least), over,
+      least > kMissesEvents * reference.scale_m
+          ? ", or all these steps are too long for the fastest part of the motion"
+          : "");
 }
 
 std::string of_order(const CostMethod& method, const FittedOrder& fit, bool smooth) {
@@ -164,7 +178,7 @@ std::string reading_of(const CostMethod& method, const std::vector<CostResult>& 
   if (!fit && least <= kWrongLimit * reference.floor_m) return of_exact(method, least, reference);
   if (!method.controlled && stays(results) && least > kWrongLimit * reference.floor_m &&
       least < kStaysBelow * reference.scale_m)
-    return of_wrong_limit(method, least);
+    return of_wrong_limit(method, results, least, reference);
   if (!fit && least > kNoMotion * reference.scale_m)
     return fmt::format(
         "{} does not find the motion: its error is still {} m at the finest {}, where bodies "
@@ -185,7 +199,7 @@ std::string reading_of(const CostMethod& method, const std::vector<CostResult>& 
     return fmt::format("{} gets to {} m; too few resolutions to show an order.", method.name,
                        shown);
   if (fit->order < kNoOrder && least > kWrongLimit * reference.floor_m)
-    return of_wrong_limit(method, least);
+    return of_wrong_limit(method, results, least, reference);
   if (fit->spread > kSettled)
     return fmt::format("{} gets to {} m; its order has not settled ({:.1f}, slopes {:.1f} apart).",
                        method.name, shown, fit->order, fit->spread);

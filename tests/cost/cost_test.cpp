@@ -93,6 +93,27 @@ TEST(Cost, AWrongLawDoesNotConverge) {
   EXPECT_NE(reading.find("does not converge"), std::string::npos) << reading;
 }
 
+TEST(Cost, AnErrorThatStaysIsNotBlamedOnALawAlone) {
+  // A light bob that turns back within 1e-5 s is missed by all of these steps alike.
+  CostReference reference;
+  reference.scale_m = 3.0;
+  reference.floor_m = 1e-11;
+  const auto read = [&](double error_m) {
+    std::vector<CostResult> results(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      results[i].step_s = 1e-4 / static_cast<double>(1 << i);
+      results[i].error_m = error_m;
+    }
+    return cost::read_refinement(method_of("symplectic"), results, reference, false);
+  };
+  const std::string large = read(0.18), small = read(1e-4);
+  EXPECT_NE(large.find("stays at 0.18 m from steps of 0.0001 to 2.5e-5 s"), std::string::npos)
+      << large;
+  EXPECT_NE(large.find("too long for the fastest part"), std::string::npos) << large;
+  EXPECT_NE(small.find("a law is wrong"), std::string::npos) << small;
+  EXPECT_EQ(small.find("too long"), std::string::npos) << small;
+}
+
 TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
   const scene::Scene scene = turning();
   const CostReference reference = cost::find_reference(scene, library_laws(), {});
