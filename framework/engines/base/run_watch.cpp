@@ -34,7 +34,7 @@ const Words& words_of(RunWatch::Kind kind) {
       {"energy_rises",
        "beside what forces and motors bring in, energy cannot rise: the steps have made this part "
        "of the energy that the scene has",
-       "another method (a2's rk4_step)"},
+       "a method that chooses its steps (--method fehlberg78 --tolerance 1e-8)"},
       {"energy_lost",
        "nothing takes energy from these bodies but what has been counted: the rest is lost by the "
        "step",
