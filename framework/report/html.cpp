@@ -125,6 +125,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--sof
   caption span { display: inline-block; position: sticky; left: 0; max-width: calc(100vw - 3rem); }
   th, td { padding: .3rem .35rem; } h1, h2, h3, p, li { overflow-wrap: anywhere; }
   .box { padding: .1rem .7rem .8rem; }
+  /* a value has the whole line, below its name */
+  .fields { display: block; } .fields dt { font-size: .88rem; margin-top: .3rem; }
   .story table, .story tbody, .story tr, .story td,
   .blocks, .blocks tbody, .blocks tr, .blocks td { display: block; }
   .blocks caption, .story caption { display: block; } .blocks td:empty { display: none; }

@@ -81,6 +81,33 @@ std::string html_escape(std::string_view text) {
   return html;
 }
 
+std::string formula_in_parts(std::string_view formula) {
+  constexpr std::string_view kNoBreak = "\u00a0";
+  constexpr std::size_t kShort = 20;  // letters between brackets: half a line of a phone
+  std::vector<bool> stays(formula.size(), false);
+  std::size_t open = formula.npos;  // of the innermost bracket
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (formula[i] == '(' || formula[i] == '[') open = i;
+    if (formula[i] != ')' && formula[i] != ']') continue;
+    if (open != formula.npos && i - open <= kShort)
+      std::fill_n(stays.begin() + static_cast<long>(open), i - open, true);
+    open = formula.npos;
+  }
+  // between an operator and what follows it
+  for (std::size_t i = 1; i + 1 < formula.size(); ++i)
+    if (formula[i] == ' ' &&
+        std::string_view("+-=/").find(formula[i - 1]) != std::string_view::npos && i > 1 &&
+        formula[i - 2] == ' ')
+      stays[i] = true;
+  std::string text;
+  for (std::size_t i = 0; i < formula.size(); ++i)
+    if (formula[i] == ' ' && stays[i])
+      text += kNoBreak;
+    else
+      text += formula[i];
+  return text;
+}
+
 std::string link_to(const std::filesystem::path& relative) {
   constexpr char kHex[] = "0123456789ABCDEF";
   std::string link;

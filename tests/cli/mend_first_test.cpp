@@ -80,6 +80,33 @@ TEST_F(MendFirst, ACauseWithoutANumberThatAgreesIsOnlyPossible) {
             std::string::npos);
 }
 
+// "Your mistake may be another one" above an equation that names it would contradict it.
+TEST_F(MendFirst, NumbersThatTheEquationExplainsAreNotCalledThoseOfAnotherMistake) {
+  grade.causes[0].same_numbers = 0;
+  grade.tests[0].result.story +=
+      "\n  x-ray:    j = 2 m u\n            2   2   <- your answer comes out without this term\n";
+  const std::string html = page(grade);
+  EXPECT_NE(html.find("But alone it gives other numbers than yours: the equation below marks how "
+                      "yours come out."),
+            std::string::npos)
+      << html;
+  EXPECT_EQ(html.find("another one"), std::string::npos);
+}
+
+TEST_F(MendFirst, ACauseThatNoMistakeExplainsNamesTheOneThatGivesItsAnswers) {
+  Cause other = grade.causes[0];
+  other.kind = Cause::Kind::kUnknown;
+  other.tests = {"Open.Hit"};
+  other.may_follow = {{0, 1}};
+  grade.causes.push_back(other);
+  const std::string html = page(grade);
+  EXPECT_NE(html.find("The mistake of cause 1 gives the same wrong answer in its test: mend that "
+                      "one first, this may follow from it."),
+            std::string::npos)
+      << html;
+  EXPECT_NE(html.find("1 of the 2 failed tests called this function last."), std::string::npos);
+}
+
 TEST_F(MendFirst, SaysWhatFollowsAndWhatWasNotRunWithoutNamesOfHiddenTests) {
   grade.causes[0].tests = {"Open.Hit"};
   grade.causes[0].following = {"Secret.Seam"};
@@ -151,8 +178,31 @@ TEST_F(MendFirst, APictureStandsBesideTheOneCauseThatActsInItsScene) {
   grade.causes.push_back(other);
   EXPECT_EQ(box().find("media/boxes.png"), std::string::npos);
   EXPECT_NE(box().find("boxes</a> (cause 2 may act in it, too)"), std::string::npos) << box();
+  other.functions = {"turn", "spin"};
+  scene.functions.push_back("spin");
+  grade.media = {scene};
   grade.causes.push_back(other);
   EXPECT_NE(box().find("boxes</a> (causes 2, 3 may act in it, too)"), std::string::npos) << box();
+}
+
+// No record says which of two mistakes in one function a run shows. The one that costs more has it.
+TEST_F(MendFirst, OfCausesOfOneFunctionTheFirstAloneNamesItsScenes) {
+  SceneMedia scene;
+  scene.scene = scene.title = "boxes";
+  scene.story = "SIGSEGV";
+  scene.picture = "boxes.png";
+  scene.functions = {"hit"};
+  grade.media = {scene};
+  Cause rare = grade.causes[0];
+  rare.says = "two walls meet";
+  grade.causes.push_back(rare);
+  const std::string html = page(grade), box = html.substr(0, html.find("id=\"tests\""));
+  const std::size_t first = box.find("boxes</a>");
+  EXPECT_NE(first, std::string::npos);
+  EXPECT_LT(first, box.find("id=\"cause-2\""));
+  EXPECT_EQ(box.find("boxes</a>", first + 1), std::string::npos);
+  EXPECT_EQ(box.find("may act in it"), std::string::npos);
+  EXPECT_EQ(box.find("media/boxes.png"), std::string::npos);  // it may show either
 }
 
 // A cause that is no known slip gives something to act on, too.
@@ -171,7 +221,7 @@ TEST_F(MendFirst, EveryCauseSaysWhatItShouldBeAndWhereToRead) {
     const std::string html = page(for_student(grade), {"../handout.html", "a9_things"});
     const bool is_new = kind == Cause::Kind::kNotWritten;
     EXPECT_NE(html.find(is_new ? "<dt>to write</dt><dd>How hard it hits.\nj = 2 u"
-                               : "<dt>it should be</dt><dd>j = 2 u   (A9.2)</dd>"),
+                               : "<dt>it should be</dt><dd>j =\u00a02 u   (A9.2)</dd>"),
               std::string::npos)
         << html;
     EXPECT_EQ(html.find("<dt>it returns</dt><dd>j, not below 0") != std::string::npos, is_new);

@@ -319,6 +319,32 @@ TEST(Causes, ATestThatAnotherCauseFailsTooNeedsBoth) {
   EXPECT_TRUE(causes[1].also_needed.empty());
 }
 
+// One answer that several mistakes give explains no test, but that of a mistake with other evidence
+// is named: here f's mistake shows in g, which uses f's answer.
+TEST(Causes, AnAnswerThatTheMistakeOfAnotherCauseGivesMayFollowFromIt) {
+  std::vector<AuditedSlip> known = {
+      {"of_f",
+       "a factor of f",
+       "f",
+       {{"T.One", Verdict::kWrong, "2 m", "f"}, {"T.Uses", Verdict::kWrong, "1 m", "g"}}}};
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    known.push_back(
+        {name,
+         name,
+         "h",
+         {{"T.Uses", Verdict::kWrong, "1 m", "g"}, {"T.Right", Verdict::kWrong, "1 m", "g"}}});
+  const std::vector<ScoredTest> tests = {scored("T.One", 4, Verdict::kWrong, "f", "found: 2 m"),
+                                         scored("T.Uses", 2, Verdict::kWrong, "g", "found: 1 m"),
+                                         scored("T.Else", 1, Verdict::kWrong, "g", "found: 9 m"),
+                                         scored("T.Right", 1, Verdict::kRight, "g")};
+  const auto causes = causes_of(tests, known, "a1.cpp", "");
+  ASSERT_EQ(causes.size(), 2u);
+  EXPECT_EQ(causes[1].kind, Cause::Kind::kUnknown);
+  EXPECT_EQ(causes[1].tests, (std::vector<std::string>{"T.Uses", "T.Else"}));
+  EXPECT_EQ(causes[1].may_follow, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 1}}));
+  EXPECT_TRUE(causes[0].may_follow.empty());
+}
+
 TEST(Causes, TestsThatWereNotRunBelongToWhatUsedTheTimeWhichIsFirst) {
   std::vector<ScoredTest> tests = {
       scored("Force.Torque", 1, Verdict::kOutOfResources, "linear_acceleration", "no answer"),

@@ -117,6 +117,16 @@ TEST(Story, TellsMistakeAndCureApart) {
       << page.html();
 }
 
+// "(3, 4) (unit)" would call a vector of length 5 a unit vector.
+TEST(Story, CallsOnlyTheExpectedDirectionAUnitVector) {
+  report::Page page("T");
+  add_story(page, "  expected: (0.6, 0.8) (unit)\n  found:    (3, 4) (unit)", {});
+  EXPECT_NE(page.html().find("<dt>expected</dt><dd>(0.6, 0.8), of length 1</dd>\n"
+                             "<dt>found</dt><dd>(3, 4)</dd>"),
+            std::string::npos)
+      << page.html();
+}
+
 TEST(Story, IsTextInAPage) {
   report::Page page("T");
   add_story(page, "  found:    <b>6</b>, handouts/a1_impulse.md#eq-a1-9",

@@ -1,5 +1,6 @@
 // Pages: names and output of submissions are text on them, never markup.
 #include "framework/report/html.h"
+#include "framework/report/html_text.h"
 
 #include <gtest/gtest.h>
 
@@ -186,6 +187,15 @@ TEST(Page, ANumberWithAnExponentIsKeptTogetherInASentence) {
   Page story("T");
   story.fields({{"off by", "2 N s (allowed 3e-14 N s)"}});
   EXPECT_NE(story.html().find("<span class=\"unbroken\">3e-14</span> N s"), std::string::npos);
+}
+
+// Between its parts a formula may be broken: before "+ b", not behind the sign, and not in "(I w)".
+TEST(Page, AFormulaBreaksBetweenItsParts) {
+  EXPECT_EQ(formula_in_parts("a = tau - w x (I w) (A1.4)"),
+            "a =\u00a0tau -\u00a0w x (I\u00a0w) (A1.4)");
+  EXPECT_EQ(formula_in_parts("(a + [ b c ] + d)"), "(a +\u00a0[\u00a0b\u00a0c\u00a0] +\u00a0d)");
+  const std::string of_long_brackets = "(a word and another word of it)";
+  EXPECT_EQ(formula_in_parts(of_long_brackets), of_long_brackets);
 }
 
 TEST(Page, ALongNameBreaksBehindAnUnderscoreInAHeading) {

@@ -33,7 +33,14 @@ struct Cause {
   std::vector<FunctionInHeader> told = {};
   // other causes, by their places, and how many of the tests they fail, too: these need both mended
   std::vector<std::pair<std::size_t, std::size_t>> also_needed = {};
+  // where no mistake is known to give its answers: other causes, by their places, and in how many
+  // of its tests the mistake of that cause gives the answer that came
+  std::vector<std::pair<std::size_t, std::size_t>> may_follow = {};
 
+  /// Whether its tests fail with answers that none of the known mistakes of it gives.
+  bool has_no_known_answer() const {
+    return kind == Kind::kUnknown || (kind == Kind::kSlip && same_numbers == 0);
+  }
   /// Whether the code of a function is that around the line of a crash, which has an arrow.
   bool is_marked(std::size_t function) const {
     return function < code.size() &&

@@ -194,6 +194,30 @@ void add_also_needed(std::vector<Cause>& causes, const std::vector<AuditedSlip>&
     }
 }
 
+// Whether a slip gives the answer that came in this test.
+bool gives_answer(const AuditedSlip& slip, const Failure& came) {
+  return std::any_of(slip.fails.begin(), slip.fails.end(), [&](const Failure& fails) {
+    return fails.test == came.test && fails.verdict == came.verdict && !fails.found.empty() &&
+           is_same_answer(fails.found, came.found);
+  });
+}
+
+// A mistake in one function shows in others that use it. One answer alone, which many mistakes
+// give, is too little to explain a test by it; beside other evidence of the same mistake it counts.
+void add_may_follow(std::vector<Cause>& causes, const std::vector<AuditedSlip>& known,
+                    const std::vector<Failure>& failures) {
+  for (std::size_t other = 0; other < causes.size(); ++other)
+    for (const auto slips = slips_of(causes[other], known); Cause & cause : causes) {
+      if (&cause == &causes[other] || !cause.has_no_known_answer()) continue;
+      const auto n = std::count_if(failures.begin(), failures.end(), [&](const Failure& came) {
+        return std::find(cause.tests.begin(), cause.tests.end(), came.test) != cause.tests.end() &&
+               std::any_of(slips.begin(), slips.end(),
+                           [&](const AuditedSlip* slip) { return gives_answer(*slip, came); });
+      });
+      if (n > 0) cause.may_follow.emplace_back(other, static_cast<std::size_t>(n));
+    }
+}
+
 }  // namespace
 
 std::string lines_of_function(const std::string& source, int line) {
@@ -259,6 +283,7 @@ std::vector<Cause> causes_of(const std::vector<ScoredTest>& tests,
     return points_lost(a, tests) > points_lost(b, tests);
   });
   add_also_needed(causes, known);
+  add_may_follow(causes, known, failures);
   return causes;
 }
 

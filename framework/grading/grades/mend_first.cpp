@@ -9,6 +9,8 @@
 #include "framework/grading/grades/causes.h"
 #include "framework/grading/grades/scoring.h"
 #include "framework/grading/verdicts/plain_text.h"
+#include "framework/grading/verdicts/xray.h"
+#include "framework/report/html_text.h"
 
 namespace tumble::grading {
 namespace {
@@ -68,8 +70,17 @@ std::string evidence_of_two(const Cause& cause, std::size_t failing) {
       cause.alone[0], cause.alone[1]);
 }
 
+// Whether the story's equation marks how the wrong answer comes out.
+bool is_explained(const std::string& story) {
+  const std::vector<StoryTerm> terms = parts_of_story(story).terms;
+  return std::any_of(terms.begin(), terms.end(), [](const StoryTerm& term) {
+    return term.mark.find(kComesOut) != std::string::npos;
+  });
+}
+
 // How sure it is, in a sentence.
-std::string evidence_of(const Cause& cause, std::size_t failing) {
+// @param story  that the page shows below it
+std::string evidence_of(const Cause& cause, std::size_t failing, const std::string& story) {
   const std::size_t n = cause.tests.size();
   const std::string of_them = of_failed_tests(n, failing);
   switch (cause.kind) {
@@ -77,9 +88,11 @@ std::string evidence_of(const Cause& cause, std::size_t failing) {
       if (!cause.and_also.empty()) return evidence_of_two(cause, failing);
       if (cause.same_numbers == 0)
         return fmt::format(
-            "One way to fail {}: {}. But it gives other numbers than yours, so your mistake may be "
-            "another one.",
-            of_them, cause.says);
+            "One way to fail {}: {}. But {}.", of_them, cause.says,
+            is_explained(story)
+                ? "alone it gives other numbers than yours: the equation below marks how yours "
+                  "come out"
+                : "it gives other numbers than yours, so your mistake may be another one");
       if (cause.same_numbers == n)
         return fmt::format("This mistake alone explains {}, with the same wrong {}.", of_them,
                            n == 1 ? "answer" : "answers");
@@ -90,7 +103,8 @@ std::string evidence_of(const Cause& cause, std::size_t failing) {
       return fmt::format("{} not attempted, because this function is not written.",
                          n == 1 ? "One test was" : counted(n, "test") + " were");
     case Cause::Kind::kUnknown:
-      return fmt::format("In {} it was the function called last.", of_them);
+      if (cause.functions.empty()) return "";
+      return capitalised(fmt::format("{} called this function last.", of_them));
     default:
       return capitalised(fmt::format("{} {} in this way.", of_them, n == 1 ? "ends" : "end"));
   }
@@ -167,6 +181,22 @@ bool acts_in(const Cause& cause, const SceneMedia& scene) {
                      });
 }
 
+// Whether a cause before it is about the same functions of this run: that one costs more, and the
+// page says that both are to be read together.
+bool stands_under_another(std::size_t index, const Grade& grade, const SceneMedia& scene) {
+  const auto is_before = [&](const Cause& other) {
+    return std::all_of(grade.causes[index].functions.begin(), grade.causes[index].functions.end(),
+                       [&](const std::string& function) {
+                         return std::find(scene.functions.begin(), scene.functions.end(),
+                                          function) == scene.functions.end() ||
+                                std::find(other.functions.begin(), other.functions.end(),
+                                          function) != other.functions.end();
+                       });
+  };
+  return std::any_of(grade.causes.begin(), grade.causes.begin() + static_cast<long>(index),
+                     is_before);
+}
+
 // Causes whose functions a run called, by their places.
 std::vector<std::size_t> causes_in(const SceneMedia& scene, const Grade& grade) {
   std::vector<std::size_t> causes;
@@ -184,11 +214,15 @@ void add_scenes(report::Page& page, std::size_t index, const Grade& grade,
   std::string text;
   std::vector<report::Cell> links;
   for (const SceneMedia& scene : grade.media) {
-    if (!is_wrong(scene) || !acts_in(grade.causes[index], scene)) continue;
+    if (!is_wrong(scene) || !acts_in(grade.causes[index], scene) ||
+        stands_under_another(index, grade, scene))
+      continue;
     std::string others;
-    for (const std::size_t other : causes_in(scene, grade))
-      if (other != index) others += fmt::format("{}{}", others.empty() ? "" : ", ", other + 1);
-    if (others.empty() && !has_picture && !scene.picture.empty()) {
+    const std::vector<std::size_t> acting = causes_in(scene, grade);
+    for (const std::size_t other : acting)
+      if (other != index && !stands_under_another(other, grade, scene))
+        others += fmt::format("{}{}", others.empty() ? "" : ", ", other + 1);
+    if (acting.size() == 1 && !has_picture && !scene.picture.empty()) {
       page.figures({{std::filesystem::path("media") / scene.picture,
                      {},
                      scene.title + ": submission left, reference right",
@@ -206,6 +240,16 @@ void add_scenes(report::Page& page, std::size_t index, const Grade& grade,
   if (!text.empty()) fields.push_back({"scenes", text, links});
 }
 
+// A formula that the header continues in a line of its own, "   + b", goes on: a page breaks it
+// where it is wide.
+std::string formula_of(std::string formula) {
+  for (const char* operation : {"\n+ ", "\n- ", "\n/ "})
+    for (std::size_t at = formula.find(operation); at != formula.npos;
+         at = formula.find(operation, at))
+      formula[at] = ' ';
+  return report::formula_in_parts(formula);
+}
+
 // What the header says of the functions, and where the handout has more.
 void add_help(const Cause& cause, const PageView& view, std::vector<report::Field>& fields) {
   const bool is_new = cause.kind == Cause::Kind::kNotWritten;
@@ -218,7 +262,8 @@ void add_help(const Cause& cause, const PageView& view, std::vector<report::Fiel
   };
   for (std::size_t i = 0; i < cause.told.size(); ++i) {
     const FunctionInHeader& told = cause.told[i];
-    const std::string& words = is_new || told.formula.empty() ? told.purpose : told.formula;
+    const std::string words =
+        is_new || told.formula.empty() ? told.purpose : formula_of(told.formula);
     const bool is_one = cause.told.size() == 1 || words.empty();
     add(should_be, (is_one ? "" : cause.functions[i] + ":\n") + words, "\n");
     if (is_new) add(returns, told.returns, "\n");
@@ -236,6 +281,20 @@ std::string needs_of(const Cause& cause) {
   for (const auto& [other, n] : cause.also_needed)
     text += fmt::format("{}{} of its tests also {} cause {} mended.", text.empty() ? "" : " ", n,
                         n == 1 ? "needs" : "need", other + 1);
+  return text;
+}
+
+// "The mistake of cause 2 gives the same answer in 1 of its 3 tests."
+std::string may_follow_from(const Cause& cause) {
+  std::string text;
+  for (const auto& [other, n] : cause.may_follow)
+    text += fmt::format(
+        "{}The mistake of cause {} gives the same wrong {} in {}: mend that one first, this may "
+        "follow from it.",
+        text.empty() ? "" : " ", other + 1, n == 1 ? "answer" : "answers",
+        n < cause.tests.size() ? fmt::format("{} of its {} tests", n, cause.tests.size())
+        : n == 1               ? "its test"
+                               : fmt::format("all {} of its tests", n));
   return text;
 }
 
@@ -280,12 +339,18 @@ void add_cause(report::Page& page, std::size_t index, const Grade& grade, const 
   std::vector<report::Field> fields;
   add_help(cause, view, fields);
   add_scenes(page, index, grade, fields);
-  if (!cause.tests.empty()) page.paragraph(evidence_of(cause, failing(grade)));
+  const ScoredTest* shown = test_to_show(cause, grade);
+  const std::string evidence =
+      cause.tests.empty()
+          ? ""
+          : evidence_of(cause, failing(grade), shown == nullptr ? "" : shown->result.story);
+  if (!evidence.empty()) page.paragraph(evidence);
   if (!cause.or_else.empty())
     page.paragraph(fmt::format("As well possible{}: {}.",
                                cause.and_also.empty() ? "" : " in place of the second",
                                fmt::join(cause.or_else, "; or ")));
-  for (const std::string& more : {needs_of(cause), same_function(index, grade)})
+  for (const std::string& more :
+       {may_follow_from(cause), needs_of(cause), same_function(index, grade)})
     if (!more.empty()) page.paragraph(more);
   if (!fields.empty()) page.fields(fields);
   if (const std::string places = places_of(cause); !places.empty())
@@ -306,7 +371,6 @@ void add_cause(report::Page& page, std::size_t index, const Grade& grade, const 
         "{} functions that ask {}: what they give probably follows from it. Mend this first.",
         n == 1 ? "One more test fails, of" : counted(n, "more test") + " fail, of",
         cause.functions.empty() ? "this one" : plain_name(cause.functions.front())));
-  const ScoredTest* shown = test_to_show(cause, grade);
   if (shown != nullptr && !shown->result.story.empty() && cause.kind != Cause::Kind::kNotWritten) {
     page.paragraph("For example, " + shown->item.title + ":", Look::kMuted);
     add_story(page, shown->result.story, view);

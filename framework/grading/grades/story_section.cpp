@@ -14,6 +14,7 @@
 #include "framework/core/math.h"
 #include "framework/grading/verdicts/mend_order.h"
 #include "framework/grading/verdicts/plain_text.h"
+#include "framework/report/html_text.h"
 #include "framework/report/ticks.h"
 
 namespace tumble::grading {
@@ -128,6 +129,16 @@ std::string name_in_page(const std::string& name) {
   return name;
 }
 
+// "(0.6, 0.8) (unit)" of a direction. What was found may be of any length, and is called no unit
+// vector.
+std::string without_unit_mark(const report::Field& field) {
+  constexpr std::string_view kUnitVector = " (unit)";
+  if ((field.name != "expected" && field.name != "found") || !field.text.ends_with(kUnitVector))
+    return field.text;
+  return field.text.substr(0, field.text.size() - kUnitVector.size()) +
+         (field.name == "expected" ? ", of length 1" : "");
+}
+
 // Fields of one scene each: a test may tell of up to three.
 std::vector<std::vector<report::Field>> cases_of(const std::vector<report::Field>& fields) {
   std::vector<std::vector<report::Field>> cases(1);
@@ -140,7 +151,7 @@ std::vector<std::vector<report::Field>> cases_of(const std::vector<report::Field
       cases.back().push_back({name_in_page(field.name), parts.mistake, field.links});
       if (!parts.cure.empty()) cases.back().push_back({"remember", parts.cure, field.links});
     } else {
-      cases.back().push_back({name_in_page(field.name), field.text, field.links});
+      cases.back().push_back({name_in_page(field.name), without_unit_mark(field), field.links});
     }
   }
   return cases;
@@ -164,7 +175,7 @@ void add_terms(report::Page& page, const StoryParts& parts) {
     table.rows.push_back(
         {{term.name},
          {fmt::format("{}", fmt::join(report::wrapped(term.value, kLetters), "\n"))},
-         {term.mark, "", report::Look::kBad}});
+         {report::formula_in_parts(term.mark), "", report::Look::kBad}});
   // a column of marks only where there is one
   if (std::all_of(parts.terms.begin(), parts.terms.end(),
                   [](const StoryTerm& term) { return term.mark.empty(); })) {
@@ -237,7 +248,8 @@ void add_story(report::Page& page, const std::string& story, const PageView& vie
   // the x-ray is of the first failure, and stands with it
   auto cases = cases_of(parts.fields);
   if (!parts.equation.empty())
-    cases.front().push_back({std::string(kXray), number_first(parts.equation)});
+    cases.front().push_back(
+        {std::string(kXray), report::formula_in_parts(number_first(parts.equation))});
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (cases.size() > 1) page.heading(fmt::format("Case {} of {}", i + 1, cases.size()), 4);
     if (!cases[i].empty()) page.fields(cases[i]);

@@ -89,7 +89,7 @@ std::map<std::size_t, std::string> variants_found(const Xray& xray) {
   }
   bool is_first = true;
   for (auto& [term, mark] : marks) {
-    mark = (is_first ? "your answer comes out " : "or it comes out ") + mark;
+    mark = (is_first ? kComesOut : "or it comes out ") + mark;
     is_first = false;
   }
   return marks;

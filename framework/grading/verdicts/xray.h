@@ -55,6 +55,9 @@ struct Xray {
   std::function<std::string(const VectorXd&)> words = {};
 };
 
+/// How a mark begins that says which wrong variant of a term gives the answer that came.
+inline constexpr const char* kComesOut = "your answer comes out ";
+
 /// Whether a call was answered, and asked, as its equation says, to round-off: then another call is
 /// the wrong one, and there is nothing to show.
 bool is_answered_rightly(const Xray& xray);
