@@ -1,6 +1,10 @@
 #include "framework/report/engines_model.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -65,6 +69,41 @@ Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
     }
   }
   return plot;
+}
+
+std::string place_beside_model(const std::vector<std::vector<EngineRow>>& ladder) {
+  std::vector<std::pair<std::string, std::pair<double, double>>> ranges;  // by engine, in order
+  for (const auto& rows : ladder) {
+    const double w = discontinuities_a_body(rows);
+    for (const EngineRow& row : rows) {
+      const auto model = ran(row) && w > 0
+                             ? modelled_integrations(row.engine, row.bodies, w, row.step_s)
+                             : std::nullopt;
+      if (!model) continue;
+      const double ratio = measured_integrations(row) / *model;
+      std::string engine = row.engine;
+      for (char& letter : engine) letter = static_cast<char>(std::toupper(letter));
+      const auto known = std::find_if(ranges.begin(), ranges.end(),
+                                      [&](const auto& range) { return range.first == engine; });
+      if (known == ranges.end()) {
+        ranges.push_back({engine, {ratio, ratio}});
+      } else {
+        known->second.first = std::min(known->second.first, ratio);
+        known->second.second = std::max(known->second.second, ratio);
+      }
+    }
+  }
+  std::string text;
+  for (const auto& [engine, range] : ranges) {
+    const auto [least, most] = range;
+    const std::string from = fmt::format("{:.2f}", least), to = fmt::format("{:.2f}", most);
+    text += fmt::format("{} {} {}, {}", text.empty() ? " Counted over model here:" : ";", engine,
+                        from == to ? from : from + " to " + to,
+                        least > 1.0   ? "above it"
+                        : most <= 1.0 ? "below it"
+                                      : "on both sides of it");
+  }
+  return text.empty() ? "" : text + '.';
 }
 
 Table table_of_model(const std::vector<std::vector<EngineRow>>& ladder) {

@@ -33,6 +33,9 @@ double discontinuities_a_body(const std::vector<EngineRow>& rows);
 /// Integrations per simulated second against n: measured, with marks, and by the model at the w of
 /// each size.
 Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder);
+/// " Counted over model here: RD 1.11 to 1.39, above it; TW 0.41 to 0.43, below it.": a sentence
+/// with what the plot shows; empty where nothing is in it.
+std::string place_beside_model(const std::vector<std::vector<EngineRow>>& ladder);
 /// The same as a table: one row per size and engine; the last column is measured / model.
 Table table_of_model(const std::vector<std::vector<EngineRow>>& ladder);
 

@@ -175,7 +175,23 @@ TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
                             "Average integration step", "The model of cost", "first 5 collisions",
                             "--full", "TW, ignoring each other", "timewarp does 1/"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
-  EXPECT_EQ(table_of_scenes({fine, failed}).rows[0][5].text, "30");
+  const Table table = table_of_scenes({fine, failed});
+  EXPECT_EQ(table.rows[0][5].text, "30");
+  EXPECT_EQ(table.rows[0][6].text, "25");  // integrations, beside what the model expects of them
+  EXPECT_EQ(table.columns[7].name, "by the model");
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size());
+}
+
+// By hand: 100 bodies of 6 discontinuities a second, h = 1/30 s: lambda h = 10, so RD's model is
+// 100 * 300 * 2 = 60,000 a second, and 100,000 in 2 s were counted: 0.83.
+TEST(TablesOfEngines, SayOnWhichSideOfTheModelTheEnginesLie) {
+  const std::vector<EngineRow> below = {row_of("rd", "RD-1/30", 100, 0.2, 100000)};
+  std::vector<EngineRow> above = {row_of("rd", "RD-1/30", 100, 0.2, 150000)};
+  EXPECT_EQ(place_beside_model({below}), " Counted over model here: RD 0.83, below it.");
+  EXPECT_EQ(place_beside_model({above}), " Counted over model here: RD 1.25, above it.");
+  EXPECT_EQ(place_beside_model({below, above}),
+            " Counted over model here: RD 0.83 to 1.25, on both sides of it.");
+  EXPECT_EQ(place_beside_model({}), "");
 }
 
 }  // namespace
