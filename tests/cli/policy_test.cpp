@@ -520,5 +520,22 @@ TEST(SimilarPairs, FindACopyWithOtherNamesAndLeaveOutTheStarter) {
   EXPECT_GT(pairs[0].runs[0].a_first, 40u) << "line numbers are those of the whole file";
 }
 
+// A long part is cut, and pairs behind the first ones have no part of the page: it says so.
+TEST(SimilarPage, SaysWhatItDoesNotShow) {
+  std::string text;
+  for (int i = 0; i < 90; ++i) text += "line\n";
+  const std::vector<NamedSource> sources = {{"ada", text}, {"bo", text}, {"cid", text}};
+  SimilarPair pair{0, 1, 90, {{1, 80, 3, 82, 500}}};
+  const std::string html = similar_page({}, sources, {pair, {1, 2, 40, {}}}, "").html();
+  EXPECT_NE(html.find("40 more lines of this part are not shown: it ends in line 80 of ada and in "
+                      "line 82 of bo."),
+            std::string::npos)
+      << html;
+  EXPECT_NE(html.find("Of the one pair that is most alike."), std::string::npos) << html;
+  pair.runs = {{1, 5, 3, 7, 50}};
+  const std::string whole = similar_page({}, sources, {pair}, "").html();
+  EXPECT_EQ(whole.find("not shown"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tumble::grading::policy_test

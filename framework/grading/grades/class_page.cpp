@@ -213,7 +213,7 @@ void add_pair(report::Page& page, const NamedSource& a, const NamedSource& b,
                3, pair_id(pair));
   for (std::size_t r = 0; r < std::min(kMostRuns, pair.runs.size()); ++r) {
     const SimilarRun& run = pair.runs[r];
-    report::Table table{fmt::format("{} tokens", run.tokens),
+    report::Table table{fmt::format("{} words and signs alike in a row", run.tokens),
                         {{"", true}, {plain_name(a.name)}, {"", true}, {plain_name(b.name)}},
                         {}};
     const std::size_t length = std::max(run.a_last - run.a_first, run.b_last - run.b_first) + 1;
@@ -226,7 +226,18 @@ void add_pair(report::Page& page, const NamedSource& a, const NamedSource& b,
                             cell(run.b_first + i, run.b_last),
                             {run.b_first + i > run.b_last ? "" : line_of(right, run.b_first + i)}});
     page.table(table);
+    if (length > kMostLines)
+      page.paragraph(fmt::format("{} of this part {} not shown: it ends in line {} of {} and in "
+                                 "line {} of {}.",
+                                 counted(length - kMostLines, "more line"),
+                                 length - kMostLines == 1 ? "is" : "are", run.a_last,
+                                 plain_name(a.name), run.b_last, plain_name(b.name)),
+                     Look::kMuted);
   }
+  if (pair.runs.size() > kMostRuns)
+    page.paragraph(counted(pair.runs.size() - kMostRuns, "more part") +
+                       " that are alike, all shorter, are not shown.",
+                   Look::kMuted);
 }
 
 }  // namespace
@@ -328,6 +339,13 @@ report::Page similar_page(const modules::ModuleKind& kind, const std::vector<Nam
     page.paragraph(fmt::format("The first {} are listed.", kMost), Look::kMuted);
   page.table(table);
   page.heading("Side by side");
+  const auto beside = std::count_if(pairs.begin(), pairs.end(),
+                                    [](const SimilarPair& pair) { return !pair.runs.empty(); });
+  if (beside > 0 && static_cast<std::size_t>(beside) < pairs.size())
+    page.paragraph(beside == 1 ? std::string("Of the one pair that is most alike.")
+                               : fmt::format("Of the {} that are most alike.",
+                                             counted(static_cast<std::size_t>(beside), "pair")),
+                   Look::kMuted);
   for (const SimilarPair& pair : pairs)
     if (!pair.runs.empty()) add_pair(page, sources[pair.a], sources[pair.b], pair);
   page.record(version_in_words(kProgramVersion));
