@@ -169,31 +169,40 @@ std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const 
       path, colour_of(place), width_of(place), dashes_of(place), marks);
 }
 
+constexpr const char* kLimitStroke =
+    "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"";
+
 // Below the name of the axis, in rows; a name too long for one goes on in the next.
-std::string legend(const Plot& plot, const Sheet& sheet, double& bottom) {
+// @param limits  names of limits that have no room at their lines
+std::string legend(const Plot& plot, const std::vector<std::string>& limits, const Sheet& sheet,
+                   double& bottom) {
   constexpr double kKey = 34, kGap = 10;
   std::string svg;
   double x = sheet.left, y = bottom + 22;
   const double right = sheet.right;
   const auto most = static_cast<std::size_t>((right - sheet.left - kKey) / kLetter);
-  for (std::size_t i = 0; i < plot.curves.size(); ++i) {
-    if (plot.curves[i].name.empty()) continue;
-    const std::vector<std::string> lines = wrapped(plot.curves[i].name, most);
-    const double width =
-        kKey + kGap + kMeanLetter * static_cast<double>(plot.curves[i].name.size());
+  const auto add = [&](const std::string& name, const std::string& stroke, auto mark_at) {
+    const std::vector<std::string> lines = wrapped(name, most);
+    const double width = kKey + kGap + kMeanLetter * static_cast<double>(name.size());
     if (x > sheet.left && x + width > right) {
       x = sheet.left;
       y += kTextHeight;
     }
-    svg += line(x, y - 4, x + 28, y - 4,
-                fmt::format("stroke=\"{}\" stroke-width=\"{}\"{}", colour_of(i), width_of(i) + 0.6,
-                            dashes_of(i)));
-    if (points_a_mark(plot.curves[i], plot) > 0) svg += mark(x + 14, y - 4, i);
+    svg += line(x, y - 4, x + 28, y - 4, stroke) + mark_at(x + 14, y - 4);
     svg += text(x + kKey, y, lines.front(), "start");
     for (std::size_t k = 1; k < lines.size(); ++k)
       svg += text(x + kKey, y += kTextHeight, lines[k], "start");
     x += width;
-  }
+  };
+  for (std::size_t i = 0; i < plot.curves.size(); ++i)
+    if (!plot.curves[i].name.empty())
+      add(plot.curves[i].name,
+          fmt::format("stroke=\"{}\" stroke-width=\"{}\"{}", colour_of(i), width_of(i) + 0.6,
+                      dashes_of(i)),
+          [&](double at_x, double at_y) {
+            return points_a_mark(plot.curves[i], plot) > 0 ? mark(at_x, at_y, i) : "";
+          });
+  for (const std::string& name : limits) add(name, kLimitStroke, [](double, double) { return ""; });
   if (!svg.empty()) bottom = y + 10;
   return svg;
 }
@@ -312,27 +321,24 @@ std::size_t drawn_in(const Box& box, const Plot& plot, const Scaled& x, const Sc
   return parts;
 }
 
-// The name of a limit stands above its line at the right, or where it hides less of the curves.
+// The name of a limit stands above its line at the right, or where it hides none of the curves;
+// empty: it would hide some of them everywhere.
 std::string name_of(const Limit& limit, const Plot& plot, const Sheet& sheet, const Scaled& x,
                     const Scaled& y) {
   constexpr double kInside = 5, kAbove = 5, kBelow = 15, kHeight = 14;
   const double at = y(limit.y),
                width = kMeanLetter * static_cast<double>(limit.name.size()) + kInside;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  std::string best;
   for (const double base : {at - kAbove, at + kBelow})
     for (const bool is_right : {true, false}) {
       const double edge = is_right ? sheet.right - kInside : sheet.left + kInside;
       const Box box{is_right ? edge - width : edge, is_right ? edge : edge + width, base - kHeight,
                     base + kInside};
-      if (box.top < sheet.top || base > sheet.bottom - 1) continue;
-      const std::size_t hidden = drawn_in(box, plot, x, y);
-      if (hidden >= least) continue;
-      least = hidden;
-      best = text(edge, base, limit.name, is_right ? "end" : "start",
-                  " fill=\"#a82c00\" class=\"halo\"");
+      if (box.top < sheet.top || base > sheet.bottom - 1 || box.left < sheet.left) continue;
+      if (drawn_in(box, plot, x, y) == 0)
+        return text(edge, base, limit.name, is_right ? "end" : "start",
+                    " fill=\"#a82c00\" class=\"halo\"");
     }
-  return best;
+  return "";
 }
 
 std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& sheet) {
@@ -346,12 +352,14 @@ std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& shee
       "stroke=\"#5b6875\"/>\n",
       sheet.left, sheet.top, sheet.right - sheet.left, sheet.bottom - sheet.top);
   std::string names;  // above the curves
+  std::vector<std::string> without_room;
   for (const Limit& limit : plot.limits) {
     if (!drawable(limit.y, plot.y.scale)) continue;
     const double at = y(limit.y);
-    body += line(sheet.left, at, sheet.right, at,
-                 "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"");
-    names += name_of(limit, plot, sheet, x, y);
+    body += line(sheet.left, at, sheet.right, at, kLimitStroke);
+    const std::string name = name_of(limit, plot, sheet, x, y);
+    if (name.empty()) without_room.push_back(limit.name);
+    names += name;
   }
   for (std::size_t i = 0; i < plot.curves.size(); ++i)
     body += draw(thinned(plot.curves[i], sheet.parts), i, plot, x, y);
@@ -361,7 +369,7 @@ std::string drawn_on(const Plot& plot, const PlotFrame& frame, const Sheet& shee
   double bottom = sheet.bottom + 19;
   for (const std::string& words : wrapped(words_of(plot.x), sheet.letters(kLetter)))
     body += text(middle, bottom += kTextHeight, words, "middle");
-  body += legend(plot, sheet, bottom);
+  body += legend(plot, without_room, sheet, bottom);
   body += covering(plot, sheet, bottom);
   return fmt::format(
       "<svg class=\"plot{}\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n"

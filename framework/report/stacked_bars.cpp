@@ -15,7 +15,7 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kBar = 17, kTextHeight = 17;
+constexpr double kBar = 17, kTextHeight = 17, kNameHeight = 13;
 constexpr double kLetter = 6.2;  // mean width of a letter
 constexpr double kLegendLetter = 6.6, kTitleLetter = 8.7;
 
@@ -74,15 +74,22 @@ std::string text(double x, double y, const std::string& words, const char* ancho
                      anchor, more, html_escape(words));
 }
 
-/// At the left of its bar in a font small enough to fit, or above it.
+// At the left of a bar, in letters of one size.
+std::vector<std::string> lines_of(const std::string& name, const BarSheet& sheet) {
+  return wrapped(name, static_cast<std::size_t>((sheet.left - 12) / kLetter));
+}
+
+/// At the left of its bar, in two lines where it is long, or above it.
 std::string name_of(const StackedBars::Row& row, double y, const BarSheet& sheet) {
   if (sheet.is_narrow) return text(sheet.left, y - 5, row.name, "start");
-  const double left = sheet.left;
-  const double size =
-      std::min(11.5, 11.5 * (left - 12) /
-                         (kLetter * std::max<double>(1.0, static_cast<double>(row.name.size()))));
-  return text(left - 7, y + 0.5 * kBar + 4, row.name, "end",
-              fmt::format(" font-size=\"{:.3g}\"", size));
+  const std::vector<std::string> lines = lines_of(row.name, sheet);
+  std::string svg;
+  double at = y + 0.5 * kBar + 4 - 0.5 * kNameHeight * static_cast<double>(lines.size() - 1);
+  for (const std::string& line : lines) {
+    svg += text(sheet.left - 7, at, line, "end");
+    at += kNameHeight;
+  }
+  return svg;
 }
 
 bool is_whole(double value) { return value == std::round(value); }
@@ -209,7 +216,11 @@ std::string bars_on(const StackedBars& bars, const BarSheet& sheet, const std::s
 }  // namespace
 
 std::string svg_of(const StackedBars& bars, int number) {
-  return bars_on(bars, sheet_of(bars), std::to_string(number));
+  BarSheet sheet = sheet_of(bars);
+  for (const StackedBars::Row& row : bars.rows)
+    sheet.row = std::max(sheet.row,
+                         4 + kNameHeight * static_cast<double>(lines_of(row.name, sheet).size()));
+  return bars_on(bars, sheet, std::to_string(number));
 }
 
 std::string narrow_svg_of(const StackedBars& bars, int number) {

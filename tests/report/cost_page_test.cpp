@@ -116,6 +116,21 @@ TEST(CostPage, ShowsSharesOfTheTimeInPercent) {
   EXPECT_NE(html.find(">75<"), std::string::npos);
   EXPECT_NE(html.find(">25<"), std::string::npos);
   EXPECT_EQ(html.find(">impulses<"), std::string::npos);  // a stage without time is left out
+  EXPECT_EQ(html.find("Recording keeps"), std::string::npos);
+}
+
+// A share of 1 % has no number in its bar.
+TEST(CostPage, SaysWhichShareOfCpuTimeRecordingTakes) {
+  CostCurve curve = counting("RK4", "");
+  curve.times = {0.0, 1.0};
+  curve.energy_errors = {0.0, 1e-6};
+  curve.stage_seconds = {{"integration", 0.099}, {"recording", 0.001}};
+  EXPECT_NE(written(page_of({curve})).find("Every CPU time on this page holds it: 1 % of these"),
+            std::string::npos);
+  CostCurve other = curve;
+  other.stage_seconds = {{"integration", 0.04}, {"recording", 0.06}};
+  EXPECT_NE(written(page_of({curve, other})).find("holds it: 1 to 60 % of these runs."),
+            std::string::npos);
 }
 
 }  // namespace

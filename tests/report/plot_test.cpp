@@ -170,6 +170,23 @@ TEST(Plots, NameALimitWhereItHidesNoCurve) {
   EXPECT_STREQ(place_of_name({3, 2, 1.5, 1.1}), "left");
 }
 
+// Curves at both ends, above the line and below it: the name stands in the legend, with a key.
+TEST(Plots, NameALimitInTheLegendWhereItWouldHideCurvesEverywhere) {
+  const Plot plot{"t",
+                  {"x"},
+                  {"y"},
+                  {{"c", {0, 1, 2, 3}, {1.05, 1.05, 1.05, 1.05}, true},
+                   {"d", {0, 1, 2, 3}, {0.95, 0.95, 0.95, 0.95}, true},
+                   {"e", {0, 3}, {0, 2}}},
+                  {{1.0, "limit"}}};
+  for (const std::string& svg : {svg_of(plot), narrow_svg_of(plot)}) {
+    EXPECT_EQ(count(svg, ">limit<"), 1u) << svg;
+    EXPECT_EQ(svg.find("class=\"halo\""), std::string::npos) << svg;
+    EXPECT_GT(svg.find(">limit<"), svg.find(">e<")) << svg;         // behind the curves' names
+    EXPECT_EQ(count(svg, "stroke-dasharray=\"12 4\""), 2u) << svg;  // at its value, and in its key
+  }
+}
+
 // Errors that come close to the error of their reference everywhere leave room only below its line.
 // Numbers of a drawing grow downwards.
 TEST(Plots, NameALimitUnderAllCurvesBelowItsLine) {
@@ -242,6 +259,20 @@ TEST(StackedBars, NumberSmallPartsWithDecimalsAndCountsInWholeNumbers) {
       svg_of(StackedBars{"t", {"submissions"}, {"a"}, {{"0 to 10 %", {1}}, {"to 100 %", {2}}}});
   EXPECT_EQ(submissions.find(">0.5<"), std::string::npos) << submissions;
   EXPECT_EQ(count(submissions, ">2<"), 2u) << submissions;  // at the axis and in the bar
+}
+
+// Shrunk to the room at the left a long name could not be read.
+TEST(StackedBars, ALongNameHasTwoLinesOfTheSameLettersAsAShortOne) {
+  const std::string svg =
+      svg_of(StackedBars{"t",
+                         {"share", "%"},
+                         {"a"},
+                         {{"Euler, 1/60 s", {60}},
+                          {"Dormand-Prince 5(4), joint coordinates, tolerance 1e-12", {40}}}});
+  EXPECT_EQ(count(svg, ">Euler, 1/60 s<"), 1u) << svg;
+  EXPECT_EQ(count(svg, ">Dormand-Prince 5(4), joint<"), 1u) << svg;
+  EXPECT_EQ(count(svg, ">coordinates, tolerance 1e-12<"), 1u) << svg;
+  EXPECT_EQ(count(svg, "font-size"), 1u) << svg;  // of the title
 }
 
 TEST(StackedBars, EightPartsHaveEightFills) {
