@@ -239,6 +239,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   info.impulse_source = laws.impulse_source;
   info.integrator_source = laws.integrator_source;
   info.constraint_source = laws.constraint_source;
+  if (options.engine == "tw") info.scheduling_source = laws.scheduling_source;
   if (!laws.link_solver.empty()) info.constraint_source += ", links by " + laws.link_solver;
   if (!laws.contact_solver.empty())
     info.constraint_source += ", contacts by " + laws.contact_solver;

@@ -21,15 +21,6 @@ std::string engine_name(const std::string& id) {
   return id.empty() ? "unknown engine" : id;
 }
 
-std::string made_by(const TrajectoryInfo& info) {
-  std::string text = engine_name(info.engine) + ", step " + step_in_words(info.step_s) + " s";
-  if (!info.impulse_source.empty() && info.impulse_source != "none")
-    text += " · impulses: " + info.impulse_source;
-  if (!info.integrator_source.empty() && info.integrator_source != "none")
-    text += " · motion: " + info.integrator_source;
-  return text;
-}
-
 /// Text in one line, or in two where it is too wide; the second is cut where it does not fit.
 std::vector<std::string> in_lines(const TextWriter& writer, const std::string& text, double size,
                                   double room, bool bold) {
@@ -44,6 +35,18 @@ std::vector<std::string> in_lines(const TextWriter& writer, const std::string& t
 }
 
 }  // namespace
+
+std::string made_by(const TrajectoryInfo& info) {
+  std::string text = engine_name(info.engine) + ", step " + step_in_words(info.step_s) + " s";
+  const auto add = [&](const char* what, const std::string& source) {
+    if (!source.empty() && source != "none") text += fmt::format(" · {}: {}", what, source);
+  };
+  add("scheduler", info.scheduling_source);
+  add("impulses", info.impulse_source);
+  add("motion", info.integrator_source);
+  add("constraints", info.constraint_source);
+  return text;
+}
 
 std::string time_text(const Trajectory& run, std::size_t frame) {
   // of log10: frames 0.01 s apart need two decimals, whatever the rounding of their times

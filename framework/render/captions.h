@@ -12,6 +12,10 @@ namespace tumble::render {
 /// kTimeOnly is for the views of a sheet: labels, the time, and what stopped the run.
 enum class Words { kAll, kTimeOnly };
 
+/// "timewarp, step 1/10 s · scheduler: submission · impulses: reference": the engine, and whose laws
+/// it ran on, those that the scene needs.
+std::string made_by(const TrajectoryInfo& info);
+
 /// "t = 0.25 s": at least two decimals, and so many that successive frames have different times
 /// (nine at most).
 /// @pre the run has a frame

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <ft2build.h>
 #include FT_FREETYPE_H
@@ -57,6 +60,53 @@ void stamp(Image& image, const FT_Bitmap& letter, int left, int top, const Ink& 
         blend(image.pixel(x, y), ink, opacity * coverage / 255.0);
     }
   }
+}
+
+// Relative luminance of sRGB [0, 1], and contrast as WCAG 2.1 defines them.
+double luminance(const double* rgb) {
+  double sum = 0.0;
+  constexpr double kShare[] = {0.2126, 0.7152, 0.0722};
+  for (int i = 0; i < 3; ++i) {
+    const double c = rgb[i] / 255.0;
+    sum += kShare[i] * (c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+  }
+  return sum;
+}
+
+double contrast(double light, double dark) { return (light + 0.05) / (dark + 0.05); }
+
+constexpr Ink kLight{250, 251, 252, 0.0};  // of outlines and plates
+constexpr double kLegible = 4.5;           // contrast that WCAG 2.1 asks of text
+constexpr double kDarkPart = 0.1;          // of the pixels behind a text: darker ones do not count
+
+// Lightens what is behind a text, as far as it takes to read it. Nothing on a light background.
+void lay_plate(Image& image, double left, double top, double right, double bottom, const Ink& ink) {
+  const int x0 = std::clamp(static_cast<int>(std::floor(left)), 0, image.width),
+            x1 = std::clamp(static_cast<int>(std::ceil(right)), 0, image.width),
+            y0 = std::clamp(static_cast<int>(std::floor(top)), 0, image.height),
+            y1 = std::clamp(static_cast<int>(std::ceil(bottom)), 0, image.height);
+  if (x0 >= x1 || y0 >= y1) return;
+  std::vector<std::pair<double, const std::uint8_t*>> behind;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const std::uint8_t* pixel = image.pixel(x, y);
+      const double rgb[] = {double(pixel[0]), double(pixel[1]), double(pixel[2])};
+      behind.emplace_back(luminance(rgb), pixel);
+    }
+  const auto dark = behind.begin() + static_cast<long>(kDarkPart * double(behind.size()));
+  std::nth_element(behind.begin(), dark, behind.end());
+  const double of_ink[] = {double(ink.red), double(ink.green), double(ink.blue)};
+  const std::uint8_t* pixel = dark->second;
+  double opacity = 0.0;
+  for (constexpr double kStep = 0.05; opacity < 1.0; opacity += kStep) {
+    const double mixed[] = {pixel[0] + (kLight.red - pixel[0]) * opacity,
+                            pixel[1] + (kLight.green - pixel[1]) * opacity,
+                            pixel[2] + (kLight.blue - pixel[2]) * opacity};
+    if (contrast(luminance(mixed), luminance(of_ink)) >= kLegible) break;
+  }
+  if (opacity == 0.0) return;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) blend(image.pixel(x, y), kLight, std::min(opacity, 1.0));
 }
 
 }  // namespace
@@ -118,7 +168,10 @@ std::string TextWriter::fitted(const std::string& text, double size, double room
 
 void TextWriter::write(Image& image, const std::string& text, double x, double baseline,
                        double size, const Ink& ink, Align align, bool bold) const {
-  if (align != Align::kLeft) x -= width(text, size, bold) * (align == Align::kCentre ? 0.5 : 1.0);
+  const double wide = width(text, size, bold);
+  if (align != Align::kLeft) x -= wide * (align == Align::kCentre ? 0.5 : 1.0);
+  const double beside = 0.2 * size, above = 0.95 * size, below = 0.3 * size;
+  lay_plate(image, x - beside, baseline - above, x + wide + beside, baseline + below, ink);
   const auto draw = [&](const Ink& color, double opacity, int dx, int dy) {
     fonts_->walk(text, size, bold, [&](FT_GlyphSlot slot, double pen) {
       const double place = x + pen, whole = std::floor(place);
@@ -130,10 +183,9 @@ void TextWriter::write(Image& image, const std::string& text, double x, double b
     });
   };
   if (ink.halo > 0.0) {
-    const Ink light{250, 251, 252, 0.0};
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
-        if (dx != 0 || dy != 0) draw(light, ink.halo * 0.35, dx, dy);
+        if (dx != 0 || dy != 0) draw(kLight, ink.halo * 0.35, dx, dy);
   }
   draw(ink, 1.0, 0, 0);
 }

@@ -24,7 +24,7 @@ class TextWriter {
   TextWriter();
   ~TextWriter();
 
-  /// Writes one line.
+  /// Writes one line. Where it could not be read on what is behind it, that is lightened.
   /// @param text         UTF-8
   /// @param x, baseline  position [pixels]
   /// @param size         height of the font [pixels]

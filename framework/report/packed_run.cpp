@@ -75,6 +75,7 @@ class RunPacker {
                    {"impulses", run_.info.impulse_source},
                    {"motion", run_.info.integrator_source},
                    {"constraints", run_.info.constraint_source},
+                   {"scheduler", run_.info.scheduling_source},
                    {"stopped", run_.stopped_by},
                    {"faults", in_words(run_.counters.faults)},
                    {"frames", frames_.size()},

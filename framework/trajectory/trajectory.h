@@ -120,6 +120,7 @@ struct TrajectoryInfo {
   // module that provides springs, rods and contact forces, what solves for links and contacts in
   // its place, and whose the listed laws of other effects are; "none" where the scene needs none
   std::string constraint_source{};
+  std::string scheduling_source{};  // module that schedules a timewarp; not kept in files
 };
 
 struct Trajectory {

@@ -1,9 +1,13 @@
 // Pictures: the same run gives the same bytes; pixel and ray are consistent.
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -99,6 +103,46 @@ TEST(Picture, RunWithoutFramesIsRefused) {
   Trajectory run = ball_at(2.0);
   run.frames.clear();
   EXPECT_THROW(make_picture(falling_ball(), run, 0.0, small()), UserError);
+}
+
+// Two films of one scene differ by one of these: it must stand in their words.
+TEST(Captions, NameEveryModuleThatTheRunAsked) {
+  TrajectoryInfo info;
+  info.engine = "tw";
+  info.step_s = 0.1;
+  info.scheduling_source = "submission";
+  info.impulse_source = info.integrator_source = "reference";
+  info.constraint_source = "none";
+  EXPECT_EQ(made_by(info),
+            "timewarp, step 1/10 s · scheduler: submission · impulses: reference · motion: "
+            "reference");
+  info.scheduling_source = "none";
+  info.constraint_source = "submission";
+  EXPECT_NE(made_by(info).find("motion: reference · constraints: submission"), std::string::npos);
+}
+
+double luminance_of(const std::uint8_t* pixel) {
+  double sum = 0.0;
+  for (const auto& [i, share] : {std::pair(0, 0.2126), {1, 0.7152}, {2, 0.0722}})
+    sum += share * std::pow((pixel[i] / 255.0 + 0.055) / 1.055, 2.4);
+  return sum;
+}
+
+// WCAG 2.1 asks for a contrast of 4.5. Without a plate the soft ink has 1.1 on a grey of 60.
+TEST(TextWriter, CanBeReadOnADarkGroundAndLeavesALightOneAsItIs) {
+  const TextWriter writer;
+  for (const std::uint8_t grey : {60, 250}) {
+    Image image(200, 40);
+    std::fill_n(image.pixel(0, 0), 200 * 40 * 3, grey);
+    writer.write(image, "timewarp", 50, 25, 11, kSoft);
+    double darkest = 1.0;
+    for (int x = 50; x < 100; ++x)
+      for (int y = 15; y < 28; ++y) darkest = std::min(darkest, luminance_of(image.pixel(x, y)));
+    const double beside = luminance_of(image.pixel(49, 27));  // of the plate: no letter is there
+    EXPECT_GE((beside + 0.05) / (darkest + 0.05), 4.4) << int(grey);  // rounded to whole steps
+    EXPECT_EQ(*image.pixel(49, 27) == grey, grey == 250);
+    EXPECT_EQ(*image.pixel(20, 27), grey);
+  }
 }
 
 TEST(Camera, RayThroughTheImageOfAPointHitsThePoint) {

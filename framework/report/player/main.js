@@ -249,14 +249,21 @@ function firstLine(text) { return text.split('\n', 1)[0]; }
 function addWords(player, picture) {
   const labels = [];
   player.runs.forEach((run, r) => {
-    const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
+    const laws = ['scheduler', 'impulses', 'motion', 'constraints']
+                     .filter(what => run.head[what] && run.head[what] !== 'none')
+                     .map(what => `${what}: ${run.head[what]}`);
     const now = html('p', { className: 'now' });
     const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('i', {}, ' (ghost)'), html('span', {}, run.head.stopped ? ` stopped: ${firstLine(run.head.stopped)}` : ''),
       html('span', {}, run.head.faults ? ` cannot be trusted: ${run.head.faults}` : ''), now);
     player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
     labels.push(box);
-    if (run.head.stopped && run.head.stopped.includes('\n')) byId('difference').after(html('details', { className: 'stopped' }, html('summary', {}, `By what ${run.label || 'the run'} was stopped`), html('pre', {}, run.head.stopped)));
-    box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;
+    if (run.head.stopped && run.head.stopped.includes('\n'))
+      byId('difference')
+          .after(html(
+              'details', {className: 'stopped'},
+              html('summary', {}, `By what ${run.label || 'the run'} was stopped`),
+              html('pre', {}, run.head.stopped)));
+    box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s; ${laws.join('; ')}`;
     byId('words').append(box);
   });
   const place = () => (picture ? picture.views() : player.runs.map((_, r) => ({ x: r / player.runs.length, y: 0 }))).forEach((view, r) => {
