@@ -257,6 +257,19 @@ test('what is said beside the run is true of it', async () => {
   await page.until('/^The program has ended.*Start it again in the terminal/s.test(document.getElementById("trouble").textContent.trim())', 'what to do when the program has ended', 20);
   await sleep(4000);   // the stream is tried again
   expect(await text('state') === 'the program has ended', `it stays ended: ${await text('state')}`);
+  // What only the program could do is disabled, by mouse and keyboard, and says why; the rest works on what has come.
+  for (const tab of ['Change', 'Body', 'Scenes']) {
+    await page.value(`[...document.querySelectorAll("#tabs button")].find(tab => tab.textContent === "${tab}").click()`);
+    await sleep(300);   // panes are shown anew
+    const free = await page.value('[...document.querySelectorAll(".pane:not([hidden]) :is(button, input, select), #over, #bare, #go, #save, #speed, #toolPush, #toolPull")].filter(e => !e.disabled || !/^The program has ended/.test(e.title)).map(e => e.outerHTML.slice(0, 60))');
+    expect(free.length === 0, `of a program that has ended, with ${tab}: ${free}`);
+  }
+  await page.value('document.getElementById("closeTrouble").click(), window.asksThen = performance.getEntriesByType("resource").filter(e => /\\/do$/.test(e.name)).length');
+  for (const key of ['r', ' ', '2', 'ArrowRight']) await page.value(`window.dispatchEvent(new KeyboardEvent("keydown", { key: "${key}" }))`);
+  await page.value('document.getElementById("back").click()');
+  await sleep(300);
+  expect(await page.value('tumble.tool === "look" && document.getElementById("trouble").hidden && performance.getEntriesByType("resource").filter(e => /\\/do$/.test(e.name)).length === asksThen'), 'keys ask a program that has ended');
+  expect(await page.value('!document.getElementById("on").disabled && !document.getElementById("toolLook").disabled'), 'what has come can be looked at');
   if (pictures) await page.picture(join(pictures, 'gone.png'));
 });
 

@@ -8,6 +8,7 @@ const page = { run: null, former: null, pushes: [], changes: {}, chosen: -1, too
 // One after the other: a pull that came behind its release would hold the body for ever.
 let posted = Promise.resolve();
 function post(command) {
+  if (page.isGone) return posted;
   posted = posted.then(() => fetch('do', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(command) })).catch(showGone);
   return posted;
 }
@@ -60,18 +61,19 @@ function showTime() {
   byId('clock').textContent = `${page.time.toFixed(3)} s`;
   byId('scrub').max = String(Math.max(end, 1e-3));
   byId('scrub').value = String(page.time);
-  byId('go').textContent = page.paused || page.ended ? 'Go' : 'Pause';
+  byId('go').textContent = page.paused || page.ended || page.isGone ? 'Go' : 'Pause';
   byId('go').disabled = !run || (page.ended && !isPast());
   byId('go').title = page.ended ? 'The run has ended: start over, or go back to an earlier instant' : 'Go and pause (space)';
   byId('here').classList.toggle('off', !isPast());
   byId('newest').classList.toggle('off', !isPast());
   byId('on').disabled = !page.paused;
   byId('bare').disabled = page.pushes.length === 0;
+  if (page.isGone) lock();
   showState();
 }
 
 function toggle() {
-  if (!page.run || (page.ended && !isPast())) return;
+  if (!page.run || page.isGone || (page.ended && !isPast())) return;
   if (!page.paused && !page.ended) return setPace(true, page.speed);
   newest();
   setPace(false, page.speed);
@@ -160,6 +162,7 @@ const hand = {
 };
 
 function setTool(tool) {
+  if (page.isGone && tool !== 'look') return;
   page.tool = tool;
   for (const [id, word] of [['toolPush', 'push'], ['toolPull', 'pull'], ['toolLook', 'look']]) byId(id).setAttribute('aria-checked', String(tool === word));
   showHint();
@@ -173,7 +176,14 @@ function showHint() {
   const former = !page.isFormerOnly ? '' : page.ended ? 'The run of the code before your last save, at its end: the saved code has not moved anything. ' : 'The run of the code before your last save: the saved code has not moved anything yet. ';
   if (page.isFormerOnly && page.ended) words.push = words.pull = words.look = 'Go back to an earlier instant to look at it.';
   const lost = page.isLost ? ' All bodies have left the picture: “All” finds them, “Follow” keeps the chosen one in it.' : '';
-  byId('hint').textContent = former + (page.follows ? words[page.tool] : 'An earlier instant: “Go on from here” begins from it.') + lost;
+  if (page.isGone)
+    byId('hint').textContent =
+        `The program has ended: what has come until then can be looked at.${lost}`;
+  else
+    byId('hint').textContent = former +
+        (page.follows ? words[page.tool] :
+                        'An earlier instant: “Go on from here” begins from it.') +
+        lost;
 }
 
 // ---- Panes ----
@@ -237,6 +247,7 @@ function showPanes(isNow) {
   if (isOpen('Virtual times')) times.draw(page.run.end);
   const isLost = Boolean(page.picture && page.picture.isLost(page.time));
   if (isLost !== page.isLost) { page.isLost = isLost; showHint(); }
+  if (page.isGone) lock();
   drawMarks();
   showScales();
 }
@@ -391,8 +402,41 @@ function listen() {
 // The stream comes back by itself where the program still runs (told.hello).
 const kGoneFor = 3;   // s
 
+// Controls that ask the program for something. Time, view, curves and stories work on what has come. The first pane
+// has the stories.
+const kAsking =
+    '#over, #bare, #go, #here, #save, #speed, #pushTime, #toolPush, #toolPull, .pane:not(:first-child) :is(button, input, select)';
+const kGoneTitle = 'The program has ended: start it again in the terminal';
+
+// Also those that have been built, or allowed, since.
+function lock() {
+  for (const control of document.querySelectorAll(kAsking)) {
+    if (control.disabled && control.title === kGoneTitle) continue;
+    if (control.title !== kGoneTitle) control.dataset.title = control.title;
+    control.disabled = true;
+    control.title = kGoneTitle;
+  }
+  byId('on').disabled = !isPast();
+}
+
+function unlock() {
+  for (const control of document.querySelectorAll('[data-title]')) {
+    control.disabled = false;
+    control.title = control.dataset.title;
+    delete control.dataset.title;
+  }
+  byId('save').disabled = page.cannotSave;
+  if (page.toolBefore) setTool(page.toolBefore);
+  page.toolBefore = null;
+  showTime();
+  showHint();
+}
+
 function showGone() {
+  if (!page.isGone) page.toolBefore = page.tool;
   page.isGone = true;
+  setTool('look');
+  lock();
   showTrouble({ title: 'The program has ended', text: 'This page shows what has come until then; nothing more happens in it.', remedy: 'Start it again in the terminal (./tumble live …) and open the address that it prints: each start has a new one.' });
   say('the program has ended', 'bad');
 }

@@ -80,7 +80,7 @@ function beginScene(message) {
   page.run = page.former = page.difference = page.asked = null;
   showFormerOnly(false);
   page.pushes = [];
-  byId('save').disabled = !message.can_save;
+  byId('save').disabled = page.cannotSave = !message.can_save;
   byId('save').title = message.can_save ? 'Save the scene with what was done by hand: it runs again byte for byte' : 'This scene is made by code and has no file to add pushes to';
   byId('title').textContent = message.title || message.name;
   document.body.dataset.scene = message.name;
@@ -147,7 +147,9 @@ const told = {
     showUnsaved(message.unsaved);
     clearTimeout(page.goneTimer);
     page.goneTimer = 0;
+    const wasGone = page.isGone;
     page.isGone = page.isStarting = false;
+    if (wasGone) unlock();
     showTrouble(null);
     say('connected');
     if (message.starting) told.starting({ reason: message.starting });
