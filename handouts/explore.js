@@ -302,6 +302,9 @@ kMoves.forEach(([ball, to, certain, says], i) => {
   kWalk.push({ times, from, certain, says, held: i < 4 ? [] : i < 8 ? [[kHitAB, 0, 1]] : [[kHitBC, 1, 2], [kHitAC, 0, 2]] });
 });
 
+// The number of a move as the figures and the page of a run count: a step of all three is one of each ball.
+const moveOf = place => kMoves.slice(0, place).reduce((sum, [ball]) => sum + (ball === null ? 3 : 1), 0);
+
 const radius = 0.1;
 const kStart = [{ x: [-1, 0], v: [1.05, 0] }, { x: [0, 0], v: [0, 0] }, { x: [0.05, 1.5], v: [0, -2.1] }];
 // Where a ball is at its own time, after those impacts that it holds: [time, two balls].
@@ -323,7 +326,7 @@ const walk = {
   title: 'Try it: the walk, move by move',
   about: 'Left the three balls, each at its own local virtual time. Right their times: dark is certain, light is ahead of that, a cut is a rollback.',
   label: 'Three balls and bars of their local virtual times',
-  controls: [{ id: 'move', label: 'move', min: 0, max: kWalk.length - 1, step: 1, value: 5, shown: i => `${i} of ${kWalk.length - 1}` }],
+  controls: [{ id: 'move', label: 'after move', min: 0, max: kWalk.length - 1, step: 1, value: 5, shown: i => `${moveOf(i)}` }],
   draw({ g, width, height, colour, values: { move } }) {
     const now = kWalk[move], names = ['A', 'B', 'C'], half = Math.min(width * 0.42, 300), scale = Math.min(half / 2.4, height / 2.3), centre = [half * 0.5, height * 0.62];
     const inks = [colour('bad'), colour('soft'), colour('warn')];

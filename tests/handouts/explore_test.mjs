@@ -58,6 +58,16 @@ test('every panel is drawn and says something, at 1400 and 400 pixels, light and
     }
 });
 
+// handouts/make_figures.sh draws the moves 12 (all at 0.8 s), 15 (B ahead of A) and 18 (B and C rolled back).
+test('the walk counts moves as the figures beside it do', async () => {
+  const tab = await open('a4_timewarp');
+  for (const [place, move] of [[4, 12], [7, 15], [10, 18], [18, 26], [20, 28]]) {
+    await told(tab, 'walk', place);
+    const number = await tab.value(`document.querySelector('[data-panel=walk] input').getAttribute('aria-valuetext')`);
+    expect(number === `${move}`, `the walk, at its place ${place}, is after move ${number}`);
+  }
+});
+
 // Of the words of a page that stand on one colour: those whose luminances are less than 4.5 : 1
 // apart (Web Content Accessibility Guidelines 2.2, 1.4.3), one of each kind.
 const kFaintWords = `(() => {
