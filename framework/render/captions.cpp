@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@ namespace tumble::render {
 namespace {
 
 constexpr double kLineSpacing = 1.25;  // relative to the font size
+constexpr const char* kBetween = " · ";  // what is said of a run
 
 std::string engine_name(const std::string& id) {
   if (id == "rd") return "retroactive detection";
@@ -38,14 +41,30 @@ std::vector<std::string> in_lines(const TextWriter& writer, const std::string& t
 
 std::string made_by(const TrajectoryInfo& info) {
   std::string text = engine_name(info.engine) + ", step " + step_in_words(info.step_s) + " s";
+  std::vector<std::pair<std::string, std::string>> whose;  // "impulses, motion", "reference"
   const auto add = [&](const char* what, const std::string& source) {
-    if (!source.empty() && source != "none") text += fmt::format(" · {}: {}", what, source);
+    if (source.empty() || source == "none") return;
+    const auto known = std::find_if(whose.begin(), whose.end(),
+                                    [&](const auto& one) { return one.second == source; });
+    if (known == whose.end())
+      whose.emplace_back(what, source);
+    else
+      known->first += std::string(", ") + what;
   };
   add("scheduler", info.scheduling_source);
   add("impulses", info.impulse_source);
   add("motion", info.integrator_source);
   add("constraints", info.constraint_source);
+  for (const auto& [what, source] : whose) text += fmt::format("{}{}: {}", kBetween, what, source);
   return text;
+}
+
+double clear_baseline(double baseline, double right, double size,
+                      const std::vector<WordInPicture>& words) {
+  for (const WordInPicture& word : words)
+    if (word.left < right && word.top < baseline && word.baseline > baseline - kLineSpacing * size)
+      baseline = word.top - 0.3 * size;  // 0.3: of letters that reach below their line
+  return baseline;
 }
 
 std::string time_text(const Trajectory& run, std::size_t frame) {
@@ -75,10 +94,19 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
   writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark,
                Align::kLeft, true);
   const auto write_end = [&](double baseline) {
-    if (!run.stopped_by.empty() && frame + 1 == run.frames.size())
-      writer.write(image,
-                   writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true),
-                   margin, baseline, small * 1.15, kAlarm, Align::kLeft, true);
+    if (run.stopped_by.empty() || frame + 1 != run.frames.size()) return;
+    const double size = 1.15 * small;
+    const std::string words =
+        writer.fitted("stopped: " + run.stopped_by, size, w - 2 * margin, true);
+    const double right = margin + writer.width(words, size, true);
+    std::vector<WordInPicture> labels;
+    for (const Label& place : moment.labels)
+      if (const auto at =
+              project(moment.drawing.view, image.width, image.height, place.point_world))
+        labels.push_back({at->x() - 0.5 * writer.width(place.text, small * 1.08, true),
+                          at->y() - 0.5 * small, at->y() + 1.5 * small + place.drop_pixels});
+    baseline = clear_baseline(baseline, right, size, labels);
+    writer.write(image, words, margin, baseline, size, kAlarm, Align::kLeft, true);
   };
   if (words == Words::kTimeOnly) return write_end(h - margin - kLineSpacing * small - 4.0 * unit);
 
@@ -99,6 +127,11 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
     right = fmt::format("grid {:g} m · ", stage.grid_spacing_m()) + right;
   const double room = w - 3 * margin - writer.width(time, 15.0 * unit, true);
   std::vector<std::string> made = in_lines(writer, right, small, room, false);
+  if (made.size() == 2) {  // a dot stands between words, not at an end of a line
+    constexpr std::string_view kDotBehind = " ·", kDotBefore = "· ";
+    if (made[0].ends_with(kDotBehind)) made[0].resize(made[0].size() - kDotBehind.size());
+    if (made[1].starts_with(kDotBefore)) made[1].erase(0, kDotBefore.size());
+  }
   double from_below = h - margin;
   for (auto line = made.rbegin(); line != made.rend(); ++line, from_below -= kLineSpacing * small)
     writer.write(image, *line, w - margin, from_below, small, kSoft, Align::kRight);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "framework/render/image.h"
 #include "framework/render/stage.h"
@@ -12,9 +13,19 @@ namespace tumble::render {
 /// kTimeOnly is for the views of a sheet: labels, the time, and what stopped the run.
 enum class Words { kAll, kTimeOnly };
 
-/// "timewarp, step 1/10 s · scheduler: submission · impulses: reference": the engine, and whose laws
-/// it ran on, those that the scene needs.
+/// "timewarp, step 1/10 s · scheduler: submission · impulses, motion: reference": the engine, and
+/// whose laws it ran on, those that the scene needs.
 std::string made_by(const TrajectoryInfo& info);
+
+/// A word in a picture that another must not cover. [pixels]
+struct WordInPicture {
+  double left, top, baseline;  // top: of what belongs to it, such as the bar of a scale
+};
+
+/// The lowest baseline up to the given one at which a line of words covers none of these.
+/// @param right, size  where the line ends, and the height of its font [pixels]
+double clear_baseline(double baseline, double right, double size,
+                      const std::vector<WordInPicture>& words);
 
 /// "t = 0.25 s": at least two decimals, and so many that successive frames have different times
 /// (nine at most).

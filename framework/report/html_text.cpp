@@ -96,7 +96,7 @@ std::string formula_in_parts(std::string_view formula) {
   // between an operator and what follows it
   for (std::size_t i = 1; i + 1 < formula.size(); ++i)
     if (formula[i] == ' ' &&
-        std::string_view("+-=/").find(formula[i - 1]) != std::string_view::npos && i > 1 &&
+        std::string_view("+-=/x.").find(formula[i - 1]) != std::string_view::npos && i > 1 &&
         formula[i - 2] == ' ')
       stays[i] = true;
   std::string text;

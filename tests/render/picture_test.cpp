@@ -114,11 +114,19 @@ TEST(Captions, NameEveryModuleThatTheRunAsked) {
   info.impulse_source = info.integrator_source = "reference";
   info.constraint_source = "none";
   EXPECT_EQ(made_by(info),
-            "timewarp, step 1/10 s · scheduler: submission · impulses: reference · motion: "
-            "reference");
+            "timewarp, step 1/10 s · scheduler: submission · impulses, motion: reference");
   info.scheduling_source = "none";
   info.constraint_source = "submission";
-  EXPECT_NE(made_by(info).find("motion: reference · constraints: submission"), std::string::npos);
+  EXPECT_NE(made_by(info).find("impulses, motion: reference · constraints: submission"),
+            std::string::npos);
+}
+
+// By hand: a line of size 10 reaches from 200 - 12.5 down. Labels grow downwards, from their top.
+TEST(Captions, TheReasonOfAStopStandsAboveALabelInItsWay) {
+  EXPECT_EQ(clear_baseline(200, 150, 10, {{40, 175, 195}}), 172.0);   // 175 - 3
+  EXPECT_EQ(clear_baseline(200, 150, 10, {{160, 175, 195}}), 200.0);  // beside it
+  EXPECT_EQ(clear_baseline(200, 150, 10, {{40, 160, 180}}), 200.0);   // above it
+  EXPECT_EQ(clear_baseline(200, 150, 10, {{40, 205, 225}}), 200.0);   // below it
 }
 
 double luminance_of(const std::uint8_t* pixel) {
