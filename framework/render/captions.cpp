@@ -24,6 +24,22 @@ std::string engine_name(const std::string& id) {
   return id.empty() ? "unknown engine" : id;
 }
 
+// "a4 work/a4_timewarp.cpp" without the folders, for which a picture has no room.
+std::string without_folders(const std::string& source) {
+  std::string text, word;
+  for (const char letter : source + ' ') {
+    if (letter == '/') {
+      word.clear();
+    } else if (letter == ' ') {
+      text += (text.empty() ? "" : " ") + word;
+      word.clear();
+    } else {
+      word += letter;
+    }
+  }
+  return text;
+}
+
 /// Text in one line, or in two where it is too wide; the second is cut where it does not fit.
 std::vector<std::string> in_lines(const TextWriter& writer, const std::string& text, double size,
                                   double room, bool bold) {
@@ -55,7 +71,8 @@ std::string made_by(const TrajectoryInfo& info) {
   add("impulses", info.impulse_source);
   add("motion", info.integrator_source);
   add("constraints", info.constraint_source);
-  for (const auto& [what, source] : whose) text += fmt::format("{}{}: {}", kBetween, what, source);
+  for (const auto& [what, source] : whose)
+    text += fmt::format("{}{}: {}", kBetween, what, without_folders(source));
   return text;
 }
 

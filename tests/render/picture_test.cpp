@@ -115,6 +115,8 @@ TEST(Captions, NameEveryModuleThatTheRunAsked) {
   info.constraint_source = "none";
   EXPECT_EQ(made_by(info),
             "timewarp, step 1/10 s · scheduler: submission · impulses, motion: reference");
+  info.scheduling_source = "a4 work/mine/a4_timewarp.cpp";
+  EXPECT_NE(made_by(info).find("scheduler: a4 a4_timewarp.cpp ·"), std::string::npos);
   info.scheduling_source = "none";
   info.constraint_source = "submission";
   EXPECT_NE(made_by(info).find("impulses, motion: reference · constraints: submission"),
