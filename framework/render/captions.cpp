@@ -14,7 +14,7 @@
 namespace tumble::render {
 namespace {
 
-constexpr double kLineSpacing = 1.25;  // relative to the font size
+constexpr double kLineSpacing = 1.25;    // relative to the font size
 constexpr const char* kBetween = " · ";  // what is said of a run
 
 std::string engine_name(const std::string& id) {
