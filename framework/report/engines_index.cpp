@@ -403,9 +403,13 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
             "retroactive detection, conservative advancement and timewarp on the same scenes");
   std::vector<Cell> links{
       {"All scenes", "#all"}, {"The slides' tables", "#slides"}, {"The model of cost", "#model"}};
-  if (!index.ghosts.empty() || !index.pong.empty()) links.push_back({"Pong", "#pong_ladder"});
-  for (const EnginesScene& scene : index.scenes)
-    links.push_back({capitalised(scene.name), "#" + scene.name});
+  if (!index.ghosts.empty() || !index.pong.empty())
+    links.push_back({"Pong by size", "#pong_ladder"});
+  for (const EnginesScene& scene : index.scenes) {
+    std::string name = scene.name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    links.push_back({capitalised(name), "#" + scene.name});
+  }
   page.links(links);
   if (const std::string sentence = headline(index.ladder); !sentence.empty())
     page.paragraph(sentence, Look::kGood);

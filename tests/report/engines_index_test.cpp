@@ -159,7 +159,7 @@ TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
   fine.rows = ladder().front();
   fine.rows[0].agreement = "first 5 collisions of each body within 1e-9 s";
   EnginesScene failed;
-  failed.name = "cars";
+  failed.name = "big_cars";
   failed.problem = "a wheel came off";
   const PrivateFolder folder;
   write_engines_index({{fine, failed},
@@ -175,6 +175,10 @@ TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
                             "Average integration step", "The model of cost", "first 5 collisions",
                             "--full", "TW, ignoring each other", "timewarp does 1/"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
+  EXPECT_NE(
+      page.find(">Pong by size</a> <a href=\"#atoms\">Atoms</a> <a href=\"#big_cars\">Big cars<"),
+      std::string::npos)
+      << page.substr(page.find("<nav>"), 600);
   const Table table = table_of_scenes({fine, failed});
   EXPECT_EQ(table.rows[0][5].text, "30");
   EXPECT_EQ(table.rows[0][6].text, "25");  // integrations, beside what the model expects of them
