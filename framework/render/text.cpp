@@ -86,12 +86,11 @@ void lay_plate(Image& image, double left, double top, double right, double botto
             y0 = std::clamp(static_cast<int>(std::floor(top)), 0, image.height),
             y1 = std::clamp(static_cast<int>(std::ceil(bottom)), 0, image.height);
   if (x0 >= x1 || y0 >= y1) return;
-  std::vector<std::pair<double, const std::uint8_t*>> behind;
+  std::vector<std::pair<int, const std::uint8_t*>> behind;  // by lightness, about
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
       const std::uint8_t* pixel = image.pixel(x, y);
-      const double rgb[] = {double(pixel[0]), double(pixel[1]), double(pixel[2])};
-      behind.emplace_back(luminance(rgb), pixel);
+      behind.emplace_back(2 * pixel[0] + 7 * pixel[1] + pixel[2], pixel);
     }
   const auto dark = behind.begin() + static_cast<long>(kDarkPart * double(behind.size()));
   std::nth_element(behind.begin(), dark, behind.end());
