@@ -173,6 +173,10 @@ test('a3: the right law agrees with itself, and what is wrong with the flawed on
   const ta = await opened('flawed', 'index.html', {}, pages);
   expect((await said(ta)).includes('The first call that differs is number 1: spring_force'), await said(ta));
   if (pictures) await ta.picture(join(pictures, 'bench_a3_spring.png'));
+  // its spring throws the brick above the point that it hangs from: both are seen all the time
+  const outside = await ta.value(`(() => { const b = document.getElementById('bench').bench, size = b.sized(), view = b.eyes(), seen = p => { const [x, y] = b.project(view, size, p); return x >= 0 && x <= size.width && y >= 0 && y <= size.height; };
+    return b.results.flatMap(r => r.frames.filter(f => !seen(f.poses.slice(0, 3)) || f.lines.some(l => l.kind === 'spring' && !(seen(l.from) && seen(l.to)))).map(f => f.t)); })()`);
+  expect(outside.length === 0, `the brick or the spring is out of the picture at ${outside.slice(0, 5)} s, ${outside.length} times`);
   await after(ta, choose(2));
   if (pictures) await ta.picture(join(pictures, 'bench_a3_rods.png'));
   const tab = await opened('flawed', 'student.html', {}, pages), wrong = [];

@@ -161,6 +161,7 @@ class Bench {
 
   show() {
     const [own, right] = this.results;
+    this.fit();
     this.scrub.max = Math.max(0, ...this.results.map(r => r.frames.length - 1));
     this.t = Math.min(this.t, +this.scrub.max);
     this.clear.disabled = this.pushes.length === 0;

@@ -17,6 +17,18 @@ Object.assign(Bench.prototype, {
     const d = sub(p, view.eye), depth = -dot(d, view.back), k = size.focal / Math.max(0.05, depth);
     return [size.width / 2 + k * dot(d, view.right), size.height / 2 - k * dot(d, view.up), depth];
   },
+  // As far away as all that is drawn needs, within a limit: a wrong law may throw a body out of the world.
+  fit() {
+    const near = 1.9, farthest = 5, seen = 0.5;   // m; seen: beside the middle of the view, from nearby
+    let most = 0;
+    const hold = p => { const off = Math.max(Math.abs(p[2] - middleOfView[2]), Math.hypot(p[0], p[1]) / 1.3); if (Number.isFinite(off)) most = Math.max(most, off); };
+    for (const { frames } of this.results)
+      for (const { poses, lines } of frames) {
+        for (let k = 0; k < poses.length; k += 7) hold(poses.slice(k, k + 3));
+        for (const { kind, from, to } of lines) if (kind !== 'force') { hold(from); hold(to); }
+      }
+    this.camera.far = Math.min(farthest, Math.max(near, near * most / seen));
+  },
   pose(result, body, frame) {
     const at = Math.min(Math.max(0, Math.round(frame)), result.frames.length - 1), p = result.frames[at].poses.slice(7 * body, 7 * body + 7);
     return { x: p.slice(0, 3), q: p.slice(3), shape: result.bodies[body].shape };
@@ -176,6 +188,7 @@ async function openBench(root) {
     const worker = URL.createObjectURL(new Blob([await opened('bench-worker').then(bytes => new TextDecoder().decode(bytes))], { type: 'text/javascript' }));
     const [own, right] = await Promise.all([opened('bench-own'), opened('bench-right')]);
     const bench = new Bench(root, new Runner(own, worker), right === null ? null : new Runner(right, worker));
+    root.bench = bench;   // for the browser's console
     const first = await bench.own.experiments();
     if (bench.right) await bench.right.experiments();
     if (!first.list) return say(`The code does not start in this page. ${stoppedWords(first.stopped)}.`);
