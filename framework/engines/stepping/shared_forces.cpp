@@ -66,29 +66,29 @@ std::vector<std::string> links_at_start(const scene::Scene& scene, const Laws& u
   return names;
 }
 
+// @param words  with one place for the names of links
+std::optional<std::string> notice_of(const std::vector<std::string>& links, const char* words) {
+  if (links.empty()) return std::nullopt;
+  return fmt::format(fmt::runtime(words), listed(links));
+}
+
 }  // namespace
 
 std::optional<std::string> notice_of_shared_forces(const scene::Scene& scene, const Laws& laws) {
-  const std::vector<std::string> names =
-      links_at_start(scene, laws, &LinkedBodies::measure_shared, kShared);
-  if (names.empty()) return std::nullopt;
-  return fmt::format(
+  return notice_of(
+      links_at_start(scene, laws, &LinkedBodies::measure_shared, kShared),
       "the forces of {} are not unique: more rods and joints hold their bodies than statics can "
       "tell apart. What is recorded of each is one of many ways to share the load; what they do "
-      "together is right. Springs in their place share it by their stiffness",
-      listed(names));
+      "together is right. Springs in their place share it by their stiffness");
 }
 
 std::optional<std::string> notice_of_stretched_links(const scene::Scene& scene, const Laws& laws) {
-  const std::vector<std::string> names =
-      links_at_start(scene, laws, &LinkedBodies::measure_stretched, kStretched);
-  if (names.empty()) return std::nullopt;
-  return fmt::format(
+  return notice_of(
+      links_at_start(scene, laws, &LinkedBodies::measure_stretched, kStretched),
       "{} hold their bodies as a rope does that is stretched straight, or a linkage that lies "
       "flat: nothing holds these across it at first, and a moment later no finite force does. "
       "Nothing that follows can be trusted, with any step. Start off that posture, by a hundredth "
-      "of its length or more, or take springs in place of some of them",
-      listed(names));
+      "of its length or more, or take springs in place of some of them");
 }
 
 }  // namespace tumble::engines
