@@ -319,6 +319,51 @@ TEST(Loops, ARopeThatIsStretchedStraightHoldsNothingAcross) {
   EXPECT_EQ(said_of_stretched(moving), "");
 }
 
+// A net of 10 by 10 knots has 180 rods. Stretched between two corners, its first row is such a
+// rope, and so is one of 200 rods; a net whose first row hangs through by a tenth is held.
+TEST(Loops, ANetThatIsStretchedStraightIsNamedWhateverItsSize) {
+  constexpr int kSide = 10;
+  constexpr double kMesh = 0.1;  // [m]
+  const auto net = [](double sag) {
+    std::vector<scene::BodySpec> bodies;
+    const auto is_pinned = [](int i, int j) { return i == 0 && (j == 0 || j == kSide - 1); };
+    const auto place = [&](int i, int j) {
+      const double along = static_cast<double>(j) / (kSide - 1);
+      return Vector3d(kMesh * j, kMesh * i, i == 0 ? -sag * 4 * along * (1 - along) : 0.0);
+    };
+    const auto name = [](int i, int j) { return fmt::format("{} {}", i, j); };
+    scene::Scene scene = scene_of({}, 0.005, kEarth);
+    const auto anchor = [&](int i, int j) {
+      return is_pinned(i, j) ? scene::AnchorSpec{"", place(i, j)}
+                             : scene::AnchorSpec{name(i, j), Vector3d::Zero()};
+    };
+    const auto tie = [&](const std::string& tied, int i, int j, int k, int l) {
+      effects::RodSpec rod;
+      rod.name = tied;
+      rod.a = anchor(i, j);
+      rod.b = anchor(k, l);
+      rod.length_m = (place(i, j) - place(k, l)).norm();
+      scene.effects.of<effects::RodSpec>().push_back(rod);
+    };
+    for (int i = 0; i < kSide; ++i)
+      for (int j = 0; j < kSide; ++j) {
+        if (!is_pinned(i, j)) {
+          scene.bodies.push_back(ball(name(i, j), 0.01, 0.01, place(i, j), Vector3d::Zero()));
+          scene.bodies.back().collides = false;
+        }
+        if (j + 1 < kSide) tie(fmt::format("row {} {}", i, j), i, j, i, j + 1);
+        if (i + 1 < kSide) tie(fmt::format("column {} {}", i, j), i, j, i + 1, j);
+      }
+    scene.stabilisation = scene::StabilisationSpec{};
+    return scene;
+  };
+  EXPECT_EQ(said_of_stretched(net(0.0)), "'row 0 0', 'row 0 1', 'row 0 2', 'row 0 3' and 5 more");
+  EXPECT_EQ(said_of_stretched(net(kMesh * (kSide - 1) / 10)), "");
+  std::vector<Vector3d> points;
+  for (int k = 0; k <= 200; ++k) points.emplace_back(0.1 * k, 0.0, 0.0);
+  EXPECT_EQ(said_of_stretched(rope(points)), "'rod 1', 'rod 2', 'rod 3', 'rod 4' and 196 more");
+}
+
 // Flat, a parallelogram of a bar on cranks goes on as long as all cranks turn alike. Where one turns
 // and one stands the bar would stretch: by the square of the angle.
 TEST(Loops, AFlatLinkageIsNamedWhereItCannotGoOn) {

@@ -59,6 +59,7 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     terms_.push_back({k, std::move(acting)});
   }
   has_loop_ = closes_loop(group);
+  has_small_loop_ = has_loop_ && row_count_ <= kMostDenseRows;
   length_ = length_of_units();
   units_.resize(static_cast<Eigen::Index>(bodies_.size()) * kStateSize);
   for (std::size_t i = 0; i < bodies_.size(); ++i)

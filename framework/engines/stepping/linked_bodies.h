@@ -146,15 +146,22 @@ class LinkedBodies final : effects::GroupPlaces {
                           double t, const std::vector<ContactPoint>& contacts);
   VectorXd derivative(double t, const VectorXd& y);
   // Rows that say what others say: redundant_rows.cpp.
+  static constexpr std::size_t kMostDenseRows = 120;  // a step looks at them in 1 ms
   bool closes_loop(const LinkedGroup& group) const;
   void choose_rows(const std::vector<RigidBodyState>& local, double t);
   std::vector<char> spanning(const std::vector<Body>& bodies, std::size_t at_least);
   struct Directions;
   Directions directions(const std::vector<Constraint>& all, const std::vector<Body>& bodies) const;
   bool has_redundant_rows();
-  std::vector<Vector6d> way_from(const std::vector<RigidBodyState>& local,
-                                 const std::vector<Body>& bodies,
-                                 const std::vector<Constraint>& all);
+  std::optional<std::vector<Vector6d>> way_from(const std::vector<RigidBodyState>& local,
+                                                const std::vector<Body>& bodies,
+                                                const std::vector<Constraint>& all);
+  struct Stretch;
+  std::optional<Stretch> stretch_across(const std::vector<Constraint>& all,
+                                        const std::vector<Body>& bodies, const VectorXd& change);
+  std::optional<std::vector<Vector6d>> accelerations_of_many(const std::vector<Constraint>& all,
+                                                             const std::vector<Body>& bodies,
+                                                             const std::vector<Wrench>& wrenches);
   static double fastest(const std::vector<Vector6d>& way, const std::vector<Body>& bodies);
   static std::vector<Constraint> those_of(const std::vector<char>& chosen,
                                           std::vector<Constraint> all);
@@ -201,7 +208,8 @@ class LinkedBodies final : effects::GroupPlaces {
   double step_ = kUnset;  // the last that advance() took [s]
   // its longest rod or spring, or its largest radius of gyration [m]
   double length_ = 0.0;
-  bool has_loop_ = false;  // of links, through the world or without
+  // of links, through the world or without, and of few enough rows for a step to look at them
+  bool has_loop_ = false, has_small_loop_ = false;
   // once asked: how many rows say something new where the scene begins
   std::optional<std::size_t> rank_at_start_;
   // by row, in the step under way: whether its stages obey it; empty: all

@@ -7,7 +7,9 @@
 // few steps. So which rows say something new is asked where the step begins, and its stages obey
 // these; the others hold because of them.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "framework/core/decompositions.h"
 #include "framework/core/disjoint_sets.h"
@@ -57,13 +59,74 @@ std::vector<char> spanning_rows(MatrixXd G, const std::vector<char>& last, std::
   return chosen;
 }
 
+/// Rows of many links, each with a block of six numbers for either of its bodies.
+class SparseRows {
+ public:
+  explicit SparseRows(std::size_t bodies) : columns_(6 * static_cast<Eigen::Index>(bodies)) {}
+
+  /// A row, drawn to unit length. @param blocks  by place; what stands at no body is not kept
+  /// @return the length that it has; 1 where that is 0
+  double append(std::array<std::pair<int, Vector6d>, 2> blocks) {
+    double square = 0.0;
+    for (auto& [place, block] : blocks) {
+      if (6 * place >= columns_) {
+        block.setZero();
+        place = 0;
+      }
+      square += block.squaredNorm();
+    }
+    const double length = square > 0.0 ? std::sqrt(square) : 1.0;
+    for (auto& [place, block] : blocks) block /= length;
+    rows_.push_back(blocks);
+    return length;
+  }
+  VectorXd times(const VectorXd& x) const {
+    VectorXd y = VectorXd::Zero(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      for (const auto& [place, block] : rows_[k])
+        y[static_cast<Eigen::Index>(k)] += block.dot(x.segment<6>(6 * place));
+    return y;
+  }
+  VectorXd transposed_times(const VectorXd& y) const {
+    VectorXd x = VectorXd::Zero(columns_);
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      for (const auto& [place, block] : rows_[k])
+        x.segment<6>(6 * place) += y[static_cast<Eigen::Index>(k)] * block;
+    return x;
+  }
+
+ private:
+  Eigen::Index columns_;
+  std::vector<std::array<std::pair<int, Vector6d>, 2>> rows_;
+};
+
+// What is left of b where the range of A is taken out of it: the residual of least squares, by
+// conjugate gradients on A^T A x = A^T b (Hestenes, Stiefel 1952; Bjorck, "Numerical Methods for
+// Least Squares Problems", 1996, algorithm 7.4.1). Nothing where it is not found in a bounded time.
+template <class A, class At>
+std::optional<VectorXd> outside_range(const A& times, const At& transposed_times,
+                                      const VectorXd& b) {
+  constexpr double kFound = 1e-9;  // of b: what the range may leave
+  constexpr double kSteps = 4e6;   // rows times iterations: some 0.2 s
+  VectorXd left = b, gradient = transposed_times(left), way = gradient;
+  double square = gradient.squaredNorm();
+  const double enough = kFound * b.norm();
+  const auto most = static_cast<int>(kSteps / static_cast<double>(b.size() + gradient.size()));
+  for (int k = 0; k < most; ++k) {
+    if (!(std::sqrt(square) > enough)) return left;
+    const VectorXd along = times(way);
+    left -= square / along.squaredNorm() * along;
+    gradient = transposed_times(left);
+    const double before = std::exchange(square, gradient.squaredNorm());
+    way = gradient + square / before * way;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 // Whether links close a loop: the world and all that cannot move is one node.
 bool LinkedBodies::closes_loop(const LinkedGroup& group) const {
-  // rows that a step looks at, densely: 1 ms
-  constexpr std::size_t kMostRows = 120;
-  if (row_count_ > kMostRows) return false;
   const int immovable = static_cast<int>(bodies_.size());
   DisjointSets joined(immovable + 1);
   for (const Terms& terms : terms_) {
@@ -85,7 +148,7 @@ bool LinkedBodies::closes_loop(const LinkedGroup& group) const {
 
 // What is redundant by proportions is so everywhere: asked where the scene begins.
 bool LinkedBodies::has_redundant_rows() {
-  if (!has_loop_) return false;
+  if (!has_small_loop_) return false;
   if (!rank_at_start_) {
     std::vector<RigidBodyState> start;
     for (const int body : bodies_)
@@ -204,9 +267,10 @@ void LinkedBodies::measure_shared(const std::vector<RigidBodyState>& states, dou
 
 // Along which bodies begin to move, by place: their velocities or, at rest, their accelerations; 0
 // where links hold them, but for rounding, against all that acts.
-std::vector<Vector6d> LinkedBodies::way_from(const std::vector<RigidBodyState>& local,
-                                             const std::vector<Body>& bodies,
-                                             const std::vector<Constraint>& all) {
+// @return nothing where it is not found
+std::optional<std::vector<Vector6d>> LinkedBodies::way_from(
+    const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies,
+    const std::vector<Constraint>& all) {
   std::vector<Wrench> wrenches = forces(local, bodies);
   const std::vector<ConstrainedBody> held = constrained(bodies);
   const auto accelerations = [&] {
@@ -217,17 +281,60 @@ std::vector<Vector6d> LinkedBodies::way_from(const std::vector<RigidBodyState>& 
     return found;
   };
   const double without_links = fastest(accelerations(), bodies);
-  add_constraint_forces(all, bodies, local, wrenches);
   std::vector<Vector6d> way(bodies_.size(), Vector6d::Zero());
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     way[i] << bodies[i].velocity_world, bodies[i].omega_world;
   // at rest: slower than what falls by a millionth of the links' length
   const double speed = fastest(way, bodies);
   if (speed * speed > kSixDigits * without_links * length_) return way;
-  way = accelerations();
+  if (row_count_ > kMostDenseRows) {
+    auto found = accelerations_of_many(all, bodies, wrenches);
+    if (!found) return std::nullopt;
+    way = std::move(*found);
+  } else {
+    add_constraint_forces(all, bodies, local, wrenches);
+    way = accelerations();
+  }
   if (!(fastest(way, bodies) > kSixDigits * without_links))
     std::fill(way.begin(), way.end(), Vector6d::Zero());
   return way;
+}
+
+// With what rows hold, of bodies at rest, where they are too many for a law that may factorise them
+// though some say what others say: of all accelerations that the rows allow those nearest to free
+// ones, in the measure of the masses (Gauss's principle). With
+// I^-1 = S S and u = (v sqrt m, S^-1 w) that is the plain distance.
+std::optional<std::vector<Vector6d>> LinkedBodies::accelerations_of_many(
+    const std::vector<Constraint>& all, const std::vector<Body>& bodies,
+    const std::vector<Wrench>& wrenches) {
+  const std::vector<ConstrainedBody> held = constrained(bodies);
+  std::vector<Matrix3d> root(bodies_.size());
+  VectorXd free(6 * static_cast<Eigen::Index>(bodies_.size()));
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    root[i] = symmetric_root(held[i].inverse_inertia_world);
+    free.segment<6>(6 * static_cast<Eigen::Index>(i))
+        << std::sqrt(held[i].inverse_mass) * wrenches[i].force_world,
+        root[i] * wrenches[i].torque_world;
+  }
+  const auto block = [&](int place, const Vector6d& jacobian) {
+    const auto i = static_cast<std::size_t>(place);
+    Vector6d scaled = Vector6d::Zero();
+    if (i < bodies_.size())
+      scaled << std::sqrt(held[i].inverse_mass) * jacobian.head<3>(), root[i] * jacobian.tail<3>();
+    return std::pair{place, scaled};
+  };
+  SparseRows rows(bodies_.size());
+  for (const auto& [a, b, row] : all)
+    rows.append({block(a, row.jacobian_a), block(b, row.jacobian_b)});
+  const auto left = outside_range([&](const VectorXd& y) { return rows.transposed_times(y); },
+                                  [&](const VectorXd& x) { return rows.times(x); }, free);
+  if (!left) return std::nullopt;
+  std::vector<Vector6d> found(bodies_.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Vector6d u = left->segment<6>(6 * static_cast<Eigen::Index>(i));
+    found[i] << std::sqrt(held[i].inverse_mass) * u.head<3>(), root[i] * u.tail<3>();
+  }
+  return found;
 }
 
 double LinkedBodies::fastest(const std::vector<Vector6d>& way, const std::vector<Body>& bodies) {
@@ -238,6 +345,48 @@ double LinkedBodies::fastest(const std::vector<Vector6d>& way, const std::vector
   return most;
 }
 
+struct LinkedBodies::Stretch {
+  VectorXd left, lengths;  // by row: of unit length, and the length that it has
+};
+
+// What is left of a change of the rows' values that no small places make. @return nothing where it
+// is not found
+std::optional<LinkedBodies::Stretch> LinkedBodies::stretch_across(
+    const std::vector<Constraint>& all, const std::vector<Body>& bodies, const VectorXd& change) {
+  if (row_count_ <= kMostDenseRows) {
+    Directions found = directions(all, bodies);
+    const VectorXd of_unit = change.cwiseQuotient(found.lengths);
+    const SymmetricEigen modes = symmetric_eigen(MatrixXd(found.rows * found.rows.transpose()));
+    const double redundant = left_of_redundant(open_part(bodies, all));
+    VectorXd left = VectorXd::Zero(change.size());
+    for (Eigen::Index mode = 0; mode < modes.values.size(); ++mode)
+      if (modes.values[mode] <= redundant)
+        left += modes.vectors.col(mode).dot(of_unit) * modes.vectors.col(mode);
+    return Stretch{std::move(left), std::move(found.lengths)};
+  }
+  const auto block = [&](int place, const Vector6d& jacobian) {
+    const auto i = static_cast<std::size_t>(place);
+    Vector6d scaled = Vector6d::Zero();
+    if (i >= bodies_.size()) return std::pair{place, scaled};
+    const double size = radius_of_gyration(bodies[i].inertia);
+    scaled.head<3>() = jacobian.head<3>();
+    if (size > 0) scaled.tail<3>() = jacobian.tail<3>() / size;
+    return std::pair{place, scaled};
+  };
+  SparseRows rows(bodies_.size());
+  VectorXd lengths(change.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto& [a, b, row] = all[k];
+    lengths[static_cast<Eigen::Index>(k)] =
+        rows.append({block(a, row.jacobian_a), block(b, row.jacobian_b)});
+  }
+  auto left = outside_range([&](const VectorXd& x) { return rows.times(x); },
+                            [&](const VectorXd& y) { return rows.transposed_times(y); },
+                            change.cwiseQuotient(lengths));
+  if (!left) return std::nullopt;
+  return Stretch{std::move(*left), std::move(lengths)};
+}
+
 // Along the way that bodies take from here, q + e v, rows change by e^2 v H v / 2. Of a mechanism
 // that can go there, other places by e^2 take that back: it is in the range of J. What is left of
 // it across all of these, along a null vector of J^T, is as much as links would have to stretch.
@@ -245,7 +394,8 @@ void LinkedBodies::measure_stretched(const std::vector<RigidBodyState>& states, 
                                      LinkForces& stretched) {
   // of the length of links; what is left of a mechanism's motion is of third order in it
   constexpr double kWay = 1e-3, kLeft = 0.05;
-  if (!has_redundant_rows() || !(length_ > 0.0)) return;
+  const bool are_many = row_count_ > kMostDenseRows;
+  if (!has_loop_ || (!are_many && !has_redundant_rows()) || !(length_ > 0.0)) return;
   if (std::any_of(fixed_.begin(), fixed_.end(), [&](int fixed) {
         return fixed >= 0 && is_driven(world_.bodies[static_cast<std::size_t>(fixed)].motion);
       }))
@@ -254,7 +404,9 @@ void LinkedBodies::measure_stretched(const std::vector<RigidBodyState>& states, 
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   const std::vector<Constraint> all = rows(bodies);
-  const std::vector<Vector6d> way = way_from(local, bodies, all);
+  const auto found_way = way_from(local, bodies, all);
+  if (!found_way) return;
+  const std::vector<Vector6d>& way = *found_way;
   const double most = fastest(way, bodies);
   if (!(most > 0.0)) return;
   std::vector<RigidBodyState> moved = local;
@@ -264,19 +416,15 @@ void LinkedBodies::measure_stretched(const std::vector<RigidBodyState>& states, 
         turned(moved[i].world_from_body, kWay * length_ / most * way[i].tail<3>());
   }
   const std::vector<Constraint> there = rows(place_bodies(moved, t));
-  const Directions found = directions(all, bodies);
   VectorXd change(static_cast<Eigen::Index>(all.size()));
   for (std::size_t k = 0; k < all.size(); ++k)
     change[static_cast<Eigen::Index>(k)] = there[k].row.value - all[k].row.value;
-  change = change.cwiseQuotient(found.lengths);
-  const SymmetricEigen modes = symmetric_eigen(MatrixXd(found.rows * found.rows.transpose()));
-  const double redundant = left_of_redundant(open_part(bodies, all));
-  VectorXd left = VectorXd::Zero(change.size());
-  for (Eigen::Index mode = 0; mode < modes.values.size(); ++mode)
-    if (modes.values[mode] <= redundant)
-      left += modes.vectors.col(mode).dot(change) * modes.vectors.col(mode);
-  if (!(left.norm() > kLeft * kWay * kWay * length_)) return;
-  left = left.cwiseQuotient(found.lengths) / left.norm();
+  const std::optional<Stretch> stretch = stretch_across(all, bodies, change);
+  // a stretch that many links share is small in each
+  const double many = std::max(1.0, static_cast<double>(row_count_) / kMostDenseRows),
+               least = kLeft * kWay * kWay * length_ / std::sqrt(many);
+  if (!stretch || !(stretch->left.norm() > least)) return;
+  const VectorXd left = stretch->left.cwiseQuotient(stretch->lengths) / stretch->left.norm();
   Eigen::Index at = 0;
   for (const Terms& terms : terms_) {
     const auto count = static_cast<Eigen::Index>(terms.acting->row_count());
