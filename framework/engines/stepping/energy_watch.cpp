@@ -43,10 +43,17 @@ bool has_driven(const World& world) {
   });
 }
 
-// The terms that the energy is a sum of: what its rounding goes by. [J]
+// The terms that the energy is a sum of: what its rounding goes by. [J] A height is found from
+// turned bodies and from places that rods and joints have drawn together: it is rounded as all
+// coordinates are, however near to 0 it is.
 double terms_of_energy(const World& world, const std::vector<RigidBodyState>& states,
                        double kinetic) {
   double terms = kinetic;
+  if (world.gravity_world)
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+      if (!world.bodies[i].immovable())
+        terms +=
+            world.bodies[i].inertia.mass * world.gravity_world->norm() * states[i].com_world.norm();
   for (const effects::Effect* effect : effects::all())
     effect->add_energy_terms(world, states, terms);
   return terms;
