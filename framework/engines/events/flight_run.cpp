@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/collision/gap.h"
 #include "framework/core/error.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/stepping/stability.h"
@@ -267,6 +268,7 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
   const StageTimer timer(counters.record_seconds);
   commit_switches(next_frame());
   Frame frame = frame_of(world_, next_frame(), flight_of, states_);
+  if (frame.smallest_gap < 0.0) note_overlaps(frame);
   if (links_) links_->measure(frame, flight_of);
   sink_.frame(frame);
   if (on_membership_) report_membership(frame.time, flight_of);
@@ -279,6 +281,29 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
   throw StoppedRun(
       runaway_message(frame.time, world_.world(), *runaway,
                       {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
+}
+
+// Between the ends of steps bodies are drawn along paths that lead from one to the next.
+void FlightRun::note_overlaps(const Frame& frame) {
+  const auto pose = [&](int k) {
+    const BodyPose& its = frame.poses[static_cast<std::size_t>(k)];
+    return collision::Pose{its.com_world, its.world_from_body};
+  };
+  for (int i = 0; i < world_.size(); ++i)
+    for (int j = i + 1; j < world_.size(); ++j) {
+      const double size = std::min(world_.radius(i), world_.radius(j));
+      if (!(size > 0.0) || !(frame.smallest_gap < -kApart * size) || !world_.may_collide(i, j))
+        continue;
+      const double overlap = -collision::gap_distance(world_.shape(i), pose(i), world_.shape(j),
+                                                      pose(j), nullptr, 0.0);
+      RunWatch::Size told{overlap / size, kApart, frame.time, step_};
+      told.meaning =
+          "bodies stay apart: this frame, between the ends of steps, has them in each other by "
+          "this "
+          "part of the smaller one's radius";
+      told.remedy = "--engine rd, which begins and ends a step of all bodies at each impact";
+      counters.watch.note(RunWatch::Kind::kOverlapLeft, names_of(world_.world(), {i, j}), told);
+    }
 }
 
 // A contact that lasts holds from a segment's start to its end, and one that begins or ends is an

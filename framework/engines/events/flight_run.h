@@ -131,6 +131,7 @@ class FlightRun {
   std::unique_ptr<LinkMeasures> links_;
   std::vector<RigidBodyState> states_;  // of the frame that was committed last
   void report_membership(double t, const FlightOf& flight_of) const;
+  void note_overlaps(const Frame& frame);
   void note_islands_in_contact(const FlightOf& flight_of);
 
   std::function<void(const Membership&)> on_membership_;
