@@ -140,7 +140,12 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
     const AnchorState a = anchor_state(link.a, world, states, 0.0),
                       b = anchor_state(link.b, world, states, 0.0);
     // a driven end is where its state says; at which speed is right at any time if it moves evenly
-    const Vector3d way = anchor_point(link.b, states) - anchor_point(link.a, states),
+    const auto point = [&](const Anchor& anchor, const AnchorState& at) {
+      const bool is_driven =
+          anchor.body >= 0 && world.bodies[static_cast<std::size_t>(anchor.body)].immovable();
+      return is_driven ? anchor_point(anchor, states) : at.point_world;
+    };
+    const Vector3d way = point(link.b, b) - point(link.a, a),
                    rate = b.velocity_world - a.velocity_world;
     const double along = way.isZero(0.0) ? rate.norm() : rate.dot(way.normalized());
     return link.spring.damping * along * along;

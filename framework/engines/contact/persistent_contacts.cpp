@@ -121,6 +121,10 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   points_.clear();
   forces_.clear();
   islands_.clear();
+  lost_.clear();
+  has_committed_ = false;
+  began_ = moving_.time();
+  target_ = moving_.target();
   problems_.take_unsolved();
   // Which pairs touch in this step: those in persistent contact, and those without restitution
   // where impacts are solved in steps.
@@ -312,9 +316,12 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     if (!located && island.linked.empty()) return take_large_island_step(island, h);
     if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   }
-  if (located && h > kContact.shortest_step_for_energy * memory_.longest_step &&
-      gains_energy(island))
-    return moving_.time() + 0.5 * h;
+  const bool is_long = h > kContact.shortest_step_for_energy * memory_.longest_step;
+  if (located && (is_long || watches_losses_))
+    if (const auto energy = energy_of(island)) {
+      if (is_long && energy->gain > energy->unseen) return moving_.time() + 0.5 * h;
+      if (watches_losses_) note_loss(island, contacts, problem, solution, *energy);
+    }
   keep_warm_start(island, contacts, problem, solution, h);
   return std::nullopt;
 }
@@ -462,6 +469,9 @@ bool PersistentContacts::commit() {
   end_where_apart();
   if (islands_.empty()) return true;
   counters_.watch.add(problems_.take_unsolved());
+  // of a step that an impact has cut, its part
+  for (Loss& loss : lost_) loss.energy *= (moving_.time() - began_) / (target_ - began_);
+  has_committed_ = true;
   bool apart = true;
   std::vector<RigidBodyState> states = moving_.states();
   for (const ContactIsland& island : islands_) {

@@ -146,6 +146,17 @@ class PersistentContacts {
   /// forces act that follow their motion; and the same of another state.
   const std::map<int, Wrench>& pressing() const { return memory_.pressing; }
   void expect(int body, const Wrench& pressing) { memory_.pressing[body] = pressing; }
+  /// From now on it is kept what a committed step has lost beside what sliding and landing take: of
+  /// islands without links and driven supports, whose impacts are not solved in steps.
+  void watch_losses() { watches_losses_ = true; }
+  /// That of each such island of the step that was committed last; below 0 where sliding and
+  /// landing may have taken more than was lost. @param see  (bodies of the island, energy [J])
+  template <class See>
+  void for_each_loss(const See& see) {
+    if (has_committed_)
+      for (const Loss& loss : lost_) see(islands_[loss.island].bodies, loss.energy);
+    lost_.clear();
+  }
   /// Hands over what is remembered; recall() comes before the next step.
   ContactMemory take_memory() { return std::move(memory_); }
 
@@ -180,7 +191,17 @@ class PersistentContacts {
                  const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem,
                  const ContactSolution& solution, double h, bool activation);
   void set_straight_path(int body, const RigidBodyState& end);
-  bool gains_energy(const ContactIsland& island);
+  struct Loss {
+    std::size_t island;
+    double energy;  // [J]
+  };
+  struct StepEnergy {
+    double gain = 0.0, unseen = 0.0;  // that contacts have made, and that rounding may [J]
+  };
+  std::optional<StepEnergy> energy_of(const ContactIsland& island) const;
+  void note_loss(const ContactIsland& island, const StepContacts& starts,
+                 const ContactProblem& problem, const ContactSolution& solution,
+                 const StepEnergy& energy);
   std::optional<double> take_large_island_step(const ContactIsland& island, double h);
 
   MovingWorld& moving_;
@@ -205,6 +226,10 @@ class PersistentContacts {
   PairTable<ContactManifold> points_;
   std::set<Pair> next_stuck_, next_sharing_;
   std::vector<ContactPoint> forces_;
+  bool watches_losses_ = false;
+  double began_ = kUnset, target_ = kUnset;  // [s]
+  bool has_committed_ = false;
+  std::vector<Loss> lost_;  // of the step that has begun
   // By body, of the island whose step is taken: where it comes out, and the middle of the way
   // there. Others stand where the step began; those of islands whose steps have been taken are
   // stale.

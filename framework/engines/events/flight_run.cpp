@@ -275,8 +275,14 @@ void FlightRun::draw_frame(const FlightOf& flight_of) {
   frame_times_.take();
   if (!callbacks_.empty()) return;  // callbacks may add energy
   note_islands_in_contact(flight_of);
-  const auto runaway = energy_watch_.look(frame.time, world_.world(), states_, frame.contacts);
+  const auto runaway =
+      energy_watch_.look(frame.time, world_.world(), states_, frame.contacts,
+                         [&](int body) { return pass_steps_of(body, frame.time, flight_of); });
   note_islands_in_contact(flight_of);  // until the next frame
+  constexpr double kMostSteps = 256;   // between frames: what is kept for them is of some size
+  if (world_.processes() && energy_watch_.has_damped() &&
+      frame_times_.next() - frame.time <= kMostSteps * step_)
+    world_.processes()->segments().remember_from(frame.time);
   if (!runaway) return;
   throw StoppedRun(
       runaway_message(frame.time, world_.world(), *runaway,
@@ -299,8 +305,7 @@ void FlightRun::note_overlaps(const Frame& frame) {
       RunWatch::Size told{overlap / size, kApart, frame.time, step_};
       told.meaning =
           "bodies stay apart: this frame, between the ends of steps, has them in each other by "
-          "this "
-          "part of the smaller one's radius";
+          "this part of the smaller one's radius";
       told.remedy = "--engine rd, which begins and ends a step of all bodies at each impact";
       counters.watch.note(RunWatch::Kind::kOverlapLeft, names_of(world_.world(), {i, j}), told);
     }
@@ -318,6 +323,28 @@ void FlightRun::note_islands_in_contact(const FlightOf& flight_of) {
     if (in_steps || !world_.processes()->segments().start(segment).lasting.empty())
       energy_watch_.note_touch(body, -1);
   }
+}
+
+// What dampers take goes up and down many times between two frames: it is looked at where each step
+// begins.
+// @return whether the steps since the last frame are known: nothing is said of an island that began
+// since, or whose steps are forgotten
+bool FlightRun::pass_steps_of(int body, double time, const FlightOf& flight_of) {
+  const int segment = flight_of(body).segment;
+  if (segment < 0) return false;
+  IslandSegments& segments = world_.processes()->segments();
+  const std::vector<int>& members = segments.members(segment);
+  const double from = energy_watch_.last_look(), slack = kNegligible * step_;
+  double known_from = kInfinity;
+  std::vector<RigidBodyState> states = states_;
+  segments.for_each_step(segment, from, time, [&](const ProcessStep& step) {
+    known_from = std::min(known_from, step.from.time);
+    if (step.from.time <= from + slack || step.from.time >= time - slack) return;
+    for (std::size_t k = 0; k < members.size(); ++k)
+      states[static_cast<std::size_t>(members[k])] = step.from.states[k];
+    energy_watch_.pass(step.from.time, body, world_.world(), states);
+  });
+  return known_from <= from + slack;
 }
 
 void FlightRun::commit_frame_at(const EventStamp& fault, const FlightOf& flight_of) {

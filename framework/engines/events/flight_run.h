@@ -133,6 +133,7 @@ class FlightRun {
   void report_membership(double t, const FlightOf& flight_of) const;
   void note_overlaps(const Frame& frame);
   void note_islands_in_contact(const FlightOf& flight_of);
+  bool pass_steps_of(int body, double time, const FlightOf& flight_of);
 
   std::function<void(const Membership&)> on_membership_;
   std::vector<Callback> callbacks_;

@@ -171,7 +171,8 @@ void IslandSegments::stand_at(Segment& segment, ProcessState state, std::excepti
 }
 
 void IslandSegments::keep(Segment& segment, ProcessStep step) {
-  while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
+  const double forgotten = std::min(forgotten_, remembered_) - 2 * rules_.step;
+  while (segment.steps.size() > 1 && segment.steps.front().end < forgotten) {
     // no rollback comes back to it
     ProcessStep& first = segment.steps.front();
     if (first.noted) count(std::move(first.noted));

@@ -62,6 +62,8 @@ class IslandSegments {
   void stand(int segment, double until);
   /// Times before this are not queried any more. [s]
   void forget_before(double t);
+  /// But not times from this on. Called while one thread runs alone. [s]
+  void remember_from(double t) { remembered_ = t; }
   /// true: several threads use segments from now on; false: one thread again. Called while one
   /// thread runs alone.
   void share(bool shared) { is_shared_ = shared; }
@@ -181,7 +183,7 @@ class IslandSegments {
   RunCounters past_;  // of deleted worlds; the notes of steps that stand
   std::mutex mutex_;  // guards worlds_, past_, segment indices, and holders
   bool is_shared_ = false;
-  double forgotten_ = 0.0;
+  double forgotten_ = 0.0, remembered_ = kInfinity;
   std::atomic<std::size_t> kept_ = 0;
   std::uint64_t begun_ = 0, let_go_ = 0;  // segments
 };

@@ -43,6 +43,7 @@ class RetroactiveRun : private StepStages {
     if (!world_step_.has_contacts()) return;
     PersistentContacts& contacts = world_step_.contacts();
     recorder_.record_contacts_of(contacts);
+    if (callbacks_.empty()) contacts.watch_losses();
     if (built::kFriction &&
         std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(),
                     [](const WorldBody& body) { return body.friction > 0.0; }))
@@ -190,9 +191,13 @@ void RetroactiveRun::advance_to(double target) {
     const double before = moving_.time();
     const WorldStep::Taken step = world_step_.take(target, *this);
     if (step.how != WorldStep::Taken::How::kCommitted) continue;
-    if (world_step_.has_contacts())
+    if (world_step_.has_contacts()) {
       world_step_.contacts().for_each_kept(
           [&](const auto& pair) { energy_watch_.note_touch(pair.first, pair.second); });
+      world_step_.contacts().for_each_loss([&](const std::vector<int>& bodies, double energy) {
+        energy_watch_.note_lost_at_contacts(bodies, energy);
+      });
+    }
     if (has_sleepers()) note_touching(step.near);
     if (!built::kCollision || !step.impact) continue;
     // The step was committed no farther than the impact: free bodies by a shorter step of their

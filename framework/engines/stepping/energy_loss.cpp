@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
-#include "framework/core/disjoint_sets.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_watch.h"
 #include "framework/engines/base/tolerances.h"
@@ -61,8 +61,71 @@ EnergyLoss::Part* EnergyLoss::part_with(int body) {
   return part < 0 ? nullptr : &parts_[static_cast<std::size_t>(part)];
 }
 
+// Of all these bodies, one heap from now on.
+EnergyLoss::Heap& EnergyLoss::heap_of(const std::vector<int>& bodies) {
+  const int first = met_.find(bodies.front());
+  const bool is_one =
+      std::all_of(bodies.begin(), bodies.end(), [&](int body) { return met_.find(body) == first; });
+  const auto known = heaps_.find(first);
+  if (is_one && known != heaps_.end()) return known->second;
+  std::set<int> leaders;
+  for (const int body : bodies) leaders.insert(met_.find(body));
+  Heap all;
+  for (const int leader : leaders) {
+    met_.unite(leader, first);
+    const auto found = heaps_.find(leader);
+    if (found == heaps_.end()) {
+      all.bodies.push_back(leader);
+      continue;
+    }
+    const Heap& heap = found->second;
+    all.bodies.insert(all.bodies.end(), heap.bodies.begin(), heap.bodies.end());
+    all.made += heap.made;
+    all.highest += heap.highest;
+    all.losses.insert(all.losses.end(), heap.losses.begin(), heap.losses.end());
+    heaps_.erase(found);
+  }
+  std::sort(all.bodies.begin(), all.bodies.end());
+  return heaps_[met_.find(first)] = std::move(all);
+}
+
+void EnergyLoss::note_lost_at_contacts(const std::vector<int>& bodies, double energy) {
+  Heap& heap = heap_of(bodies);
+  heap.made -= energy;
+  heap.highest = std::max(heap.highest, heap.made);
+  heap.is_changed = true;
+}
+
+bool EnergyLoss::look_at_heaps(double time) {
+  bool is_more = false;
+  for (auto& [first, heap] : heaps_) {
+    if (!std::exchange(heap.is_changed, false)) continue;
+    std::vector<int>& parts = parts_of_heap_;
+    parts.clear();
+    for (const int body : heap.bodies) parts.push_back(part_of_[static_cast<std::size_t>(body)]);
+    std::sort(parts.begin(), parts.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+    const auto part = [&](int k) -> const Part& { return parts_[static_cast<std::size_t>(k)]; };
+    if (!std::all_of(parts.begin(), parts.end(), [&](int k) { return part(k).is_watched; }))
+      continue;
+    heap.whole = 0.0;
+    for (const int k : parts) heap.whole += part(k).whole;
+    const double lost = heap.highest - heap.made;
+    if (!(lost > kEnergyLost * heap.whole) ||
+        (!heap.losses.empty() && !(lost > kSeen * heap.losses.back().size)))
+      continue;
+    heap.losses.push_back({time, lost, false, false});
+    is_more = true;
+  }
+  return is_more;
+}
+
 void EnergyLoss::begin(const World& world) {
   is_begun_ = true;
+  for (auto& [first, heap] : heaps_)
+    if (!heap.losses.empty()) former_heaps_.push_back(std::move(heap));
+  heaps_.clear();
+  met_ = DisjointSets(static_cast<int>(world.bodies.size()));
   left_out_ = 0;
   const auto moves = [&](int body) {
     return body >= 0 && !world.bodies[static_cast<std::size_t>(body)].immovable();
@@ -78,7 +141,6 @@ void EnergyLoss::begin(const World& world) {
   for (Part& part : parts_)
     if (!part.losses.empty()) former_.push_back(std::move(part));
   parts_.clear();
-  takers_.clear();
 
   DisjointSets linked(static_cast<int>(world.bodies.size()));
   struct Entry {
@@ -94,15 +156,20 @@ void EnergyLoss::begin(const World& world) {
     const bool needs_steps = !sees_switches_ && effect->work_meter(world) != nullptr;
     for (int k = 0; k < count; ++k) {
       int first = -1;
+      // at frames only the power of what is stiff is asked: of immersed volumes that costs more
+      // than steps do
+      const bool takes_power = effect->takes(world, k) == effects::Takes::kPower;
       bool is_unknown = needs_steps || effect->takes(world, k) == effects::Takes::kUnknown ||
-                        (!sees_switches_ && effect->takes(world, k) == effects::Takes::kPower);
+                        (!sees_switches_ && takes_power && !effect->traits().may_be_stiff);
       const std::vector<int> bodies = effect->bodies_of(world, k);
       // what names one body holds it by the world, or slows it down by what rests in it
       std::optional<int> frame;
       if (bodies.size() == 1) frame = kWorld;
       for (const int body : bodies) {
         if (!moves(body)) {
-          is_unknown = is_unknown || (!sees_switches_ && swings(body));
+          is_unknown =
+              is_unknown ||
+              (!sees_switches_ && (swings(body) || (is_driven(motion_of(body)) && takes_power)));
           frame = body;
           continue;
         }
@@ -132,16 +199,32 @@ void EnergyLoss::begin(const World& world) {
     if (entry.is_unknown || is_torn)
       its.is_watched = false;
     else if (entry.effect->takes(world, entry.entry) == effects::Takes::kPower)
-      takers_.push_back({entry.effect, entry.entry, part});
+      its.takers.push_back({entry.effect, entry.entry});
   }
 }
 
+double EnergyLoss::power_of(const Part& part, const World& world,
+                            const std::vector<RigidBodyState>& states) {
+  double power = 0.0;
+  for (const Taker& taker : part.takers)
+    power += taker.effect->power_taken(world, states, taker.entry);
+  return power;
+}
+
+// What is taken up to this instant, at most.
+void EnergyLoss::take(Part& part, double time, double power) {
+  const double power_before = std::exchange(part.power, power),
+               before = std::exchange(part.power_at, time);
+  if (power_before > 0.0 || (power > 0.0 && !std::isnan(before)))
+    part.taken += taken_at_most(time - before, power_before, power);
+}
+
 bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBodyState>& states,
-                      const EnergyByBody& energy, const std::vector<effects::Work>& brought) {
+                      const EnergyByBody& energy, const std::vector<effects::Work>& brought,
+                      const PassSteps& pass_steps) {
   if (!is_begun_) begin(world);
   bool is_more = false;
   const double passed = time - last_look_;
-  last_look_ = time;
   for (; left_out_ < resting_.size(); ++left_out_)
     if (Part* part = part_with(resting_[left_out_])) part->is_watched = false;
   for (const int body : touched_)
@@ -150,13 +233,7 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
   for (const int body : fell_asleep_)
     if (Part* part = part_with(body)) part->fell_asleep = true;
   fell_asleep_.clear();
-  std::vector<double> powers(takers_.empty() ? 0 : parts_.size(), 0.0);
-  for (const Taker& taker : takers_)
-    powers[static_cast<std::size_t>(taker.part)] +=
-        taker.effect->power_taken(world, states, taker.entry);
-
-  for (std::size_t k = 0; k < parts_.size(); ++k) {
-    Part& part = parts_[k];
+  for (Part& part : parts_) {
     if (!part.is_watched) continue;
     double at_work = 0.0, height = 0.0;
     effects::Work work;
@@ -178,9 +255,17 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
       work.most += brought[i].most;
     }
     const double all = at_work + height;
-    const double power = powers.empty() ? 0.0 : powers[k];
-    const double before = std::exchange(part.energy, all),
-                 power_before = std::exchange(part.power, power);
+    if (!part.takers.empty()) {
+      const double power = power_of(part, world, states);
+      if (pass_steps &&
+          part.energy - all >
+              taken_at_most(time - part.power_at, part.power, power) + kEpsilon * part.whole &&
+          !pass_steps(part.bodies.front()))
+        part.is_touched = true;
+      take(part, time, power);
+    }
+    const double taken = std::exchange(part.taken, 0.0);
+    const double before = std::exchange(part.energy, all);
     const Seen seen_before = std::exchange(part.seen, seen);
     part.highest_place = std::max(part.highest_place, height);
     part.whole = std::max({part.whole, at_work, part.highest_place - height});
@@ -201,8 +286,7 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     work.most += inertial.most;
     part.offset -= work.done - work.most;
     part.offset_of_rises -= work.done + work.most;
-    if (power_before > 0.0 || power > 0.0)
-      part.offset += taken_at_most(passed, power_before, power);
+    part.offset += taken;
     part.least = std::min(part.least, all + part.offset_of_rises);
     if (const double rise = all + part.offset_of_rises - part.least; rise > part.rise) {
       if (rise > kEnergyRises * part.whole) {
@@ -221,7 +305,8 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     part.losses.push_back({time, lost, part.largest_fall > 0.5 * lost, fell_asleep});
     is_more = true;
   }
-  return is_more;
+  last_look_ = time;
+  return look_at_heaps(time) || is_more;
 }
 
 std::vector<LostEnergy> EnergyLoss::losses(double rounding) const {
@@ -236,6 +321,14 @@ std::vector<LostEnergy> EnergyLoss::losses(double rounding) const {
                            loss.is_sudden, loss.is_by_sleep});
       }
     }
+  const auto add = [&](const Heap& heap) {
+    for (const Loss& loss : heap.losses)
+      if (loss.size > kEnergyLost * heap.whole + rounding)
+        found.push_back(
+            {heap.bodies, loss.size, heap.whole, loss.time, last_look_, false, false, true});
+  };
+  for (const Heap& heap : former_heaps_) add(heap);
+  for (const auto& [first, heap] : heaps_) add(heap);
   return found;
 }
 

@@ -59,6 +59,21 @@ double terms_of_energy(const World& world, const std::vector<RigidBodyState>& st
   return terms;
 }
 
+// Of a body at rest: m v^2 of the restitution threshold, and m g times its size. [J]
+struct Unseen {
+  double of_restitution_threshold, of_size;
+};
+Unseen unseen_of(const WorldBody& body, double gravity, double restitution_threshold) {
+  // a perfectly inelastic body is separated at the restitution threshold, a box by each of its
+  // corners
+  constexpr double kCorners = 8.0;
+  // of gyration [m]
+  const double size =
+      std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);
+  return {kCorners * body.inertia.mass * restitution_threshold * restitution_threshold,
+          body.inertia.mass * gravity * size};
+}
+
 // Of the bodies' sizes: how far what lies is lifted where it is kept apart. Contact margins are
 // 1e-10 of the smaller body, those of large islands 1e-4.
 constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
@@ -69,20 +84,14 @@ constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
 // it falls.
 void EnergyWatch::begin(const World& world, const EnergyByBody& energy) {
   first_energy_ = least_energy_ = energy.kinetic + energy.potential;
-  // a perfectly inelastic body is separated at the restitution threshold, a box by each of its
-  // corners
-  constexpr double kCorners = 8.0;
   lowest_potential_ = first_potential_ = energy.potential;
   scale_ = energy_at_work(energy);
   const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
-    // of gyration [m]
-    const double size =
-        std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);
-    of_restitution_threshold_ +=
-        kCorners * body.inertia.mass * restitution_threshold_ * restitution_threshold_;
-    of_sizes_ += body.inertia.mass * gravity * size;
+    const Unseen of_body = unseen_of(body, gravity, restitution_threshold_);
+    of_restitution_threshold_ += of_body.of_restitution_threshold;
+    of_sizes_ += of_body.of_size;
   }
 }
 
@@ -127,9 +136,21 @@ void EnergyWatch::tell(const World& world, const Laws& laws, RunCounters& counte
 
 void EnergyWatch::tell_of_losses(const World& world, const Laws& laws,
                                  RunCounters& counters) const {
+  const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
+  // what stands settles by what places are corrected by
+  const auto is_seen = [&](const LostEnergy& one) {
+    double least = kEnergyLost * one.whole + rounding_;
+    for (const int body : one.bodies) {
+      const Unseen of_body =
+          unseen_of(world.bodies[static_cast<std::size_t>(body)], gravity, restitution_threshold_);
+      least += of_body.of_restitution_threshold + kLifted * of_body.of_size;
+    }
+    return one.lost > least;
+  };
   for (const LostEnergy& one : loss_.losses(rounding_))
-    counters.watch.note(RunWatch::Kind::kEnergyLost, names_of(world, one.bodies),
-                        told_of_loss(one, world, laws, step_));
+    if (!one.is_at_contacts || is_seen(one))
+      counters.watch.note(RunWatch::Kind::kEnergyLost, names_of(world, one.bodies),
+                          told_of_loss(one, world, laws, step_));
 }
 
 void EnergyWatch::tell_of_rises(const World& world, RunCounters& counters) const {
@@ -169,7 +190,8 @@ void EnergyWatch::take_in(const World& world) {
 
 std::optional<Runaway> EnergyWatch::look(double time, const World& world,
                                          const std::vector<RigidBodyState>& states,
-                                         const std::vector<ContactPoint>& contacts) {
+                                         const std::vector<ContactPoint>& contacts,
+                                         const EnergyLoss::PassSteps& pass_steps) {
   if (!has_meters_) take_in(world);
   sum_energy(world, states, energy_);
   const EnergyByBody& now = energy_;
@@ -178,7 +200,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
     for (const auto& meter : meters_) meter->add_work(time, states, brought_);
   }
   for (const ContactPoint& contact : contacts) loss_.note_touch(contact.body_a, contact.body_b);
-  if (loss_.look(time, world, states, now, brought_))
+  if (loss_.look(time, world, states, now, brought_, pass_steps))
     note_rounding(time, now.kinetic, world, states);
   if ((!sees_switches_ && !meters_.empty()) || has_driven(world)) return std::nullopt;
   work_ += work_of_effects();

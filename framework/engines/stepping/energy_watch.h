@@ -51,13 +51,24 @@ class EnergyWatch {
   }
   /// Two bodies may have been kept apart in a step since the last look. @param a, b  -1: none
   void note_touch(int a, int b) { loss_.note_touch(a, b); }
+  /// As those of EnergyLoss.
+  bool has_damped() const { return loss_.has_damped(); }
+  void pass(double time, int body, const World& world, const std::vector<RigidBodyState>& states) {
+    loss_.pass(time, body, world, states);
+  }
+  double last_look() const { return loss_.last_look(); }
+  void note_lost_at_contacts(const std::vector<int>& bodies, double energy) {
+    loss_.note_lost_at_contacts(bodies, energy);
+  }
   /// A body has fallen asleep since the last look: sleep takes what it still had.
   void note_sleep(int body) { loss_.note_sleep(body); }
   /// @param contacts  persistent ones of the step that leads to these states
+  /// @param pass_steps  as of EnergyLoss
   /// @return nothing while all is well, and for worlds that moving walls drive
   std::optional<Runaway> look(double time, const World& world,
                               const std::vector<RigidBodyState>& states,
-                              const std::vector<ContactPoint>& contacts);
+                              const std::vector<ContactPoint>& contacts,
+                              const EnergyLoss::PassSteps& pass_steps = {});
   /// Entries have been appended to the world: what they bring in is measured, too.
   void take_in(const World& world);
   /// Notes what energy has risen by above the least it has been, where that is more than steps

@@ -78,6 +78,13 @@ RunWatch::Size told_of_loss(const LostEnergy& loss, const World& world, const La
   const PartLinks links = links_of(loss.bodies, world);
   RunWatch::Size told{loss.lost / loss.whole, kEnergyLost, loss.time, step,
                       kOrderOfMethods,        loss.whole};
+  if (loss.is_at_contacts) {
+    told.order = kOrderAtContacts;
+    told.meaning =
+        "what rolls or rests loses no energy, and what slides or lands no more than friction and "
+        "the landing take: the rest is lost by the step";
+    return told;
+  }
   if (loss.is_by_sleep) {
     told.step = 0.0;  // none helps
     told.meaning =

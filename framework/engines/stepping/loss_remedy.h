@@ -14,6 +14,7 @@ namespace tumble::engines {
 ///   rods, joints   other coordinates where these hold no loop, or where they are reduced ones
 ///   nothing        closed forms
 ///   what fell asleep while it moved: no sleep
+///   what steps in contact have lost: a shorter step
 /// and where no step is known, by the size of the loss and the order of the method's damping.
 /// @param step  of the run [s]
 RunWatch::Size told_of_loss(const LostEnergy& loss, const World& world, const Laws& laws,
