@@ -22,7 +22,9 @@ std::string read_off(std::string html) {
     in_tag = (in_tag || c == '<') && c != '>';
     if (!in_tag && c != '>') text += c;
   }
-  for (const auto& [mark, letter] : {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&amp;", "&"}})
+  // the last one: a no-break space, which is read as any other
+  for (const auto& [mark, letter] :
+       {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&amp;", "&"}, {"\u00a0", " "}})
     for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1))
       text.replace(at, std::string(mark).size(), letter);
   return text;
