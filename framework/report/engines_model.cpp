@@ -38,6 +38,23 @@ double discontinuities_a_body(const std::vector<EngineRow>& rows) {
   return w;
 }
 
+namespace {
+
+/// Each run that the model has a number for: visit(row, w, model).
+template <class Visit>
+void for_each_modelled(const std::vector<std::vector<EngineRow>>& ladder, const Visit& visit) {
+  for (const auto& rows : ladder) {
+    const double w = discontinuities_a_body(rows);
+    if (!(w > 0)) continue;
+    for (const EngineRow& row : rows)
+      if (const auto model = modelled_integrations(row.engine, row.bodies, w, row.step_s);
+          model && ran(row))
+        visit(row, w, *model);
+  }
+}
+
+}  // namespace
+
 Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   Plot plot;
   plot.title = "The model of cost, and measured counts";
@@ -47,52 +64,38 @@ Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
       "With marks: counted. Without: our model at each size's own number of discontinuities per "
       "body and second.";
   std::map<std::string, std::pair<std::size_t, std::size_t>> places;
-  for (const auto& rows : ladder) {
-    const double w = discontinuities_a_body(rows);
-    for (const EngineRow& row : rows) {
-      const auto model = ran(row) && w > 0
-                             ? modelled_integrations(row.engine, row.bodies, w, row.step_s)
-                             : std::nullopt;
-      if (!model) continue;
-      const auto [place, is_new] =
-          places.try_emplace(row.label, plot.curves.size(), plot.curves.size() + 1);
-      if (is_new) {
-        plot.curves.push_back({row.label + ", counted", {}, {}, true});
-        plot.curves.push_back({row.label + ", model", {}, {}, false});
-      }
-      const auto add = [&](std::size_t curve, double y) {
-        plot.curves[curve].x.push_back(row.bodies);
-        plot.curves[curve].y.push_back(y);
-      };
-      add(place->second.first, measured_integrations(row));
-      add(place->second.second, *model);
+  for_each_modelled(ladder, [&](const EngineRow& row, double, double model) {
+    const auto [place, is_new] =
+        places.try_emplace(row.label, plot.curves.size(), plot.curves.size() + 1);
+    if (is_new) {
+      plot.curves.push_back({row.label + ", counted", {}, {}, true});
+      plot.curves.push_back({row.label + ", model", {}, {}, false});
     }
-  }
+    const auto add = [&](std::size_t curve, double y) {
+      plot.curves[curve].x.push_back(row.bodies);
+      plot.curves[curve].y.push_back(y);
+    };
+    add(place->second.first, measured_integrations(row));
+    add(place->second.second, model);
+  });
   return plot;
 }
 
 std::string place_beside_model(const std::vector<std::vector<EngineRow>>& ladder) {
   std::vector<std::pair<std::string, std::pair<double, double>>> ranges;  // by engine, in order
-  for (const auto& rows : ladder) {
-    const double w = discontinuities_a_body(rows);
-    for (const EngineRow& row : rows) {
-      const auto model = ran(row) && w > 0
-                             ? modelled_integrations(row.engine, row.bodies, w, row.step_s)
-                             : std::nullopt;
-      if (!model) continue;
-      const double ratio = measured_integrations(row) / *model;
-      std::string engine = row.engine;
-      for (char& letter : engine) letter = static_cast<char>(std::toupper(letter));
-      const auto known = std::find_if(ranges.begin(), ranges.end(),
-                                      [&](const auto& range) { return range.first == engine; });
-      if (known == ranges.end()) {
-        ranges.push_back({engine, {ratio, ratio}});
-      } else {
-        known->second.first = std::min(known->second.first, ratio);
-        known->second.second = std::max(known->second.second, ratio);
-      }
+  for_each_modelled(ladder, [&](const EngineRow& row, double, double model) {
+    const double ratio = measured_integrations(row) / model;
+    std::string engine = row.engine;
+    for (char& letter : engine) letter = static_cast<char>(std::toupper(letter));
+    const auto known = std::find_if(ranges.begin(), ranges.end(),
+                                    [&](const auto& range) { return range.first == engine; });
+    if (known == ranges.end()) {
+      ranges.push_back({engine, {ratio, ratio}});
+    } else {
+      known->second.first = std::min(known->second.first, ratio);
+      known->second.second = std::max(known->second.second, ratio);
     }
-  }
+  });
   std::string text;
   for (const auto& [engine, range] : ranges) {
     const auto [least, most] = range;
@@ -111,23 +114,16 @@ Table table_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   table.caption = "Integrations per simulated second: by the model, and counted.";
   table.columns = {{"Bodies", true}, {"Engine"},        {"w [1/s]", true},        {"n w h", true},
                    {"Model", true},  {"Counted", true}, {"Counted / model", true}};
-  for (const auto& rows : ladder) {
-    const double w = discontinuities_a_body(rows);
-    for (const EngineRow& row : rows) {
-      const auto model = ran(row) && w > 0
-                             ? modelled_integrations(row.engine, row.bodies, w, row.step_s)
-                             : std::nullopt;
-      if (!model) continue;
-      const double counted = measured_integrations(row);
-      table.rows.push_back({{std::to_string(row.bodies)},
-                            {row.label},
-                            {fmt::format("{:.2f}", w)},
-                            {fmt::format("{:.1f}", row.bodies * w * row.step_s)},
-                            {fmt::format("{:.0f}", *model)},
-                            {fmt::format("{:.0f}", counted)},
-                            {fmt::format("{:.2f}", counted / *model)}});
-    }
-  }
+  for_each_modelled(ladder, [&](const EngineRow& row, double w, double model) {
+    const double counted = measured_integrations(row);
+    table.rows.push_back({{std::to_string(row.bodies)},
+                          {row.label},
+                          {fmt::format("{:.2f}", w)},
+                          {fmt::format("{:.1f}", row.bodies * w * row.step_s)},
+                          {fmt::format("{:.0f}", model)},
+                          {fmt::format("{:.0f}", counted)},
+                          {fmt::format("{:.2f}", counted / model)}});
+  });
   return table;
 }
 
