@@ -531,7 +531,7 @@ TEST(SimilarPage, SaysWhatItDoesNotShow) {
                       "line 82 of bo."),
             std::string::npos)
       << html;
-  EXPECT_NE(html.find("Of the one pair that is most alike."), std::string::npos) << html;
+  EXPECT_NE(html.find("Only the pair that is most alike is shown."), std::string::npos) << html;
   pair.runs = {{1, 5, 3, 7, 50}};
   const std::string whole = similar_page({}, sources, {pair}, "").html();
   EXPECT_EQ(whole.find("not shown"), std::string::npos);

@@ -342,8 +342,8 @@ report::Page similar_page(const modules::ModuleKind& kind, const std::vector<Nam
   const auto beside = std::count_if(pairs.begin(), pairs.end(),
                                     [](const SimilarPair& pair) { return !pair.runs.empty(); });
   if (beside > 0 && static_cast<std::size_t>(beside) < pairs.size())
-    page.paragraph(beside == 1 ? std::string("Of the one pair that is most alike.")
-                               : fmt::format("Of the {} that are most alike.",
+    page.paragraph(beside == 1 ? std::string("Only the pair that is most alike is shown.")
+                               : fmt::format("Only the {} that are most alike are shown.",
                                              counted(static_cast<std::size_t>(beside), "pair")),
                    Look::kMuted);
   for (const SimilarPair& pair : pairs)
