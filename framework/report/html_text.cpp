@@ -82,7 +82,8 @@ std::string html_escape(std::string_view text) {
 }
 
 std::string formula_in_parts(std::string_view formula) {
-  constexpr std::string_view kNoBreak = "\u00a0";
+  // behind a hyphen a line may break even before a no-break space, behind a minus sign it may not
+  constexpr std::string_view kNoBreak = "\u00a0", kMinus = "\u2212";
   constexpr std::size_t kShort = 20;  // letters between brackets: half a line of a phone
   std::vector<bool> stays(formula.size(), false);
   std::size_t open = formula.npos;  // of the innermost bracket
@@ -103,6 +104,8 @@ std::string formula_in_parts(std::string_view formula) {
   for (std::size_t i = 0; i < formula.size(); ++i)
     if (formula[i] == ' ' && stays[i])
       text += kNoBreak;
+    else if (formula[i] == '-' && i + 1 < formula.size() && formula[i + 1] == ' ' && stays[i + 1])
+      text += kMinus;
     else
       text += formula[i];
   return text;

@@ -19,7 +19,8 @@ std::string html_sentence(std::string_view text);
 std::string html_heading(std::string_view text);
 
 /// A formula in letters, for a narrow page: it breaks before an operator, and not within short
-/// brackets. "j = -(1 + e) u_n": the blanks that stay are no-break spaces (U+00A0).
+/// brackets. "j = -(1 + e) u_n": the blanks that stay are no-break spaces (U+00A0), and a hyphen
+/// before one of them is a minus sign (U+2212).
 std::string formula_in_parts(std::string_view formula);
 
 /// A file's path, relative to the page, as a link: every byte outside [A-Za-z0-9._~/-] as %XX.

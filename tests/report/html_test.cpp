@@ -192,7 +192,8 @@ TEST(Page, ANumberWithAnExponentIsKeptTogetherInASentence) {
 // Between its parts a formula may be broken: before "+ b", not behind the sign, and not in "(I w)".
 TEST(Page, AFormulaBreaksBetweenItsParts) {
   EXPECT_EQ(formula_in_parts("a = tau - w x (I w) (A1.4)"),
-            "a =\u00a0tau -\u00a0w x\u00a0(I\u00a0w) (A1.4)");
+            "a =\u00a0tau \u2212\u00a0w x\u00a0(I\u00a0w) (A1.4)");
+  EXPECT_EQ(formula_in_parts("v' = v - (I^-1 J)"), "v' =\u00a0v \u2212\u00a0(I^-1\u00a0J)");
   EXPECT_EQ(formula_in_parts("(a + [ b c ] + d)"), "(a +\u00a0[\u00a0b\u00a0c\u00a0] +\u00a0d)");
   const std::string of_long_brackets = "(a word and another word of it)";
   EXPECT_EQ(formula_in_parts(of_long_brackets), of_long_brackets);
