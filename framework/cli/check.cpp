@@ -40,15 +40,19 @@ void add_check(CLI::App& app, Command& command) {
               "Your own tests in place of the public ones: a GoogleTest file as in tests/, run on "
               "your module in the sandbox, as the grader runs it")
       .type_name("FILE");
+  auto first = std::make_shared<bool>(false);
+  verb.flag("--first", *first,
+            "Without the tests of whole scenes (a4), for which ./tumble builds an engine once");
   verb.footer(
       "Exit: 0 all tests right; 1 your code: a test is not right, or it does not compile; 2 this "
       "command: no such assignment, file, test or flag, and nothing was checked; 4 not all is "
       "attempted, and the rest is right.\n"
       "Example: tumble check a1\n         tumble check a1 'two walls'\n"
       "         tumble check a1 collision_impulse --all");
-  verb.runs([&command, given, own_tests, json] {
+  verb.runs([&command, given, own_tests, json, first] {
     CheckWords words = read_check_words(*given);
     words.own_tests = *own_tests;
+    words.first = *first;
     if (*json && !own_tests->empty())
       throw UserError("--json", "is of the public tests", "Leave it out, or leave --my-tests out.");
     command.exit = *json ? check_for_machines(command, words) : check_once(command, words);

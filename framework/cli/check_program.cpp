@@ -33,6 +33,19 @@ fs::path loaded_check(const Command& command, const std::string& id) {
   return command.build / "bin" / ("check_" + id + "_loaded");
 }
 
+// The public tests linked with the student's file: all, or all but those of whole scenes.
+// @throws UserError where the assignment has none of those, or another file is checked
+std::string linked_check(const Command& command, const CheckWords& words) {
+  if (!words.first) return "check_" + words.id;
+  if (words.file || !words.own_tests.empty())
+    throw UserError("--first", "is of the public tests on your file under assignments/",
+                    "Leave it out.");
+  std::ifstream list(command.build / "first_checks.txt");
+  for (std::string line; std::getline(list, line);)
+    if (line.starts_with(words.id + " ")) return "check_" + words.id + "_first";
+  throw UserError("--first", words.id + " has no tests of whole scenes here", "Leave it out.");
+}
+
 bool has_colours() { return shows_colours(STDOUT_FILENO); }
 
 void print_indented(const std::string& text) {
@@ -140,15 +153,26 @@ ExitCode run_own(const Command& command, const CheckWords& words, const fs::path
   return ExitCode::kCheckFailed;
 }
 
-ExitCode check_own(const Command& command, const CheckWords& words, const fs::path& file,
-                   const fs::path& header) {
+// After all tests but those of whole scenes.
+void print_what_is_left(const CheckWords& words, ExitCode code) {
+  if (code == ExitCode::kFine)
+    fmt::print("\nLeft are the tests of whole scenes: ./tumble check {}\n", words.id);
+  else
+    fmt::print(
+        "\nThe tests of whole scenes were not run: they follow when the tests above are\n"
+        "right, and need an engine, whose first build takes some minutes.\n");
+}
+
+ExitCode check_own(const Command& command, const CheckWords& words, const std::string& name,
+                   const fs::path& file, const fs::path& header) {
   const KeptWords kept(command, words.id, folder_of(words.id));
-  const ProgramOutcome built = run_program(
-      {"ninja", "-C", command.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
+  const ProgramOutcome built =
+      run_program({"ninja", "-C", command.build.string(), "--quiet", name}, Output::kCaptured);
   if (built.code != 0) return does_not_compile(file, header, built.printed);
   print_warnings(file, kept.after_build(built.printed));
-  const fs::path program = command.build / "bin" / ("check_" + words.id);
-  return run_own(command, words, file, {program.string()});
+  const ExitCode code = run_own(command, words, file, {(command.build / "bin" / name).string()});
+  if (words.first && code != ExitCode::kUserError) print_what_is_left(words, code);
+  return code;
 }
 
 // ---- The student's own file, of an installed course ----
@@ -263,8 +287,7 @@ fs::path checked_file(const Command& command, const CheckWords& words) {
 }
 
 CheckedTests check_quietly(const Command& command, const CheckWords& words) {
-  const std::string& id = words.id;
-  const std::string folder = folder_of(id);
+  const std::string &id = words.id, folder = folder_of(id), linked = linked_check(command, words);
   const fs::path file = checked_file(command, words), own = own_file(command, folder),
                  header = command.root / "assignments" / folder / (folder + ".h");
   if (!fs::exists(file)) throw missing_file(command, id, file);
@@ -289,12 +312,12 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
     program = {loaded_check(command, id).string(), words.object.string()};
   } else {
     const ProgramOutcome built = run_program(
-        command.is_installed ? grading::own_compilation(command.root, command.build, file, object)
-                             : std::vector<std::string>{"ninja", "-C", command.build.string(),
-                                                        "--quiet", "check_" + id},
+        command.is_installed
+            ? grading::own_compilation(command.root, command.build, file, object)
+            : std::vector<std::string>{"ninja", "-C", command.build.string(), "--quiet", linked},
         Output::kCaptured);
     if (built.code != 0) return {grading::compiler_story(built.printed, file, header), {}};
-    program = {(programs / ("check_" + id)).string()};
+    program = {(programs / linked).string()};
     if (command.is_installed) program.push_back(object.string());
   }
   if (is_own && !starts(program))
@@ -318,6 +341,7 @@ CheckedTests check_quietly(const Command& command, const CheckWords& words) {
 }
 
 ExitCode check_once(const Command& command, const CheckWords& words) {
+  const std::string linked = linked_check(command, words);
   const fs::path file = checked_file(command, words);
   if (!fs::exists(file)) throw missing_file(command, words.id, file);
   const std::string folder = folder_of(words.id);
@@ -335,7 +359,7 @@ ExitCode check_once(const Command& command, const CheckWords& words) {
   std::error_code missing;
   if (!fs::equivalent(file, own, missing)) return check_foreign(command, words, file, header);
   return command.is_installed ? check_installed(command, words, file, header)
-                              : check_own(command, words, file, header);
+                              : check_own(command, words, linked, file, header);
 }
 
 }  // namespace tumble::cli

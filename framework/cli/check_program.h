@@ -17,6 +17,7 @@ struct CheckWords {
   std::optional<std::filesystem::path> file;  // instead of the stub
   std::vector<std::string> patterns;          // choose tests (test_program/test_words.h)
   bool all = false;                           // a line for each test in the table
+  bool first = false;                         // without the tests of whole scenes
   std::string own_tests;                      // the student's own tests in place of the public ones
   std::filesystem::path results;              // where verdicts are written as well; may be empty
   // of check_quietly(): a shared object of the user's own file, for which the file is not compiled

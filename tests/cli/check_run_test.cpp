@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ProgramOutcome check(const std::vector<std::string>& more) {
+ProgramOutcome check(const std::vector<std::string>& more, const std::string& id = "a1") {
   ::setenv("TUMBLE_ROOT", test::source_dir().c_str(), 1);
-  std::vector<std::string> words = {test::binary_dir() + "/bin/tumble_check", "check", "a1"};
+  std::vector<std::string> words = {test::binary_dir() + "/bin/tumble_check", "check", id};
   words.insert(words.end(), more.begin(), more.end());
   return run_program(words, Output::kCaptured, 100.0);
 }
@@ -269,6 +269,16 @@ TEST(Check, RightTestsAreOneLineAGroupAndNoLineIsWiderThanAScreen) {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
     EXPECT_LT(printed.find("\nmend first\n"), printed.find("\n72 tests: "));
   }
+}
+
+// Of a4, in a tree with the reference: its stub answers nothing, so what is left is told.
+TEST(Check, TheFirstChecksLeaveTheTestsOfWholeScenesOut) {
+  const ProgramOutcome outcome = check({"--first", "--all"}, "a4");
+  expect_said(outcome, 4, {"ComesBefore.", "The tests of whole scenes were not run"});
+  EXPECT_EQ(outcome.printed.find("Scheduler."), std::string::npos) << outcome.printed;
+  expect_said(check({"--first"}), 2, {"--first: a1 has no tests of whole scenes here"});
+  const File file("#include \"assignments/a1_impulse/a1_impulse.h\"\n");
+  expect_said(check({"--first", file.path.string()}), 2, {"--first: is of the public tests"});
 }
 
 TEST(Check, AMissingFileAndAnUnknownAssignmentAreReportedWithTheRemedy) {

@@ -65,7 +65,7 @@ fi
 # What is built for which words: a target says its name.
 asked() { # VERB WORDS...: prints the targets that the launcher asked for, in their order
   { printf 'rule say\n  command = echo $out >>$$TUMBLE_BUILD/asked\n'
-    for target in tumble tumble_check tumble_inspect tumble_pages sandbox_init submission_sdk $(for id in $ids; do echo check_${id}_ready check_${id}_sandboxed worker_$id judge_$id ${id}_reference; done); do echo "build $target: say"; done
+    for target in tumble tumble_check tumble_inspect tumble_pages sandbox_init submission_sdk $(for id in $ids; do echo check_${id}_first_ready check_${id}_ready check_${id}_sandboxed worker_$id judge_$id ${id}_reference; done); do echo "build $target: say"; done
   } >"$TUMBLE_BUILD/build.ninja"
   rm -f "$TUMBLE_BUILD"/asked "$TUMBLE_BUILD"/.ninja_*
   for program in tumble tumble_check tumble_inspect tumble_pages; do printf '#!/bin/sh\n' >"$TUMBLE_BUILD/bin/$program" && chmod +x "$TUMBLE_BUILD/bin/$program"; done
@@ -74,6 +74,12 @@ asked() { # VERB WORDS...: prints the targets that the launcher asked for, in th
 }
 asked check a2 && [ "$asked" = "check_a2_ready tumble_check" ] || fail "check a2 builds $asked"
 asked check a2 'Rk4*' && [ "$asked" = "check_a2_ready tumble_check" ] || fail "check a2 of some tests builds $asked"
+echo "a2 $tree/library.a" >"$TUMBLE_BUILD/first_checks.txt"
+asked check a2 --all && [ "$asked" = "check_a2_first_ready check_a2_ready tumble_check tumble_check" ] || fail "check a2 before its library is there builds $asked"
+asked check a2 'Rk4*' && [ "$asked" = "check_a2_ready tumble_check" ] || fail "check a2 of some tests, without the library, builds $asked"
+asked check a1 && [ "$asked" = "check_a1_ready tumble_check" ] || fail "check a1, which needs no library, builds $asked"
+: >"$tree/library.a"
+asked check a2 && [ "$asked" = "check_a2_ready tumble_check" ] || fail "check a2 with its library builds $asked"
 asked watch a1 my/file.cpp && [ "$asked" = "check_a1_ready check_a1_sandboxed tumble_check" ] || fail "watch of a file builds $asked"
 asked inspect box && [ "$asked" = "tumble_inspect" ] || fail "inspect builds $asked"
 asked handouts && [ "$asked" = "tumble_pages" ] || fail "handouts, without solutions, builds $asked"

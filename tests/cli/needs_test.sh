@@ -17,6 +17,13 @@ while read -r verb program audience targets; do
   case $audience in everyone) ;; instructor) [ -d "$root/solutions_private" ] || continue ;; *) fail "$verb: for whom is '$audience'?" ;; esac
   for target in $program $targets; do
     case $target in solutions:*) [ -d "$root/solutions_private" ] || continue ;; esac
+    case $target in first:*)
+      for id in $(awk '{ print $1 }' "$build/first_checks.txt"); do
+        name=${target#first:} name=${name//\{id\}/$id}
+        grep -qx -- "$name" <<<"$known" || fail "$verb: the build has no target $name"
+      done
+      continue ;;
+    esac
     target=${target#file:} target=${target#mytests:} target=${target#solutions:}
     for id in $(case $target in *solved*) ids solutions_private ;; *) ids assignments ;; esac); do
       name=$(sed "s/{[a-z]*}/$id/" <<<"$target")
