@@ -12,7 +12,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace tumble {
@@ -47,17 +46,23 @@ Tableau make_tableau() {
       5.0 / 36 + root / 30, 2.0 / 9 + root / 15, 5.0 / 36;
   gauss.b << 5.0 / 18, 4.0 / 9, 5.0 / 18;
   gauss.c << 0.5 - root / 10, 0.5, 0.5 + root / 10;
-  const Eigen::EigenSolver<Matrix3d> eigen(gauss.A);
-  std::array<int, 3> order{};  // real, positive imaginary part, negative one
-  for (int i = 0; i < 3; ++i) {
-    const double imaginary = eigen.eigenvalues()[i].imag();
-    order[imaginary == 0.0 ? 0 : imaginary > 0.0 ? 1 : 2] = i;
-  }
+  // The eigenvalues l of A are the roots of l^3 - l^2 / 2 + l / 10 - 1 / 120, one of them real:
+  // Newton's method from above every root comes down to it, where the polynomial is convex.
+  double l = 0.5;
+  for (int i = 0; i < 12; ++i)
+    l -= (((l - 0.5) * l + 0.1) * l - 1.0 / 120) / ((3 * l - 1.0) * l + 0.1);
+  const double half_sum = 0.5 * (0.5 - l), product = 1.0 / (120 * l);
+  gauss.real = l;
+  gauss.pair = {half_sum, std::sqrt(product - half_sum * half_sum)};
+  // By the theorem of Cayley and Hamilton the factors of the other two leave an eigenvector.
+  const std::array<Complex, 3> values = {gauss.real, gauss.pair, std::conj(gauss.pair)};
+  const auto minus = [&](std::size_t i) -> Eigen::Matrix3cd {
+    return gauss.A.cast<Complex>() - values[i] * Eigen::Matrix3cd::Identity();
+  };
   for (std::size_t i = 0; i < 3; ++i)
-    gauss.T.col(static_cast<Eigen::Index>(i)) = eigen.eigenvectors().col(order[i]);
+    gauss.T.col(static_cast<Eigen::Index>(i)) =
+        (minus((i + 1) % 3) * minus((i + 2) % 3)).col(0).normalized();
   gauss.T_inverse = gauss.T.inverse();
-  gauss.real = eigen.eigenvalues()[order[0]].real();
-  gauss.pair = eigen.eigenvalues()[order[1]];
   return gauss;
 }
 

@@ -14,7 +14,7 @@
 #include "framework/modules/call_counts.h"
 #include "framework/modules/load.h"
 #include "framework/modules/names.h"
-#include "framework/modules/proxy.h"
+#include "framework/modules/connection.h"
 #include "framework/modules/serve.h"
 #include "framework/modules/watched.h"
 

@@ -13,7 +13,7 @@
 
 #include "framework/core/not_implemented.h"
 #include "framework/grading/sandbox/sandbox_wire.h"
-#include "framework/modules/proxy.h"
+#include "framework/modules/connection.h"
 #include "framework/modules/under_test.h"
 
 namespace tumble::grading {

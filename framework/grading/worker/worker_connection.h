@@ -13,7 +13,7 @@
 #include "framework/grading/verdicts/own_time.h"
 #include "framework/grading/sandbox/sandbox.h"
 #include "framework/grading/verdicts/verdict.h"
-#include "framework/modules/proxy.h"
+#include "framework/modules/connection.h"
 
 namespace tumble::grading {
 
