@@ -14,6 +14,7 @@
 
 #include "tests/support/places.h"
 #include "framework/grading/worker/worker_connection.h"
+#include "framework/modules/proxy.h"
 #include "tests/modules/waist.h"
 
 namespace {

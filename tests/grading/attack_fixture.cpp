@@ -12,6 +12,7 @@
 
 #include "framework/core/files.h"
 #include "framework/grading/sandbox/protection.h"
+#include "framework/modules/proxy.h"
 
 namespace tumble::grading {
 namespace {

@@ -14,8 +14,6 @@
 namespace tumble::battery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // ---- Row 25 -------------------------------------------------------------------------------------
 
 struct Drift {
@@ -90,7 +88,7 @@ void through_the_pole(const Given& given, const a2::Module* a2, Findings& findin
   // Turns at constant omega: closed form. The axis misses the pole of the angles by 1e-4.
   const Vector3d omega(1e-4, 1.0, 0.0);
   constexpr double h = 1e-3;
-  const auto steps = static_cast<long>(kPi / h);
+  const auto steps = static_cast<long>(std::numbers::pi / h);
   scene::Scene scene = truths::empty_scene("nose over", 1.0, 1e-9);
   scene::BodySpec body = truths::point_mass("body", 1.0, Vector3d::Zero(), Vector3d::Zero());
   body.inertia_body_kg_m2 = Matrix3d::Identity();
@@ -144,8 +142,10 @@ void round_trips(const a2::Module& a2, Findings& findings) {
   };
   Random random(26);
   for (int i = 0; i < 5000; ++i) {
-    const double yaw = random.between(-kPi, kPi), roll = random.between(-kPi, kPi),
-                 pole = i % 2 == 0 ? 0.5 * kPi : -0.5 * kPi, inward = pole > 0 ? -1 : 1;
+    const double yaw = random.between(-std::numbers::pi, std::numbers::pi),
+                 roll = random.between(-std::numbers::pi, std::numbers::pi),
+                 pole = i % 2 == 0 ? 0.5 * std::numbers::pi : -0.5 * std::numbers::pi,
+                 inward = pole > 0 ? -1 : 1;
     const Matrix3d far =
         a2.rotation_from_euler_angles(yaw, pole + inward * random.between(1e-3, 1.5), roll);
     raise(worst, (trip(far) - far).cwiseAbs().maxCoeff());

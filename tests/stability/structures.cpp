@@ -15,8 +15,6 @@
 namespace tumble::battery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // ---- Row 12 -------------------------------------------------------------------------------------
 
 /// One stone of a semicircular arch of middle radius 1, in the frame of the arch's centre, its
@@ -34,7 +32,8 @@ struct Stone {
 };
 
 Stone stone_of(int n, double thickness) {
-  const double b = 0.5 * kPi / n, inner = 1 - 0.5 * thickness, outer = 1 + 0.5 * thickness;
+  const double b = 0.5 * std::numbers::pi / n, inner = 1 - 0.5 * thickness,
+               outer = 1 + 0.5 * thickness;
   const auto kept = [](double v) { return static_cast<double>(static_cast<float>(v)); };
   return {kept(inner * std::cos(b)), kept(inner * std::sin(b)), kept(outer * std::cos(b)),
           kept(outer * std::sin(b))};
@@ -49,7 +48,7 @@ scene::Scene arch(int n, double thickness, const std::filesystem::path& folder) 
                {stone.outer_x, stone.outer_z},
                {stone.inner_x, stone.inner_z}},
               0.25, file);
-  const double b = stone.half_angle(), first = 0.5 * (kPi - 2 * n * b),
+  const double b = stone.half_angle(), first = 0.5 * (std::numbers::pi - 2 * n * b),
                radius = stone.com() - stone.centre();
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) {
@@ -63,7 +62,7 @@ scene::Scene arch(int n, double thickness, const std::filesystem::path& folder) 
     bodies.push_back(turned(body, -angle, Vector3d::UnitY()));  // x of the stone along the radius
   }
   // abutments: boxes under the first and the last joint
-  for (const double end : {first, kPi - first}) {
+  for (const double end : {first, std::numbers::pi - first}) {
     const double side = end < 1 ? -1.0 : 1.0;  // away from the arch, around the centre
     const Vector3d radial(std::cos(end), 0, std::sin(end)),
         away(-side * std::sin(end), 0, side * std::cos(end));
