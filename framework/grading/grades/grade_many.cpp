@@ -1,7 +1,5 @@
 // Grades all submissions of a folder, each in a separate process, a few at a time, so that a
 // failure affects only one.
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,26 +8,22 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
 #include "framework/grading/compiler/compile.h"
 #include "framework/core/digest.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/batch_work.h"
-#include "framework/grading/grades/changes.h"
+#include "framework/grading/grades/class_overview.h"
+#include "framework/grading/grades/one_grading.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/grades/ledger.h"
 #include "framework/grading/grades/ledger_records.h"
 #include "framework/grading/grades/lowering.h"
-#include "framework/grading/grades/grade_pages.h"
-#include "framework/grading/course/handout_page.h"
 #include "framework/grading/course/machine_key.h"
-#include "framework/grading/grades/grade_submission.h"
 #include "framework/grading/grades/output_folder.h"
 #include "framework/grading/grades/own_tests.h"
-#include "framework/grading/grades/stages.h"
 #include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_user.h"
 #include "framework/grading/verdicts/plain_text.h"
@@ -49,12 +43,11 @@ class Batch {
         const fs::path& out, const GradeOptions& options)
       : protection_(protection_of_grades(options.accepted_sandbox)),
         snapshot_(course, id),
-        course_(snapshot_.course()),
-        id_(id),
-        kind_(course.registry->find(id)),
-        options_(options) {
+        options_(options),
+        terms_{
+            snapshot_.course(), id, course.registry->find(id), options, protection_, {}, {}, {}} {
     require_rubric_of_judge(course_, id);
-    rubric_ = rubric_of(course_, id);
+    terms_.rubric = rubric_of(course_, id);
     refuse_key_in(out);
     out_ = out;
     if (options.shard) fs::remove(done_file(out, *options.shard));
@@ -62,13 +55,15 @@ class Batch {
                     RunSettings{id, fs::canonical(submissions), options.budget_s, options.media,
                                 options.policy, word_of(options.page_code())},
                     options.mend_list && !options.shard ? BrokenList::kMend : BrokenList::kRefuse);
-    if (!options.shard) ledger_.emplace(output_->path() / kLedgerFile);
+    terms_.out = output_->path();
+    if (!options.shard) ledger_.emplace(terms_.out / kLedgerFile);
     if (ledger_ && ledger_->was_mended())
       notice(
           "the last line of the ledger was unfinished, because a run was killed while it wrote "
           "it; it is written again");
-    key_ = machine_key();
-    if (!key_.notice.empty()) notice(key_.notice);
+    const MachineKey key = machine_key();
+    if (!key.notice.empty()) notice(key.notice);
+    terms_.key = key.bytes;
   }
 
   std::vector<Grade> run(std::vector<Submission> submissions) {
@@ -80,7 +75,7 @@ class Batch {
     grade_open_ones();
     if (options_.shard) return end_shard();
     decide_lowerings();
-    std::vector<Grade> grades = write_overview();
+    std::vector<Grade> grades = write_overview(terms_, work_);
     remove_shards(output_->path());
     return grades;
   }
@@ -147,7 +142,7 @@ class Batch {
       work.folder = folders[i];
       work.key = {submission_digest(submissions[i]),
                   submissions[i].own_tests.empty() ? judging : digest(judging + own_tests),
-                  rubric_digest(rubric_), pictures};
+                  rubric_digest(terms_.rubric), pictures};
       read_earlier(work);
       take_over_or_open(work);
       work_.push_back(std::move(work));
@@ -169,15 +164,15 @@ class Batch {
   // For a shard without a result of its own the earlier result is that of the class, and where it
   // is current nothing is to be done.
   void read_earlier(Work& work) const {
-    work.earlier_place = place_of(work);
+    work.earlier_place = one_.place_of(work);
     if (output_->owns(work.folder))
-      work.earlier = read_earlier_run(work.earlier_place, id_, key_.bytes);
+      work.earlier = read_earlier_run(work.earlier_place, id_, terms_.key);
     distrust_older_than_ledger(work);
     const fs::path of_class = out_ / work.folder;
     if (!options_.shard || work.earlier.record || !fs::is_directory(fs::symlink_status(of_class)))
       return;
     work.earlier_place = of_class;
-    work.earlier = read_earlier_run(of_class, id_, key_.bytes);
+    work.earlier = read_earlier_run(of_class, id_, terms_.key);
   }
 
   // A signed result may be an old one that was put back.
@@ -208,7 +203,7 @@ class Batch {
     const fs::path* taken = nullptr;
     for (const fs::path& made : finished->second) {
       Work trial = work;
-      trial.earlier = read_earlier_run(made, id_, key_.bytes);
+      trial.earlier = read_earlier_run(made, id_, terms_.key);
       if (!trial.earlier.problem.empty())
         report_distrusted({trial}, [this](const std::string& sentence) { notice(sentence); });
       if (is_current(trial, options_)) {
@@ -218,8 +213,8 @@ class Batch {
       if (!taken && is_current_but_for_a_stage(trial, options_)) taken = &made;
     }
     if (!taken) return false;
-    fs::create_directories(draft_of(work));
-    fs::rename(*taken, made_of(work));
+    fs::create_directories(one_.draft_of(work));
+    fs::rename(*taken, one_.made_of(work));
     settle(work, 0);
     return true;
   }
@@ -251,12 +246,6 @@ class Batch {
     work.is_settled = true;
   }
 
-  // The earlier result, if there is one, with all details: read again.
-  std::optional<GradeRecord> earlier_record(const Work& work) const {
-    if (!work.earlier.record) return std::nullopt;
-    return read_earlier_run(work.earlier_place, id_, key_.bytes).record;
-  }
-
   // Entries are appended in the order of the submissions, each as soon as all before it are
   // settled: so the ledger has the same bytes for any number of jobs.
   void log_settled() {
@@ -269,11 +258,11 @@ class Batch {
 
   void grade_open_ones() {
     start_ = Clock::now();
-    if (!open_.empty()) prepare_page_code();
-    if (page_code_ && !page_code_->laws().why_no_right.empty())
-      notice("the right law is in no page: " + page_code_->laws().why_no_right);
+    if (!open_.empty()) one_.prepare_page_code();
+    if (const std::string why = one_.why_no_right_law(); !why.empty())
+      notice("the right law is in no page: " + why);
     report_progress("");
-    const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
+    const auto work = [&](std::size_t i) { one_.grade(*open_[i]); };
     farm::run_in_processes(
         open_.size(), options_.jobs, work,
         [&](std::size_t i, int status, double seconds) {
@@ -290,19 +279,10 @@ class Batch {
         });
   }
 
-  void prepare_page_code() {
-    try {
-      page_code_.emplace(course_, id_, options_.page_code());
-    } catch (const std::exception& error) {
-      page_code_fault_ = error.what();
-      page_code_.emplace(course_, id_, CodeInPages::kNone);
-    }
-  }
-
   // Removes unfinished results; finished ones stay, and are reused by the next run.
   void clear_drafts() const {
     std::error_code ignored;
-    for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
+    for (const Work& work : work_) fs::remove_all(one_.draft_of(work), ignored);
     // this process ends by a signal, without running destructors
     for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);
     fmt::print(
@@ -312,105 +292,24 @@ class Batch {
         done_, work_.size(), out_.string());
   }
 
-  fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
-  fs::path draft_of(const Work& work) const { return output_->path() / draft_name(work.folder); }
-  // The draft's folder has the final name inside, because the written files contain it. What lies
-  // beside it begins with a dot, as no folder of a submission does.
-  fs::path made_of(const Work& work) const { return draft_of(work) / work.folder; }
-  // A record of the verdicts alone, for the case that a stage behind them ends the process.
-  fs::path verdicts_of(const Work& work) const {
-    return draft_of(work) / ".verdicts" / work.folder;
-  }
-
-  // Runs in a separate process. The message of an exception is left beside the draft, for the
-  // parent.
-  void grade_one(const Work& work) const {
-    try {
-      fs::create_directories(made_of(work));
-      GradeOptions own = options_;
-      own.progress = {};
-      const std::optional<GradeRecord> earlier = earlier_record(work);
-      std::optional<Grade> grade;
-      // only points have changed: added up again, not run again
-      if (earlier && verdicts_stand(work, options_) && !options_.again)
-        grade = graded_by(rubric_, earlier->grade);
-      GradeKey key = work.key;
-      const bool is_rerun = !grade;
-      if (is_rerun) {
-        grade = grade_submission(course_, id_, *work.submission, made_of(work), own,
-                                 [&](const Grade& judged) { keep_verdicts(work, judged); });
-        note_protection(*grade);
-      }
-      grade->folder = work.folder;
-      if (!is_rerun || !options_.media)
-        keep_media(work.earlier_place, made_of(work), earlier, *grade, key);
-      if (is_rerun) forget_page_code(made_of(work));
-      if (!options_.media && has_no_code()) key.pictures.clear();
-      if (grade->state == GradeState::kJudged) add_page_code(work, *grade, is_rerun);
-      grade->change.clear();
-      grade->changes.clear();
-      if (earlier) note_changes(*earlier, key, *grade);
-      PageLaws laws = page_code_->laws();
-      laws.script = page_script(course_, id_);  // also for modules that an earlier run has made
-      write_grade(kind_, *grade, key, made_of(work), key_.bytes, laws);
-    } catch (const std::exception& error) {
-      write_whole(draft_of(work) / ".fault.txt", error.what());
-      throw;
-    }
-  }
-
-  void keep_verdicts(const Work& work, Grade judged) const {
-    note_protection(judged);
-    judged.folder = work.folder;
-    GradeKey key = work.key;
-    key.pictures.clear();
-    write_whole(verdicts_of(work) / "record.json",
-                record_json({std::move(judged), key, id_, {}}, key_.bytes));
-  }
-
-  // Whether pages get no code now though the assignment has some. Pictures that are kept then
-  // belong to a page with code: the next run that is to have both makes them.
-  bool has_no_code() const {
-    return options_.page_code() == CodeInPages::kNone && !page_code_->laws().script.empty();
-  }
-
-  // Where only points have changed, the submission's own module is there already.
-  void add_page_code(const Work& work, Grade& grade, bool is_rerun) const {
-    const char* const what = "the code in its page";
-    if (!page_code_fault_.empty()) return note_failed_stage(grade, what, page_code_fault_);
-    if (!is_rerun) return;
-    run_stage(grade, what, [&] {
-      grade.no_page_code = page_code_->add(work.submission->source, made_of(work));
-    });
-  }
-
-  void note_protection(Grade& grade) const {
-    grade.sandbox = protection_.words;
-    grade.is_official = protection_.is_official;
-    if (!protection_.note.empty()) grade.notes.push_back(protection_.note);
-  }
-
   // Puts a finished submission in place. After a fault of the grader an old result stays.
   void settle(Work& work, int status) {
-    const fs::path draft = draft_of(work), made = made_of(work), place = place_of(work);
-    std::optional<GradeRecord> record;
-    if (status == 0) record = read_earlier_run(made, id_, key_.bytes).record;
-    if (!record) record = write_verdicts(work, status);
-    if (!record) record = write_fault(work, status);
+    const fs::path draft = one_.draft_of(work), place = one_.place_of(work);
+    GradeRecord record = one_.ended(work, status);
     const LedgerScore* last = ledger_ ? ledger_->last_score(work.folder) : nullptr;
     const Placing placing = placing_of(
-        work, *record, {last, options_.guard_changed_files, fs::exists(fs::symlink_status(place))});
+        work, record, {last, options_.guard_changed_files, fs::exists(fs::symlink_status(place))});
     if (placing == Placing::kAsk && !options_.shard)
-      return hold_back(work, std::move(*record), last);
+      return hold_back(work, std::move(record), last);
     if (placing == Placing::kEarlier) {
-      GradeRecord old = earlier_record(work).value_or(*work.earlier.record);
+      GradeRecord old = one_.earlier_record(work).value_or(*work.earlier.record);
       old.grade.change = "the grader failed on a new run; this is the result of the earlier one";
       settle_with(work, std::move(old));
     } else if (placing == Placing::kUntouched) {
-      settle_untouched(work, std::move(*record));
+      settle_untouched(work, std::move(record));
     } else {
-      put_in_place(made, place, draft / ".old");
-      settle_with(work, std::move(*record));
+      put_in_place(one_.made_of(work), place, draft / ".old");
+      settle_with(work, std::move(record));
     }
     std::error_code ignored;
     fs::remove_all(draft, ignored);
@@ -455,19 +354,19 @@ class Batch {
     for (Work* work : held_) {
       const std::string change = work->record.grade.change;
       if (may) {
-        put_in_place(made_of(*work), place_of(*work), draft_of(*work) / ".old");
+        put_in_place(one_.made_of(*work), one_.place_of(*work), one_.draft_of(*work) / ".old");
         settle_with(
             *work,
-            read_earlier_run(place_of(*work), id_, key_.bytes).record.value_or(work->record));
+            read_earlier_run(one_.place_of(*work), id_, terms_.key).record.value_or(work->record));
         work->record.grade.change = work->entry.change = change;
       } else if (!lowers_earlier(*work, work->record)) {
         leave_blank(*work);
       } else {
-        take_over(*work, earlier_record(*work).value_or(*work->earlier.record));
+        take_over(*work, one_.earlier_record(*work).value_or(*work->earlier.record));
         work->record.grade.change = "not lowered (" + change + ")";
       }
       std::error_code ignored;
-      fs::remove_all(draft_of(*work), ignored);
+      fs::remove_all(one_.draft_of(*work), ignored);
     }
     log_settled();
   }
@@ -480,59 +379,13 @@ class Batch {
     grade.is_held = true;
     grade.change = "not lowered (" + grade.change + ")";
     grade.media.clear();
-    if (!fs::exists(fs::symlink_status(place_of(work)))) {
-      GradeRecord held = held_record(work, id_, rubric_, grade.change);
-      note_protection(held.grade);
-      write_made(work, held);
-      put_in_place(made_of(work), place_of(work), draft_of(work) / ".old");
+    if (!fs::exists(fs::symlink_status(one_.place_of(work)))) {
+      GradeRecord held = held_record(work, id_, terms_.rubric, grade.change);
+      one_.note_protection(held.grade);
+      one_.write_made(work, held);
+      put_in_place(one_.made_of(work), one_.place_of(work), one_.draft_of(work) / ".old");
     }
     work.is_settled = true;
-  }
-
-  std::string why_it_ended(const Work& work, int status) const {
-    const std::string why = text_of(draft_of(work) / ".fault.txt");
-    if (!why.empty()) return why;
-    return WIFSIGNALED(status)
-               ? fmt::format("the grading process ended with signal {}", WTERMSIG(status))
-               : "the grading process left no result";
-  }
-
-  // The grading process failed behind the verdicts: they and the points stand.
-  std::optional<GradeRecord> write_verdicts(const Work& work, int status) const {
-    std::optional<GradeRecord> record = read_earlier_run(verdicts_of(work), id_, key_.bytes).record;
-    if (!record) return std::nullopt;
-    note_failed_stage(record->grade, "pictures and pages", why_it_ended(work, status));
-    if (const auto earlier = earlier_record(work))
-      note_changes(*earlier, record->key, record->grade);
-    write_made(work, *record);
-    return record;
-  }
-
-  // The grading process itself failed: writes a page that says so, without a score.
-  GradeRecord write_fault(const Work& work, int status) const {
-    GradeRecord record = fault_record(work, id_, rubric_, why_it_ended(work, status));
-    note_protection(record.grade);
-    write_made(work, record);
-    return record;
-  }
-
-  // In place of what the grading process has left.
-  void write_made(const Work& work, GradeRecord& record) const {
-    fs::remove_all(made_of(work));
-    fs::create_directories(made_of(work));
-    keep_media(work.earlier_place, made_of(work), earlier_record(work), record.grade, record.key);
-    write_grade(kind_, record.grade, record.key, made_of(work), key_.bytes);
-    record.files = digests_below(made_of(work));
-  }
-
-  // Pages of the class: no grade depends on them.
-  void make_page(const std::string& what, const std::function<void()>& make) const {
-    try {
-      make();
-    } catch (const std::exception& error) {
-      if (!options_.failed) throw;
-      options_.failed(what, error.what());
-    }
   }
 
   void report_progress(const std::string& finished) const {
@@ -546,66 +399,20 @@ class Batch {
     options_.progress(progress);
   }
 
-  std::vector<Grade> write_overview() {
-    std::vector<Grade> grades;
-    nlohmann::ordered_json times = {{"command", course_.command},
-                                    {"seconds", nlohmann::ordered_json::object()}};
-    std::size_t left_out = 0, distrusted = 0;
-    std::vector<fs::path> with_handout;
-    for (Work& work : work_) {
-      (work.earlier.problem.empty() ? left_out : distrusted) += work.is_left_out;
-      if (work.is_left_out) continue;
-      if (work.record.grade.has_handout && !work.is_untouched)
-        with_handout.push_back(place_of(work));
-      work.record.grade.remarks = work.remarks;
-      work.record.grade.student_id = work.submission->student_id;
-      grades.push_back(std::move(work.record.grade));
-      if (work.seconds > 0.0) times["seconds"][work.folder] = work.seconds;
-    }
-    if (left_out > 0)
-      notice(
-          fmt::format("{} submissions were never graded and are not in the overview: grade all "
-                      "of them with tumble grade",
-                      left_out));
-    if (distrusted > 0)
-      notice(
-          fmt::format("the earlier results of {} submissions do not count, and they are not in the "
-                      "overview: grade all of them with tumble grade",
-                      distrusted));
-    const fs::path& out = output_->path();
-    // with a policy it is the overview's: without late days it must not even lie there meanwhile
-    if (options_.policy.empty())
-      write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
-    make_page("index.html", [&] {
-      index_page(kind_, grades, static_cast<bool>(options_.overview)).write(out / "index.html");
-    });
-    make_page(kHandoutPage, [&] {
-      write_handout(course_, id_, out / kHandoutPage);
-      for (const fs::path& place : with_handout) add_handout(out / kHandoutPage, place);
-    });
-    write_whole(out / "times.json",
-                times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
-    if (options_.overview) options_.overview(out, grades);
-    return grades;
-  }
-
   // before anything else: where it is too weak, nothing is copied or written
   const GradeProtection protection_;
   const CourseSnapshot snapshot_;
   const PrivateFolder sources_;
-  const Course& course_;
-  const std::string id_;
-  const modules::ModuleKind& kind_;
   const GradeOptions& options_;
-  Rubric rubric_;
+  GradingTerms terms_;
+  const Course& course_ = terms_.course;
+  const std::string& id_ = terms_.id;
+  OneGrading one_{terms_};
   fs::path out_;  // of the class, also for a shard
   std::optional<OutputFolder> output_;
   FinishedByShards finished_;     // what may be taken over
   std::optional<Ledger> ledger_;  // of the class
   const std::string compiler_ = compiler_in_words();
-  MachineKey key_;
-  std::optional<PageCode> page_code_;  // made where a submission is open
-  std::string page_code_fault_;        // why it could not be made
   MarksOfClass marks_;
   std::vector<Work> work_;
   std::vector<Work*> open_, held_;
