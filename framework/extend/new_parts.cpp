@@ -134,19 +134,16 @@ std::string first_ask(const Function& function) {
   return "[[maybe_unused]] const auto answer = " + call + ";";
 }
 
-Marks marks_of(const fs::path& root, const AskedFunction& asked, const std::string& effect) {
+Marks marks_of(const fs::path& root, const AskedFunction& asked) {
   const Function& function = asked.function;
   std::string parameters;
   for (const Parameter& parameter : function.parameters)
     parameters += (parameters.empty() ? "" : ", ") + parameter.type + " " + parameter.name;
-  std::string words = effect;
-  std::replace(words.begin(), words.end(), '_', ' ');
   return {{"id", asked.id},
           {"function", function.name},
           {"Law", asked.law},
           {"signature", function.returns + "(" + parameters + ")"},
           {"includes", includes_of_types(root, asked.folder)},
-          {"effect_in_words", words},
           {"ask", first_ask(function)},
           {"returns", function.returns},
           {"zero", function.returns == "Wrench" ? "{Vector3d::Zero(), Vector3d::Zero()}"
@@ -180,7 +177,10 @@ std::vector<NewFile> new_effect(const fs::path& root, const std::string& name,
   refuse_name(name, "an effect");
   if (fs::exists(root / "framework/effects" / name))
     throw UserError(name, "is an effect already: framework/effects/" + name, "Take another name.");
+  std::string in_words = name;
+  std::replace(in_words.begin(), in_words.end(), '_', ' ');
   Marks marks = {{"name", name},
+                 {"in_words", in_words},
                  {"Name", pascal_case(name)},
                  {"words", as_title(name)},
                  {"asked", ""},
@@ -194,7 +194,7 @@ std::vector<NewFile> new_effect(const fs::path& root, const std::string& name,
   marks["asked"] = asked.function.name + "_(acting.laws.of<" + asked.law + ">()), ";
   marks["laws"] = ", laws_with_" + name + "()";
   std::vector<NewFile> files =
-      files_from(templates_of(root, "effect"), marks, {marks_of(root, asked, name)});
+      files_from(templates_of(root, "effect"), marks, {marks_of(root, asked)});
   const NewFile binding = with_law_set(root, asked, name);
   put_in_place(root, files);
   write_whole(root / binding.file, binding.text);

@@ -1,4 +1,6 @@
 // tumble new effect, scene, slip, test.
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "framework/extend/check_points.h"
@@ -90,6 +92,30 @@ TEST(NewEffect, IsAFolderAndATest) {
   EXPECT_NE(
       refusal_of([&] { extend::new_effect(tree.root(), "water"); }).find("is an effect already"),
       std::string::npos);
+}
+
+// In messages an effect is named in words, as "point force" is; in files by the words of its key.
+TEST(NewEffect, IsNamedInWordsInWhatItSays) {
+  const NewTree tree;
+  extend::new_effect(tree.root(), "low_wind");
+  const std::string code = tree.files().at("framework/effects/low_wind/low_wind_effect.cpp");
+  for (const char* words : {"name() const override { return \"low wind\"; }",
+                            "key() const override { return \"low_wind\"; }",
+                            "index.of(spec.body, \"low wind\")", "the low wind of body"})
+    EXPECT_NE(code.find(words), std::string::npos) << words << "\n" << code;
+}
+
+TEST(NewEffect, HasNoLineThatTheHouseRefuses) {
+  constexpr std::size_t kColumns = 100;  // of code: tests/house
+  const NewTree tree;
+  tree.make_a5();
+  extend::new_effect(tree.root(), "low_wind", "a5.larger_part");
+  for (const auto& [name, text] : tree.files()) {
+    if (name.find("low_wind") == std::string::npos || name.ends_with(".json")) continue;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_LE(line.size(), kColumns) << name << ": " << line;
+  }
 }
 
 // The effect's folder has its law, and the assignment's binding sets it: no other old file.
