@@ -1,4 +1,5 @@
 // tumble poke SCENE: pushes a body at a pixel, along a ray or at a point, and shows the motion.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -9,12 +10,16 @@
 #include "framework/cli/pick_face.h"
 #include "framework/cli/scene_run.h"
 #include "framework/core/nearest_word.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
 #include "framework/render/camera.h"
 #include "framework/scene/build_shape.h"
 #include "framework/scene/write_entries.h"
 
 namespace tumble::cli {
 namespace {
+
+constexpr const char* kPushKey = "point_forces";  // of the scene's entries: what pushes
 
 struct PokeWords : RunWords {
   std::string pixel, ray, point;  // position of the force; exactly one of them
@@ -123,10 +128,24 @@ struct AfterPush {
   double point_travel = 0.0;
 };
 
-/// @return nothing where gravity or an immovable body may exchange momentum
+/// Whether everything beside the push acts between two bodies of the scene: a force on one body
+/// alone, such as gravity's or drag's, and a link to the world bring momentum in or take it out.
+bool is_closed(const scene::Scene& scene) {
+  const World world = build_world(scene);
+  for (const effects::Effect* effect : effects::all()) {
+    if (effect->key() == kPushKey) continue;
+    for (int entry = 0; entry < effect->count_in(world); ++entry) {
+      const std::vector<int> bodies = effect->bodies_of(world, entry);
+      if (bodies.size() < 2 || std::count(bodies.begin(), bodies.end(), -1) > 0) return false;
+    }
+  }
+  return true;
+}
+
+/// @return nothing where a force from outside or an immovable body may exchange momentum
 std::optional<AfterPush> after_push(const Context& context, const scene::Scene& scene,
                                     const Push& push) {
-  if (scene::has_entries(scene, "gravity_m_s2")) return std::nullopt;
+  if (!is_closed(scene)) return std::nullopt;
   AfterPush after;
   const double time = push.duration_s;
   after.momentum = time * push.force_world;
@@ -214,11 +233,11 @@ void poke(Context& context, const PokeWords& words) {
 
   const Push push{target.body, force, target.point_world, words.push_s};
   // instead of the scene's own: the motion shows this push
-  scene::remove_entries(scene, "point_forces");
-  scene::EntryWriter{scene}("point_forces", {{"body", push.body},
-                                             {"force_n", push.force_world},
-                                             {"point_m", push.point_world},
-                                             {"duration_s", push.duration_s}});
+  scene::remove_entries(scene, kPushKey);
+  scene::EntryWriter{scene}(kPushKey, {{"body", push.body},
+                                       {"force_n", push.force_world},
+                                       {"point_m", push.point_world},
+                                       {"duration_s", push.duration_s}});
   // s: time to see the motion afterwards
   scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);
   scene.title = "Poked by hand: scene " + scene.name;

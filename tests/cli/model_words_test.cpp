@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/core/files.h"
 #include "tests/cli/command_line.h"
 #include "tests/support/places.h"
 
@@ -101,6 +102,27 @@ TEST_F(CommandLine, APokeGivesMomentumForceTimesTime) {
       "0.2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   EXPECT_TRUE(holds(said.out + said.err, "face")) << said.out;
+}
+
+// Drag takes momentum out and a spring to the world exchanges it: a right run is not judged as one
+// of a closed system, in which the push alone changes it. Between two bodies a spring keeps it.
+TEST_F(CommandLine, APokeIsJudgedByMomentumWhereNothingFromOutsideActs) {
+  const std::string head =
+      R"({"title": "t", "duration_s": 1, "bodies": [{"name": "a", "mass_kg": 1, )"
+      R"("shape": {"sphere": {"radius_m": 0.1}}, "velocity_m_s": [1, 0, 0]}, {"name": "b", )"
+      R"("mass_kg": 1, "shape": {"sphere": {"radius_m": 0.1}}, "position_m": [3, 0, 0]}], )";
+  const auto judged = [&](const std::string& effects) {
+    write_whole(folder_ / "poked.json", head + effects + "}");
+    const Said said =
+        type("poke poked.json --modules reference --point a,0,0,0 --force 0,5,0 --duration-s 0.2");
+    EXPECT_EQ(said.code, 0) << effects << said.out << said.err;
+    return holds(said.out, "angular_momentum");
+  };
+  EXPECT_FALSE(judged(R"("drag": [{"body": "a", "linear_n_s_m": 1}])"));
+  EXPECT_FALSE(judged(
+      R"("springs": [{"a": {"body": "a"}, "b": {"point_world_m": [0, 0, 1]}, "stiffness_n_m": 5}])"));
+  EXPECT_TRUE(
+      judged(R"("springs": [{"a": {"body": "a"}, "b": {"body": "b"}, "stiffness_n_m": 5}])"));
 }
 
 // The pixel of the first example in README and handout.
