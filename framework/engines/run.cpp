@@ -19,6 +19,7 @@
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/rd/retroactive.h"
+#include "framework/engines/stepping/far_points.h"
 #include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/local_origin.h"
 #include "framework/engines/stepping/shared_forces.h"
@@ -254,6 +255,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
     if (callback.time <= 0) pushed.insert(callback.bodies.begin(), callback.bodies.end());
   StartWatch watch(scene, std::move(pushed), sink);
   if (const auto shared = notice_of_shared_forces(scene, laws)) watch.add(*shared);
+  if (const auto far = notice_of_far_points(scene)) watch.add(*far);
   if (const auto stretched = notice_of_stretched_links(scene, laws)) watch.add(*stretched);
   DiscontinuityCount counted(watch);
   counted.begin(info, bodies);

@@ -5,6 +5,7 @@
 
 #include "framework/core/error.h"
 #include "framework/effects/joint/joint.h"
+#include "framework/effects/point_force/point_force.h"
 #include "framework/effects/rod/rod.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "tests/engines/event_process_scenes.h"
@@ -125,6 +126,38 @@ TEST(Start, VelocitiesThatAJointDoesNotAllowAreReportedByBody) {
               std::string::npos)
         << engine << ": " << told;
   }
+}
+
+// A place in the world that was written down as one in the body's frame is told of, by every engine
+// alike; a point on the body, or a pivot just beside it, is not.
+TEST(Start, APointFarOutsideItsBodyIsReported) {
+  const auto told = [](const std::string& engine, const Vector3d& point_body) {
+    scene::Scene scene = scene_of({ball("ball", 0.2, 1.0, {1, 0, 1}, Vector3d::Zero())}, 0.05);
+    scene.step_s = 1.0 / 240.0;
+    scene.effects.of<effects::RodSpec>() = {
+        {"r", {"ball", point_body}, {"", {1, 0, 3}}, (Vector3d(0, 0, 2) - point_body).norm()}};
+    scene.stabilisation.emplace();
+    return notices_of(run_in(engine, scene));
+  };
+  for (const std::string& engine : kEngines) {
+    const std::string far = told(engine, {1, 0, 1});
+    for (const char* words : {"rod 'r' holds body 'ball' at a point 1.41 m", "0.2 m",
+                              "\"point_body_m\"", "\"point_world_m\""})
+      EXPECT_NE(far.find(words), std::string::npos) << engine << ": " << words << "\n" << far;
+    for (const double up : {0.0, 0.2, 0.29})
+      EXPECT_EQ(told(engine, {0, 0, up}).find("at a point"), std::string::npos) << engine << up;
+  }
+}
+
+TEST(Start, AForceThatPushesFarOutsideItsBodyIsReported) {
+  const auto told = [](double x, double start) {
+    scene::Scene scene = scene_of({ball("ball", 0.2, 1.0, {1, 0, 1}, Vector3d::Zero())}, 0.05);
+    scene.effects.of<effects::PointForceSpec>() = {{"ball", {1, 0, 0}, {x, 0, 1}, start, 0.01}};
+    return notices_of(run_in("rd", scene));
+  };
+  EXPECT_NE(told(0, 0).find("a force pushes body 'ball' at a point 1 m from"), std::string::npos);
+  EXPECT_EQ(told(0.8, 0), "");
+  EXPECT_EQ(told(0, 0.02), "");  // where the body is then is not known
 }
 
 }  // namespace
