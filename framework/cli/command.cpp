@@ -100,6 +100,13 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
   } catch (const CLI::ValidationError& error) {
     throw UserError("tumble " + (argc > 1 ? std::string(argv[1]) : ""),
                     without_digits(error.what()), "Run with --help for what each flag takes.");
+  } catch (const CLI::RequiredError& error) {
+    const std::vector<CLI::App*> verbs = app.get_subcommands();
+    if (verbs.empty())  // of the program alone
+      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+    refuse_unknown_flag(app);  // likely the one that is missing, mistyped
+    const std::string verb = "tumble " + verbs.front()->get_name();
+    throw UserError(verb, error.what(), verb + " --help says what it takes, with an example.");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
   }

@@ -101,6 +101,34 @@ TEST_F(CommandLine, AMistakeInASceneNamesFilePlaceFoundAndExpected) {
   EXPECT_TRUE(holds(said.err, "mine.json") && holds(said.err, "/duration_s")) << said.err;
 }
 
+// A mistyped flag leaves the right one missing: the answer is about what was typed.
+TEST_F(CommandLine, AMissingWordIsNamedAndAMistypedOneFirst) {
+  const Said missing = type("poke poked_box --pixel 200,250 --force 0,40,0");
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_TRUE(holds(missing.err, "tumble: tumble poke: --duration-s is required.")) << missing.err;
+  EXPECT_TRUE(holds(missing.err, "tumble poke --help")) << missing.err;
+  const Said mistyped = type("poke poked_box --pixel 200,250 --forse 0,40,0 --duration-s 0.2");
+  EXPECT_EQ(mistyped.code, 2);
+  EXPECT_TRUE(holds(mistyped.err, "--forse: poke has no such flag. Did you mean '--force'?"))
+      << mistyped.err;
+  EXPECT_TRUE(holds(type("run").err, "tumble: tumble run: scene is required."));
+  EXPECT_TRUE(left_nothing());
+}
+
+#ifdef TUMBLE_HAS_REFERENCE
+TEST_F(CommandLine, BodiesThatOverlapAreNamedWithTheLineOfOneThatCanBeMoved) {
+  write_whole(folder_ / "mine.json", R"({"title": "t", "duration_s": 1, "bodies": [
+  {"name": "a", "mass_kg": 1, "shape": {"sphere": {"radius_m": 0.1}}},
+  {"name": "b", "mass_kg": 1, "shape": {"sphere": {"radius_m": 0.1}}, "position_m": [0.1, 0, 0]},
+  {"name": "floor", "immovable": true, "shape": {"plane": {}}, "position_m": [0, 0, -1]}
+]})");
+  const Said said = type("run mine.json --modules reference");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "mine.json:3: /bodies/1: bodies 'a' and 'b' overlap at the start"))
+      << said.err;
+}
+#endif
+
 TEST_F(CommandLine, AnUnknownEngineOrAStepOfZeroIsAMistakeToRepair) {
   EXPECT_EQ(type("run t_handle --engine warp").code, 2);
   EXPECT_EQ(type("run t_handle --step-s 0").code, 2);

@@ -51,6 +51,16 @@ const StartPair& worst_of(const std::vector<StartPair>& near) {
                              [](const StartPair& pair) { return pair.overlaps; });
 }
 
+/// Where the scene says of the body that can be moved, of two the later one.
+std::string place_of_overlap(const std::string& where, const scene::Scene& scene,
+                             const StartPair& pair) {
+  const scene::BodySpec &a = scene.bodies[static_cast<std::size_t>(pair.body_a)],
+                        &b = scene.bodies[static_cast<std::size_t>(pair.body_b)];
+  const scene::BodySpec& moves = b.immovable ? a : b;
+  return scene.lines.empty() || moves.pointer.empty() ? where
+                                                      : scene::place_of(scene, moves.pointer);
+}
+
 /// How many pairs away from an immovable body; those that no chain of pairs leads to come last.
 std::vector<int> steps_from_support(const scene::Scene& scene, const std::vector<StartPair>& near) {
   std::vector<int> steps(scene.bodies.size(), std::numeric_limits<int>::max());
@@ -87,7 +97,7 @@ double explained_overlap(const collision::CollisionShape& a, const collision::Po
 
 OverlapAtStart::OverlapAtStart(const std::string& where, const scene::Scene& scene,
                                std::vector<StartPair> near)
-    : UserError(where, refusal(scene, worst_of(near)),
+    : UserError(place_of_overlap(where, scene, worst_of(near)), refusal(scene, worst_of(near)),
                 "move one of them away (\"position_m\") until they are apart or just touch"),
       near_(std::move(near)) {}
 
