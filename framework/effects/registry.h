@@ -1,5 +1,5 @@
-/// The effects that the program is built with. Each registers itself by its line in
-/// framework/effects/CMakeLists.txt.
+/// The effects that the program is built with: the folders under framework/effects, which
+/// CMakeLists.txt there finds.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 
 namespace tumble::effects {
 
-/// Always in the same order: that of the lines, in which forces are added and effects are listed.
+/// Always in the same order, in which forces are added and effects are listed: those with a line in
+/// CMakeLists.txt, then all others by name.
 const std::vector<const Effect*>& all();
 
 inline constexpr std::size_t kMost = 32;  // counts stand in arrays of this size

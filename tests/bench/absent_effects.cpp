@@ -5,6 +5,7 @@
 //   bench_... calls EFFECT    runs a scene with the effect, and prints the number of calls of its
 //                             code
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 
 #include "framework/core/error.h"
@@ -109,6 +110,13 @@ std::uint64_t calls_of(std::string effect) {
   if (effect == "callback") return calls_of_callback();
   std::replace(effect.begin(), effect.end(), '_', ' ');
   scene::Scene scene = bare();
+  if (!kEffects.contains(effect)) {
+    std::fprintf(stderr,
+                 "no scene asks for '%s': add one to kEffects, and its counter to kCountersOf, in "
+                 "tests/engines/effect_scenes.h\n",
+                 effect.c_str());
+    std::exit(2);
+  }
   kEffects.at(effect)(scene);
   Trajectory result;
   try {

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Takes effects out, one after the other: in a copy of the tree without the folder framework/effects/NAME and its line, the program is built, and the tests
+# Takes effects out, one after the other: in a copy of the tree without the folder framework/effects/NAME (and its line, if it has one), the program is built, and the tests
 # that do not know the effect are built and run. Hours for all; not part of ctest.
 #   usage: tests/bench/effects_apart.sh [NAME...]       default: every effect.  PROGRAMS="test_scene test_links": which test programs; KEEP=1: copies stay
 # What knows an effect: a source that includes one of its headers, also through a test's own header, that has its key in a scene's words, or that names a scene

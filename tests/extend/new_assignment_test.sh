@@ -69,4 +69,11 @@ code=0
 [ $code = 4 ] || fail "check_a99 exits with $code, not 4 for \"not attempted\": $(cat "$folder/said")"
 [ "$(grep -c 'not attempted' "$folder/said")" -ge 5 ] || fail "not every stub is \"not attempted\": $(cat "$folder/said")"
 ! grep -Eq '^ *(wrong|crashed|right|fault)' "$folder/said" || fail "a stub is more than not attempted: $(cat "$folder/said")"
+# Taken out in part it says what is left to be removed, before anything else goes wrong; taken out as framework/EXTEND.md says, it is gone.
+rm -r "$copy/assignments/a99_trial" "$copy/framework/effects/low_lift" "$copy/tests/effects/low_lift_test.cpp"
+! cmake "$folder/build" >"$folder/said" 2>&1 || fail "half an assignment configures"
+grep -q 'solutions_private/a99_trial is there, and assignments/a99_trial is not' "$folder/said" || fail "half an assignment is not named: $(tail -n 20 "$folder/said")"
+rm -r "$copy/solutions_private/a99_trial" "$copy/tests/a99_trial" "$copy/handouts/a99_trial.md"
+cmake "$folder/build" >"$folder/said" 2>&1 || fail "without the assignment it does not configure: $(tail -n 20 "$folder/said")"
+! grep -q a99 "$folder/build/generated/assignment_names.cpp" || fail "the assignment is still in a list of names"
 echo "a new assignment is found, builds, and every stub of it is \"not attempted\""
