@@ -19,6 +19,15 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+namespace {
+
+// "a" of "body_a", "mass" of "mass_kg"
+bool is_part_of(const std::string& word, const std::string& candidate) {
+  return ('_' + candidate + '_').find('_' + word + '_') != std::string::npos;
+}
+
+}  // namespace
+
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
   if (word.empty()) return "";
   std::string nearest;
@@ -29,9 +38,10 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     const std::size_t letters = edit_distance(word, candidate);
     // "--output" for "--out"; behind what is nearer, since "pong_2000" is rather "pong_200"
     const bool is_longer = candidate.size() >= 3 && word.starts_with(candidate);
-    const std::size_t distance = is_cut || unit_differs ? std::min<std::size_t>(letters, 1)
-                                 : is_longer            ? std::min<std::size_t>(letters, 2)
-                                                        : letters;
+    const std::size_t distance = is_part_of(word, candidate) ? 0
+                                 : is_cut || unit_differs    ? std::min<std::size_t>(letters, 1)
+                                 : is_longer                 ? std::min<std::size_t>(letters, 2)
+                                                             : letters;
     // nothing in common: not a typing error
     if (distance >= least || letters >= std::max(word.size(), candidate.size())) continue;
     least = distance;

@@ -168,19 +168,55 @@ bool has_type(const json& value, const std::string& type) {
   return value.is_number();
 }
 
+/// Appends the objects of a scene that know a key, by what they are called: "body" for "friction".
+void note_owners(const json& node, const std::string& name, const std::string& key,
+                 std::vector<std::string>& owners) {
+  if (!node.is_object()) return;
+  if (node.contains("properties") && node.at("properties").contains(key)) owners.push_back(name);
+  for (const char* kind : {"properties", "definitions"})
+    if (node.contains(kind))
+      for (const auto& [inner, rule] : node.at(kind).items()) note_owners(rule, inner, key, owners);
+}
+
+/// Where a key that is not known here belongs, as a sentence; "" where nowhere.
+std::string known_elsewhere(const json& schema, const std::string& key) {
+  std::vector<std::string> owners;
+  note_owners(schema, "the scene itself", key, owners);
+  return owners.empty() ? "" : " It is a key of: " + joined(owners) + ".";
+}
+
+std::string hint_for(const json& schema, const std::string& key,
+                     const std::vector<std::string>& known) {
+  const std::string nearest = did_you_mean(key, known);
+  return nearest.empty() ? known_elsewhere(schema, key) : nearest;
+}
+
+/// What is expected, with the keys of an object and the two values of a switch where the schema's
+/// words do not say them.
+std::string expectation_of(const json& rule, const json& value, const std::string& words) {
+  const std::string type = rule.value("type", "");
+  if (type == "boolean") return "true or false; " + words;
+  if (type != "object" || value.is_object() || !rule.contains("properties")) return words;
+  const std::vector<std::string> names = keys(rule.at("properties"));
+  const bool are_said = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return words.find(name) != std::string::npos;
+  });
+  return are_said || names.empty() ? words : words + "; its keys: " + joined(names);
+}
+
 /// Reports the problem of one value, whose children are all valid.
 [[noreturn]] void explain(const Document& document, const std::string& pointer, const json& schema,
                           const json& node) {
   const json& value = document.json.at(json::json_pointer(pointer));
   const json& rule = resolve(schema, node);
-  const std::string expected = description(schema, node);
+  const std::string expected = expectation_of(rule, value, description(schema, node));
   if (rule.contains("type") && has_type(value, rule.at("type")) && value.is_object()) {
     const auto known =
         rule.contains("properties") ? keys(rule.at("properties")) : std::vector<std::string>{};
     for (const auto& key : keys(value))
       if (std::find(known.begin(), known.end(), key) == known.end())
         document.refuse(pointer + '/' + escaped(key),
-                        "unknown key '" + key + "'." + did_you_mean(key, known),
+                        "unknown key '" + key + "'." + hint_for(schema, key, known),
                         "Known here: " + joined(known) + ".");
     for (const auto& key : rule.value("required", std::vector<std::string>{}))
       if (!value.contains(key))
@@ -285,7 +321,7 @@ Document parse_document(const std::string& text, const std::filesystem::path& fi
     throw UserError(file.string() + ':' + line_and_column(text, error.byte),
                     what_is_no_json(text, error),
                     "JSON wants double quotes, a comma between entries and none after the last, "
-                    "and no NaN or infinity.");
+                    "true and false in small letters, no NaN or infinity, and no comments.");
   } catch (const json::exception& error) {  // a number beyond a double
     throw UserError(
         file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())),

@@ -28,6 +28,11 @@ TEST(NearestWord, AnotherUnitIsOneError) {
   EXPECT_EQ(nearest_word("--output-folder", {"--on", "--out"}), "--out");
 }
 
+TEST(NearestWord, APartOfANameIsNearerThanABeginning) {
+  EXPECT_EQ(nearest_word("a", {"axis", "body_a", "body_b"}), "body_a");
+  EXPECT_EQ(nearest_word("body", {"bodily", "body_a"}), "body_a");
+}
+
 TEST(NearestWord, FarOrEmptyWordHasNoSuggestion) {
   EXPECT_EQ(nearest_word("simulate", {"run", "check"}), "");
   EXPECT_EQ(nearest_word("xy", {"ab", "cd"}), "") << "no letter in common";

@@ -45,6 +45,34 @@ TEST(SceneRefusals, AMistypedKeyIsNamedWithItsNeighbour) {
                {"s.json:5", "/bodies/0/velocty_m_s", "Did you mean 'velocity_m_s'"});
 }
 
+TEST(SceneRefusals, AKeyAtAWrongLevelIsNamedWithWhereItBelongs) {
+  expect_words(refusal(scene_with(kBall, ", \"friction\": 0.3")),
+               {"s.json:6", "unknown key 'friction'. It is a key of: body."});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "radius_m": 0.1)"))),
+               {"/bodies/0/radius_m", "It is a key of: sphere."});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "gravity_m_s2": [0, 0, -9.81])"))),
+               {"/bodies/0/gravity_m_s2", "It is a key of: the scene itself."});
+}
+
+// As springs and rods name their ends, and joints do not.
+TEST(SceneRefusals, AKeyThatIsAPartOfTheRightOneIsNamedWithIt) {
+  expect_words(
+      refusal(scene_with(kBall,
+                         R"(, "joints": [{ "kind": "ball", "a": "ball", "point_m": [0, 0, 1] }])")),
+      {"/joints/0/a", "Did you mean 'body_a'?"});
+}
+
+TEST(SceneRefusals, WhereAnObjectOrASwitchIsExpectedItsValuesAreSaid) {
+  expect_words(refusal(scene_with(R"({ "name": "b", "mass_kg": 1, "shape": { "sphere": 0.3 } })")),
+               {"/bodies/0/shape/sphere", "expected an object: a ball; its keys: radius_m"});
+  expect_words(refusal(scene_with(body_with(R"("immovable": "yes")"))),
+               {"/bodies/0/immovable", "found the text \"yes\"", "expected true or false"});
+}
+
+TEST(SceneRefusals, ACommentIsNamedAsWhatJsonHasNot) {
+  expect_words(refusal("{\n  \"title\": \"t\", // a line\n}"), {"s.json:2", "no comments"});
+}
+
 TEST(SceneRefusals, AKeyWithoutItsUnitIsNamedWithIt) {
   expect_words(refusal(scene_with(body_with(R"("mass": 1)"))),
                {"/bodies/0/mass", "Did you mean 'mass_kg'"});
