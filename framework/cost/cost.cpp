@@ -33,9 +33,12 @@ constexpr int kMostResolutions = 14;
 constexpr double kNearFloor = 3.0;  // of the error floor: finer runs show nothing
 // of the scale: below it, errors that no longer decrease are round-off
 constexpr double kGood = 1e-3;
+// times the evaluations of the run before, where steps are halved: twice as many but for those that
+// have been shortened anyway
+constexpr double kMoreWork = 1.5;
 constexpr int kMostWorse = 2;  // runs in a row that are no better than the best
-// the same where contacts act once per step: the instant of a first contact within a step is
-// practically random
+// the same where contacts act once per step, or what acts begins within one that is shortened for
+// it: that instant within a step is practically random
 constexpr int kMostWorseInSteps = 4;
 
 std::string too_long(double most_s) {
@@ -233,6 +236,7 @@ CostResult run_at_resolution(const scene::Scene& scene, const CostMethod& method
       result.stopped_by = run.run().stopped_by;
       result.stage_seconds = run.run().counters.stage_seconds;
       result.evaluations = count_of(run.run().counters, method.counted);
+      result.has_shortened_steps = count_of(run.run().counters, "shortened_steps") > 0;
       if (reference.by_numbers)
         judge(judged_part(scene, reference), run.run(), result);
       else
@@ -335,13 +339,21 @@ bool refinement_is_done(const scene::Scene& scene, const CostMethod& method,
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
   for (std::size_t k = 0; k < results.size(); ++k) {
-    // a tolerance without effect
+    // a tolerance without effect, or a step that was shortened in the run before to nearly this one
     const bool is_new =
-        k == 0 || !method.controlled || results[k].evaluations > results[k - 1].evaluations;
+        k == 0 ||
+        (method.controlled ? results[k].evaluations > results[k - 1].evaluations
+                           : !results[k - 1].has_shortened_steps ||
+                                 static_cast<double>(results[k].evaluations) >
+                                     kMoreWork * static_cast<double>(results[k - 1].evaluations));
     worse = results[k].error_m < least ? 0 : worse + (is_new ? 1 : 0);
     least = std::min(least, std::isfinite(results[k].error_m) ? results[k].error_m : least);
   }
-  const int most_worse = scene.contact ? kMostWorseInSteps : kMostWorse;
+  const bool is_by_chance =
+      scene.contact || std::any_of(results.begin(), results.end(), [](const CostResult& result) {
+        return result.has_shortened_steps;
+      });
+  const int most_worse = is_by_chance ? kMostWorseInSteps : kMostWorse;
   return results.back().error_m <= kNearFloor * reference.floor_m ||
          (worse >= most_worse && least < kGood * reference.scale_m);
 }

@@ -69,6 +69,8 @@ struct CostResult {
   double spent_s = 0.0;  // CPU time of all runs of this measurement
   // derivatives of the state of a body or of an island of linked bodies; or what the method counts
   std::uint64_t evaluations = 0;
+  // steps were shortened below the one asked for, as where a body passes a water's level
+  bool has_shortened_steps = false;
   // by sample [s]; |E - E of the reference| over the energy at the start [-]
   std::vector<double> times, energy_errors;
   std::map<std::string, double> stage_seconds;

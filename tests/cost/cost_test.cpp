@@ -124,6 +124,30 @@ TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
   EXPECT_LT(results.back().error_m, 1e-2 * results.front().error_m);
 }
 
+// What a body in water asks of its steps makes coarse ones alike: their errors decrease no further
+// and say nothing of the method.
+TEST(Cost, RunsWhoseStepsWereShortenedDoNotEndARefinement) {
+  const scene::Scene scene = turning();
+  CostReference reference;
+  reference.floor_m = 1e-9;
+  reference.scale_m = 1.0;
+  const auto is_done = [&](bool shortened, std::uint64_t second, std::uint64_t third) {
+    std::vector<CostResult> results(3);
+    results[0].error_m = 1e-5;
+    results[1].error_m = results[2].error_m = 2e-5;
+    results[0].evaluations = 1000;
+    results[1].evaluations = second;
+    results[2].evaluations = third;
+    for (CostResult& result : results) result.has_shortened_steps = shortened;
+    return cost::refinement_is_done(scene, method_of("rk4"), reference, results, {});
+  };
+  EXPECT_FALSE(is_done(true, 1100, 1300));
+  // nor do two with twice the work each, which may meet what acts at a worse instant; where nothing
+  // was shortened, two that are no better end it
+  EXPECT_FALSE(is_done(true, 2000, 4000));
+  EXPECT_TRUE(is_done(false, 1100, 1300));
+}
+
 TEST(Cost, ARefinementContinuesWhereItEnded) {
   const scene::Scene scene = turning();
   const CostReference reference = cost::find_reference(scene, library_laws(), {});
