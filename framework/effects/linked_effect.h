@@ -74,15 +74,33 @@ inline std::string rows_in_words(const World& world, const std::string& rows) {
   return "in joint coordinates; " + rows + " in loops and contact only";
 }
 
-/// Does `work`; a StoppedRun out of it is thrown again with the link in front. Words are made where
-/// they are needed only: this is asked at every stage.
+/// Squares and products of what bodies farther or faster than this have overflow; no scene's do.
+inline constexpr double kRunAway = 1e100;  // m, m/s, rad/s
+
+/// Whether a law can answer for the body.
+inline bool moves_within_numbers(const Body& body) {
+  const auto within = [](const Vector3d& v) { return (v.array().abs() < kRunAway).all(); };
+  return within(body.com_world) && body.world_from_body.coeffs().allFinite() &&
+         within(body.velocity_world) && within(body.omega_world);
+}
+
+/// Does `work`, which asks a law about the bodies at the ends of a link; a StoppedRun out of it is
+/// thrown again with the link in front. Where these bodies have run away, no answer of the law could
+/// be a number, and it is not blamed. Words are made where they are needed only: this is asked at
+/// every stage.
 template <class Work>
-auto naming_link(const char* kind, const std::string& name, Work&& work) {
+auto naming_link(const char* kind, const std::string& name, const Body& a, const Body& b,
+                 Work&& work) {
   try {
     return work();
   } catch (const OutOfTime&) {
     throw;
   } catch (const StoppedRun& stop) {
+    if (!moves_within_numbers(a) || !moves_within_numbers(b))
+      throw StoppedRun(
+          fmt::format("{} '{}': a body that it holds goes farther or faster than numbers do: the "
+                      "steps have run away, and no law could answer for it",
+                      kind, name));
     throw StoppedRun(fmt::format("{} '{}': {}", kind, name, stop.what()));
   }
 }

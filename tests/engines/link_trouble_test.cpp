@@ -65,6 +65,27 @@ struct Clock {
   bool is_late() const { return now >= kHalf; }
 };
 
+// A step that runs away within itself asks for rows and forces of bodies beyond all numbers: no law
+// of a link is blamed for what it cannot answer.
+TEST(LinkTrouble, ALawIsNotBlamedForBodiesThatHaveRunAway) {
+  for (const auto& [link, far] : {std::pair<std::string, double>{"rod", 1e200},
+                                  {"rod", std::numeric_limits<double>::infinity()},
+                                  {"spring", std::numeric_limits<double>::infinity()}}) {
+    Laws laws = reference_laws();
+    laws.integrate_step = [step = laws.integrate_step, far](const OdeFunction& f, double t,
+                                                            const VectorXd& y,
+                                                            double h) -> VectorXd {
+      if (t < kHalf) return step(f, t, y, h);
+      return y + h * f(t, VectorXd(far * y));
+    };
+    const Trajectory result = run(swinging(link), laws);
+    expect_stopped(result, {"bob", link + " '", "the steps have run away"}, kHalf - 0.1,
+                   kHalf + 0.1);
+    for (const char* law : {"rod_row", "spring_force"})
+      EXPECT_EQ(result.stopped_by.find(law), std::string::npos) << result.stopped_by;
+  }
+}
+
 TEST(LinkTrouble, ASpringForceThatIsNotANumberIsNamed) {
   Clock clock;
   clock.laws.spring_force = [&, right = clock.laws.spring_force](

@@ -41,7 +41,8 @@ class RodTerms final : public GroupTerms {
     for (const PlacedLink& link : rods_) {
       ++calls_;
       const RodLink& rod = of(link);
-      rows.push_back({link.a.place, link.b.place, naming_link("rod", rod.name, [&] {
+      rows.push_back({link.a.place, link.b.place,
+                      naming_link("rod", rod.name, bodies[link.a.place], bodies[link.b.place], [&] {
                         return row_(bodies[link.a.place], link.a.point_body, bodies[link.b.place],
                                     link.b.point_body, rod.length);
                       })});

@@ -28,8 +28,9 @@ class SpringTerms final : public GroupTerms {
       ++calls_;
       const AnchorState a = link.a.state_among(bodies), b = link.b.state_among(bodies);
       const SpringLink& spring = all_[static_cast<std::size_t>(link.entry)];
-      const Vector3d force = naming_link("spring", spring.name,
-                                         [&] { return laws_.spring_force(spring.spring, a, b); });
+      const Vector3d force =
+          naming_link("spring", spring.name, bodies[link.a.place], bodies[link.b.place],
+                      [&] { return laws_.spring_force(spring.spring, a, b); });
       add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
       add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
     }
