@@ -85,9 +85,9 @@ inline bool moves_within_numbers(const Body& body) {
 }
 
 /// Does `work`, which asks a law about the bodies at the ends of a link; a StoppedRun out of it is
-/// thrown again with the link in front. Where these bodies have run away, no answer of the law could
-/// be a number, and it is not blamed. Words are made where they are needed only: this is asked at
-/// every stage.
+/// thrown again with the link in front. Where these bodies have run away, no answer of the law
+/// could be a number, and it is not blamed. Words are made where they are needed only: this is
+/// asked at every stage.
 template <class Work>
 auto naming_link(const char* kind, const std::string& name, const Body& a, const Body& b,
                  Work&& work) {

@@ -198,7 +198,7 @@ std::string expectation_of(const json& rule, const json& value, const std::strin
   if (type == "boolean") return "true or false; " + words;
   if (type != "object" || value.is_object() || !rule.contains("properties")) return words;
   const std::vector<std::string> names = keys(rule.at("properties"));
-  const bool are_said = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+  const bool are_said = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return words.find(name) != std::string::npos;
   });
   return are_said || names.empty() ? words : words + "; its keys: " + joined(names);

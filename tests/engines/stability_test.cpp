@@ -177,7 +177,7 @@ TEST(LargestStep, OfASpringOnAHingedBodyIsThatOfTheSwingItsHingeAllows) {
   const double m = 2.0, r = 0.5, d = 1e-3, k = 1e7, moment = 0.2,
                frequency = std::sqrt(k * d * d / (moment + m * r * r));
   for (const effects::JointKind kind : {effects::JointKind::kHinge, effects::JointKind::kBall}) {
-    scene::BodySpec door = ball("door", 0.1, m, {r, 0, 0}, Vector3d::Zero());
+    scene::BodySpec door = ball("door", r, m, {r, 0, 0}, Vector3d::Zero());
     door.inertia_body_kg_m2 = moment * Matrix3d::Identity();
     door.collides = false;
     scene::Scene scene = scene_of({door}, 1.0);

@@ -149,6 +149,23 @@ TEST(Start, APointFarOutsideItsBodyIsReported) {
   }
 }
 
+// A joint to the world makes a pendulum of a bob; between two bodies it has to be on one of them.
+TEST(Start, AJointFarFromBothOfItsBodiesIsReported) {
+  const auto told = [](const std::string& other, double x) {
+    scene::Scene scene = scene_of({ball("a", 0.2, 1.0, {0, 0, 1}, Vector3d::Zero()),
+                                   ball("b", 0.2, 1.0, {1, 0, 1}, Vector3d::Zero())},
+                                  0.05);
+    scene.step_s = 1.0 / 240.0;
+    scene.effects.of<effects::JointSpec>() = {
+        {"j", effects::JointKind::kBall, "a", other, {x, 0, 1}, Vector3d::UnitZ()}};
+    scene.stabilisation.emplace();
+    return notices_of(run_in("rd", scene)).find("joint 'j' holds body") != std::string::npos;
+  };
+  EXPECT_TRUE(told("b", 5));
+  EXPECT_FALSE(told("b", 1.1));
+  EXPECT_FALSE(told("", 5));
+}
+
 TEST(Start, AForceThatPushesFarOutsideItsBodyIsReported) {
   const auto told = [](double x, double start) {
     scene::Scene scene = scene_of({ball("ball", 0.2, 1.0, {1, 0, 1}, Vector3d::Zero())}, 0.05);

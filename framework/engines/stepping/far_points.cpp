@@ -1,5 +1,6 @@
 #include "framework/engines/stepping/far_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -23,40 +24,60 @@ struct HeldPoint {
   std::string words;  // "rod 'rod 1' holds"
 };
 
-std::vector<HeldPoint> points_off_centre(const scene::Scene& scene) {
-  std::vector<HeldPoint> points;
+/// Points of which one at least should be on its body: of a rod or a spring each end by itself, of
+/// a joint between two bodies both; a joint to the world makes a pendulum of whatever hangs on it.
+using Points = std::vector<HeldPoint>;
+
+std::vector<Points> points_of_scene(const scene::Scene& scene) {
+  std::vector<Points> all;
   for (const scene::Words* words : scene::all_words())
-    for (const scene::Link& link : words->links(scene))
+    for (const scene::Link& link : words->links(scene)) {
+      Points ends;
       for (const scene::AnchorSpec& anchor : {link.a, link.b})
-        if (!anchor.body.empty() && !anchor.point_m.isZero(0.0))
-          points.push_back({anchor.body, anchor.point_m.norm(),
-                            fmt::format("{} '{}' holds", words->name(), link.name)});
+        if (!anchor.body.empty())
+          ends.push_back({anchor.body, anchor.point_m.norm(),
+                          fmt::format("{} '{}' holds", words->name(), link.name)});
+      if (!std::isnan(link.length_m))
+        for (const HeldPoint& end : ends) all.push_back({end});
+      else if (ends.size() == 2)
+        all.push_back(ends);
+    }
   const scene::BodiesByName bodies(scene);
   for (const effects::DrawnArrow& force : effects::drawn(scene).arrows)
     if (const scene::BodySpec* body = bodies.find(force.body);
         body != nullptr && force.start_s <= 0.0)
-      points.push_back(
-          {force.body, (force.point_world - body->position_m).norm(), "a force pushes"});
-  return points;
+      all.push_back(
+          {{force.body, (force.point_world - body->position_m).norm(), "a force pushes"}});
+  return all;
 }
 
 }  // namespace
 
 std::optional<std::string> notice_of_far_points(const scene::Scene& scene) {
-  const std::vector<HeldPoint> points = points_off_centre(scene);
-  if (points.empty()) return std::nullopt;
+  std::vector<Points> all = points_of_scene(scene);
+  std::erase_if(all, [](const Points& points) {
+    return std::any_of(points.begin(), points.end(),
+                       [](const HeldPoint& point) { return point.arm == 0.0; });
+  });
+  if (all.empty()) return std::nullopt;
   const World world = build_world(scene);
   const effects::BodyIndex index(world);
   const HeldPoint* farthest = nullptr;
   double most = kFarOutside, reach = 0.0;
-  for (const HeldPoint& point : points) {
+  const auto radius_of = [&](const HeldPoint& point) {
     const WorldBody& body =
         world.bodies[static_cast<std::size_t>(index.of(point.body, point.words))];
-    const double radius = bounding_radius(body.shape);
-    if (body.immovable() || !(radius > 0.0) || !(point.arm > most * radius)) continue;
-    farthest = &point;
-    most = point.arm / radius;
-    reach = radius;
+    return body.immovable() ? 0.0 : bounding_radius(body.shape);
+  };
+  for (const Points& points : all) {
+    const bool is_farther = std::all_of(points.begin(), points.end(), [&](const HeldPoint& point) {
+      const double radius = radius_of(point);
+      return radius > 0.0 && point.arm > most * radius;
+    });
+    if (!is_farther) continue;
+    farthest = &points.front();
+    reach = radius_of(*farthest);
+    most = farthest->arm / reach;
   }
   if (farthest == nullptr) return std::nullopt;
   return fmt::format(

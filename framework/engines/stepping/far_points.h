@@ -1,5 +1,5 @@
-/// Whether a scene holds or pushes a body at a point far outside it, as it does where a place in the
-/// world was written down as one in the body's frame, or the other way round.
+/// Whether a scene holds or pushes a body at a point far outside it, as it does where a place in
+/// the world was written down as one in the body's frame, or the other way round.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,9 @@
 
 namespace tumble::engines {
 
-/// Anchors of links, and points at which forces that begin with the run push. Allowed: the body then
-/// has an arm without mass. Bodies without size and immovable ones are not looked at.
+/// Ends of rods and springs, joints that are far from both of their bodies, and points at which
+/// forces that begin with the run push. Allowed: the body then has an arm without mass. Bodies
+/// without size and immovable ones are not looked at.
 /// @return nothing where each point is on its body, or nearer to it than half its size
 std::optional<std::string> notice_of_far_points(const scene::Scene& scene);
 
