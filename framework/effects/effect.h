@@ -107,6 +107,8 @@ class Control {
   /// once.
   virtual Memory memory() const = 0;
   virtual void remember(const Memory& memory) = 0;
+  /// Its next look comes at once; what it remembers beside that stays.
+  virtual void look_again() = 0;
   /// Whether it drives bodies otherwise than by what it held before, beyond what those of bodies at
   /// rest change.
   virtual bool differs_from(const Memory& before) const = 0;

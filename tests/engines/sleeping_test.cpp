@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/drag/drag.h"
 #include "framework/effects/gravity/gravity.h"
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/motor/motor.h"
 #include "framework/effects/point_force/point_force.h"
 #include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing::sleeping_test {
@@ -188,21 +190,111 @@ TEST(Sleeping, WhatTrulySlidesIsAwakeHoweverSlow) {
   EXPECT_TRUE(falls_asleep(run_it(creeping_block(0.0, 1.1)), 0));
 }
 
-// A frictionless block on a slope of 1e-6 rad, from rest: in half a second it goes a micrometre, which
-// counts as still, and in 20 s it would go 2 mm. What sleep takes is told as what sleep takes: no step
-// mends it.
-TEST(Sleeping, WhatItTakesFromABodyThatMovesIsToldWithTheRemedy) {
+// A frictionless block on a slope of 1e-6 rad, from rest: in half a second it goes a micrometre, in
+// 20 s 2 mm.
+TEST(Sleeping, WhatAFaintSlopeSetsInMotionIsAwake) {
   const double angle = 1e-6, duration = 20.0;
   const Vector3d normal(std::sin(angle), 0, std::cos(angle));
   auto block = rough(box("block", {0.1, 0.1, 0.1}, 1.0, 0.1 * normal, Vector3d::Zero()), 0.0);
   auto slope = rough(plane("slope", Vector3d::Zero(), normal), 0.0);
   block.world_from_body = slope.world_from_body =
       Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
-  const scene::Scene scene = sleepy({block, slope}, duration);
-  const Trajectory slept = run_it(scene), awake = run_awake(scene);
+  const Trajectory slept = run_it(sleepy({block, slope}, duration));
+  EXPECT_FALSE(falls_asleep(slept, 0));
   // g sin(angle) t^2 / 2; contact shells are 1e-11 m
-  EXPECT_NEAR(awake.frames.back().poses[0].com_world.x() - block.position_m.x(),
+  EXPECT_NEAR(slept.frames.back().poses[0].com_world.x() - block.position_m.x(),
               0.5 * kG * angle * duration * duration, 1e-9);
+}
+
+/// A smooth box on a level floor, drawn by a spring whose damper lets it go slowly.
+scene::Scene box_on_spring(double stiffness, double damping, double stretch, double duration) {
+  scene::Scene scene = block_on_floor(duration);
+  scene.bodies[0].friction = 0.0;
+  scene.bodies[0].position_m.x() = 2.0 + stretch;
+  effects::SpringSpec spring{"spring", {"", {0, 0, 0.5}}, {"box 0", Vector3d::Zero()}};
+  spring.stiffness_n_m = stiffness;
+  spring.damping_n_s_m = damping;
+  spring.rest_length_m = 2.0;
+  scene.effects.of<effects::SpringSpec>().push_back(spring);
+  return scene;
+}
+
+// m x" + c x' + k x = 0 from rest, overdamped: x = x0 (b e^(-a t) - a e^(-b t)) / (b - a), with a b
+// = k / m and a + b = c / m.
+TEST(Sleeping, WhatCreepsAgainstADamperIsAwakeHoweverSlow) {
+  const double k = 0.03, c = 30.0, x0 = 0.01, duration = 30.0;  // 1e-5 m/s
+  const Trajectory result = run_it(box_on_spring(k, c, x0, duration));
+  EXPECT_FALSE(falls_asleep(result, 0));
+  const double root = std::sqrt(0.25 * c * c - k), b = 0.5 * c + root, a = k / b;
+  const double x = x0 * (b * std::exp(-a * duration) - a * std::exp(-b * duration)) / (b - a);
+  // the method's error in the first steps, c h = 1/2, is 1e-4 of x0 a / b = 3e-7 m; asleep, it would
+  // be 3e-4 m off
+  EXPECT_NEAR(result.frames.back().poses[0].com_world.x() - 2.0, x, 1e-8);
+}
+
+// Nearer to its place than 5 um it is let be; the damper has brought it there after 2.4 s or so.
+TEST(Sleeping, WhatADamperHasBroughtToRestSleeps) {
+  const Trajectory result = run_it(box_on_spring(40.0, 12.0, 0.01, 6.0));
+  ASSERT_TRUE(falls_asleep(result, 0));
+  EXPECT_LT(times_of(result, EventKind::kSleep, 0).front(), 4.0);
+  EXPECT_NEAR(result.frames.back().poses[0].com_world.x(), 2.0, 5e-6);
+}
+
+// Friction holds 0.5 m g: the spring pulls with a tenth of it all along.
+TEST(Sleeping, WhatFrictionHoldsAgainstASpringSleeps) {
+  scene::Scene scene = box_on_spring(49.05, 1.0, 0.01, 2.0);
+  scene.bodies[0].friction = 0.5;
+  const Trajectory result = run_it(scene);
+  ASSERT_TRUE(falls_asleep(result, 0));
+  EXPECT_NEAR(times_of(result, EventKind::kSleep, 0).front(), 0.5, 0.1);
+}
+
+// Drag holds it to g sin(angle) m / c = 1e-6 m/s.
+TEST(Sleeping, WhatSlidesThroughAThickMediumIsAwake) {
+  const double angle = 1e-4, drag = 1e-4 * kG / 1e-6, duration = 10.0;
+  scene::Scene scene = creeping_block(0.0, 0.0);
+  scene.duration_s = duration;
+  scene.step_s = 1e-3;
+  const Vector3d normal(std::sin(angle), 0, std::cos(angle));
+  for (scene::BodySpec& body : scene.bodies)
+    body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  scene.bodies[0].position_m = 0.05 * normal;
+  scene.bodies[1].position_m = Vector3d::Zero();
+  scene.effects.of<effects::DragSpec>().push_back({"block", drag, 0.0});
+  const Trajectory result = run_it(scene);
+  EXPECT_FALSE(falls_asleep(result, 0));
+  // 1e-6 m/s but for its first 1/c = 1e-3 s; sin(angle) differs from it by 2e-9
+  EXPECT_NEAR((result.frames.back().poses[0].com_world - scene.bodies[0].position_m).norm(),
+              1e-6 * duration, 1e-8);
+}
+
+// I w' = k (angle0 - angle) - c w, with c / I = 3 / s and k / c = 1e-3 / s: 2e-5 rad/s.
+TEST(Sleeping, ADoorThatAMotorClosesSlowlyIsAwake) {
+  auto door = rough(box("door", {0.5, 0.02, 1.0}, 20.0, {0.5, 0, 1}, Vector3d::Zero()));
+  scene::Scene scene = sleepy({door}, 30.0);
+  scene.effects.of<effects::JointSpec>().push_back(
+      {"hinge", effects::JointKind::kHinge, "door", "", {0, 0, 1}, Vector3d::UnitZ()});
+  scene.stabilisation.emplace();
+  effects::MotorSpec motor;
+  motor.joint = "hinge";
+  motor.offset_rad = 5e-3;
+  motor.stiffness_n_m_rad = 0.02;
+  motor.damping_n_m_s_rad = 20.0;
+  scene.effects.of<effects::MotorSpec>().push_back(motor);
+  const Trajectory slept = run_it(scene), awake = run_awake(scene);
+  EXPECT_FALSE(falls_asleep(slept, 0));
+  EXPECT_EQ(farthest_apart(slept.frames.back(), awake.frames.back()), 0.0);
+  // a part of 1 - e^(-0.03) of half a metre times 5e-3 rad
+  EXPECT_NEAR((awake.frames.back().poses[0].com_world - door.position_m).norm(), 7.4e-5, 1e-5);
+}
+
+// A smooth block that glides over a level floor by 5 um a second counts as still. What sleep takes is
+// told as what sleep takes: no step mends it.
+TEST(Sleeping, WhatItTakesFromABodyThatMovesIsToldWithTheRemedy) {
+  scene::Scene scene = block_on_floor(4.0);
+  scene.bodies[0].friction = 0.0;
+  scene.bodies[0].velocity_m_s = {5e-6, 0, 0};
+  const Trajectory slept = run_it(scene), awake = run_awake(scene);
   EXPECT_TRUE(awake.counters.faults.empty());
   ASSERT_TRUE(falls_asleep(slept, 0));
   ASSERT_EQ(slept.counters.faults.size(), 1u);

@@ -98,6 +98,12 @@ void MotorTerms::remember(const Memory& memory) {
   }
 }
 
+void MotorTerms::look_again() {
+  for (Acts& motor : motors_)
+    if (motor.held.next_look > 0.0)  // it knows how many turns it has come
+      motor.held.next_look = std::numeric_limits<double>::min();
+}
+
 bool MotorTerms::differs_from(const Memory& before) const {
   double largest = 0.0, stiffest = 0.0, change = 0.0;
   for (const Acts& motor : motors_) {

@@ -31,6 +31,7 @@ class MotorTerms final : public GroupTerms, public Control {
   double look(double time, const std::vector<Body>& bodies) override;
   Memory memory() const override;
   void remember(const Memory& memory) override;
+  void look_again() override;
   bool differs_from(const Memory& before) const override;
 
  private:

@@ -30,7 +30,8 @@
 /// active within the step), sliding_stop.h (where friction has stopped a pair), pressed_bodies.h
 /// (forces that follow a motion which contact stops), large_islands.h, position_correction.h,
 /// contact_progress.h (when to give up); here the step, with one island's ends and paths
-/// (contact_steps.cpp) and its energy (contact_energy.cpp). Tolerances: contact_constants.h.
+/// (contact_steps.cpp), its energy (contact_energy.cpp), and whether it may sleep
+/// (contact_equilibrium.cpp). Tolerances: contact_constants.h.
 /// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
 #pragma once
 
@@ -140,6 +141,14 @@ class PersistentContacts {
   /// that passes through the pair. [m]
   double impact_band(Pair pair) const { return kContact.impact_band * geometry_.size_of(pair); }
 
+  /// Whether bodies that are slow may be left where they are: standing still, nothing would set them
+  /// in motion that links, contacts and friction do not hold, or they would come to such places
+  /// nearer than `within`. Asked after a step was committed; changes nothing, nor what is counted.
+  /// @param island  bodies, pairs and links of the step that was committed last
+  /// @param within  of the fastest point of its bodies [m]
+  bool is_large(const ContactIsland& island) const { return large_.is_large(island); }
+  bool is_in_equilibrium(const ContactIsland& island, double within);
+
   /// Goes on from what is remembered of another state; what was known of a step is forgotten.
   void recall(ContactMemory memory);
   /// What contacts pressed bodies with in the last step, its mean, by body: of those on which
@@ -173,6 +182,17 @@ class PersistentContacts {
                        const std::vector<RigidBodyState>& states) const;
   void end(Pair pair, const collision::Gap& gap);
   void remove_overlaps();
+
+  // ---- Whether bodies may sleep (contact_equilibrium.cpp)
+  struct Unheld {
+    std::vector<Velocity> accelerations;  // by body of the island [m/s^2, rad/s^2]
+    double largest = 0.0;                 // of a point of its bodies [m/s^2]
+    double unseen = 0.0;                  // as much may be errors of the solution [m/s^2]
+  };
+  Unheld unheld(const ContactIsland& island, const std::vector<RigidBodyState>& states,
+                double moved);
+  StepContacts contacts_at_rest(const ContactIsland& island,
+                                const std::vector<RigidBodyState>& states, double moved) const;
 
   // ---- One island's step (persistent_contacts.cpp, contact_steps.cpp)
   std::optional<double> take_steps(double h);

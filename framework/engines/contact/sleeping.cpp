@@ -17,9 +17,8 @@ constexpr double kMean = 0.01;
 
 }  // namespace
 
-Sleepers::Sleepers(MovingWorld& moving, const PersistentContacts& contacts,
-                   const ContactModes* modes, double restitution_threshold, RunCounters& counters,
-                   TrajectorySink& sink)
+Sleepers::Sleepers(MovingWorld& moving, PersistentContacts& contacts, const ContactModes* modes,
+                   double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
     : moving_(moving),
       contacts_(contacts),
       modes_(modes),
@@ -59,6 +58,17 @@ bool Sleepers::is_still(const Group& group, double since) const {
   });
 }
 
+// What is slow because something brakes it goes on.
+bool Sleepers::is_in_equilibrium(const Group& group) {
+  ContactIsland island;
+  island.bodies = group.bodies;
+  island.pairs = group.pairs;
+  island.linked = group.linked;
+  island.large = contacts_.is_large(island);
+  return contacts_.is_in_equilibrium(
+      island, (group.slides ? kCreep : kMean) * restitution_threshold_ * kStillFor);
+}
+
 bool Sleepers::is_driven_otherwise(int linked) const {
   return moving_.linked_groups()[linked].is_driven_otherwise(held_[linked]);
 }
@@ -85,6 +95,7 @@ std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touc
   for (const auto& [a, b] : touching) {
     if (!moving_.can_move(a) && !moving_.can_move(b)) continue;
     Group& group = groups[leader[moving_.can_move(a) ? a : b]];
+    group.pairs.push_back({a, b});
     group.slides = group.slides || (modes_ && modes_->slides({a, b}));
     for (const int body : {a, b})
       if (moving_.world().bodies[body].immovable()) end_at(group, body);
@@ -122,6 +133,11 @@ std::vector<int> Sleepers::look(const std::vector<Pair>& touching) {
     if (moving_.can_move(body) && still_[body].roughly.since <= latest) {
       for (auto& [first, group] : groups_of(touching))
         if (group.held && !group.driven && is_still(group, latest)) {
+          if (!is_in_equilibrium(group)) {  // looked at again after as long
+            for (const int still : group.bodies)
+              still_[still].roughly.since = still_[still].strictly.since = moving_.time();
+            continue;
+          }
           fell_asleep.insert(fell_asleep.end(), group.bodies.begin(), group.bodies.end());
           put_to_sleep(std::move(group));
         }

@@ -9,6 +9,13 @@
 /// 1e-7 m/s, the creep that a sticking contact is allowed. Something immovable must hold the
 /// island, too: a body at the top of its path is slow for a while, and not at rest.
 ///
+/// Slow is not at rest either where a damper, drag or a motor brakes what a force still draws, or
+/// where the force is faint: an island stays awake unless contacts, friction, rods and joints would
+/// hold all that acts on its bodies if they stood still, or would from places nearer than those 5
+/// um (contact_equilibrium.cpp). Where they would not it is asked again after another half second.
+/// What no force draws or brakes is at rest as far as speed tells: a body that glides over a smooth
+/// floor more slowly than that, or swings so slowly past its equilibrium, is stopped.
+///
 /// Asleep, a body keeps its position to the last bit and its velocity is zero. It is not
 /// integrated, its contacts are not solved, and it is no candidate with others that do not move.
 /// The forces of its contacts in the last step stay on record. An island wakes at the beginning of
@@ -34,7 +41,7 @@ class Sleepers {
   using Pair = PersistentContacts::Pair;
 
   /// @param modes  null where no contact has friction
-  Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes,
+  Sleepers(MovingWorld& moving, PersistentContacts& contacts, const ContactModes* modes,
            double restitution_threshold, RunCounters& counters, TrajectorySink& sink);
 
   /// After a step: puts the groups to sleep that have been still long enough.
@@ -66,6 +73,7 @@ class Sleepers {
   };
   struct Group {
     std::vector<int> bodies;  // ascending
+    std::vector<Pair> pairs;  // in contact
     std::vector<int> linked;  // places in linked_groups()
     std::vector<ContactPoint> forces;
     // by something that does not move; by something that moves by its own law
@@ -75,6 +83,7 @@ class Sleepers {
 
   void watch(int body);
   bool is_still(const Group& group, double since) const;
+  bool is_in_equilibrium(const Group& group);
   void watch_control(int linked);
   bool is_driven_otherwise(int linked) const;
   std::map<int, Group> groups_of(const std::vector<Pair>& touching) const;
@@ -82,7 +91,7 @@ class Sleepers {
   bool would_touch(Pair pair);
 
   MovingWorld& moving_;
-  const PersistentContacts& contacts_;
+  PersistentContacts& contacts_;
   const ContactModes* modes_;
   double restitution_threshold_;  // [m/s]
   RunCounters& counters_;

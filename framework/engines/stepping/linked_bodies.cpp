@@ -166,6 +166,10 @@ void LinkedBodies::remember(const std::map<int, effects::Memory>& held) {
   }
 }
 
+void LinkedBodies::look_again() {
+  for (const std::size_t k : controls_) terms_[k].acting->control()->look_again();
+}
+
 bool LinkedBodies::is_driven_otherwise(const std::map<int, effects::Memory>& before) const {
   return std::any_of(controls_.begin(), controls_.end(), [&](std::size_t k) {
     return terms_[k].acting->control()->differs_from(before.at(static_cast<int>(terms_[k].effect)));

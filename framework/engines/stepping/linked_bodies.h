@@ -52,6 +52,8 @@ class LinkedBodies final : effects::GroupPlaces {
   /// brought back.
   std::map<int, effects::Memory> held() const;
   void remember(const std::map<int, effects::Memory>& held);
+  /// The next look of its control laws comes at once.
+  void look_again();
   /// Whether its control laws drive it otherwise than by what they held before.
   bool is_driven_otherwise(const std::map<int, effects::Memory>& before) const;
   bool has_constraints() const { return row_count_ > 0; }

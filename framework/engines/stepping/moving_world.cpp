@@ -194,6 +194,34 @@ void MovingWorld::put_to_sleep(int body) {
   ++counters_.bodies_put_to_sleep;
 }
 
+std::vector<RigidBodyState> MovingWorld::released(const std::vector<int>& bodies,
+                                                  std::vector<RigidBodyState> states, double h) {
+  const RunCounters before = counters_;
+  const std::uint64_t integrations_before = integrations_in_step_;
+  for (const int body : bodies) {
+    states[body].momentum_world.setZero();
+    states[body].angular_momentum_world.setZero();
+  }
+  std::vector<RigidBodyState> after = states;
+  for (const int body : bodies) {
+    if (group_of_[body] < 0) {
+      after[body] = integrate(body, h, time_, pack(states[body]));
+      continue;
+    }
+    LinkedBodies& group = linked_[group_of_[body]];
+    if (group.bodies().front() != body) continue;
+    const std::map<int, effects::Memory> held = group.held();
+    group.look_again();
+    group.look(time_, states);
+    const std::vector<RigidBodyState> ends = group.advance(states, time_, h);
+    group.remember(held);
+    for (std::size_t i = 0; i < ends.size(); ++i) after[group.bodies()[i]] = ends[i];
+  }
+  counters_ = before;
+  integrations_in_step_ = integrations_before;
+  return after;
+}
+
 void MovingWorld::wake(int body) {
   states_[body] = still_state(body, time_);
   rests_[body].reset();

@@ -95,6 +95,13 @@ class MovingWorld {
   /// about it (sleeping.h).
   void put_to_sleep(int body);
   bool asleep(int body) const { return built::kSleep && asleep_[body]; }
+  /// Where bodies that can move would be after a time h if they all stood still now, with control
+  /// laws that look then; contacts hold nothing. Changes nothing, nor what is counted.
+  /// @param bodies  groups of linked bodies as a whole
+  /// @param states  by body; their momenta are not looked at
+  /// @return by body; those of others as they were
+  std::vector<RigidBodyState> released(const std::vector<int>& bodies,
+                                       std::vector<RigidBodyState> states, double h);
   /// Ends rest or sleep of a body.
   void wake(int body);
   /// Steady forces that are to be switched at the committed time, with the place of each's effect
