@@ -32,6 +32,8 @@ struct ContactMemory {
   using Pair = std::pair<int, int>;  // bodies, first < second
 
   std::set<Pair> persistent;  // pairs in contact
+  // those that touched at the start, until a step on the grid has been taken
+  std::set<Pair> apart_at_start;
   double longest_step = 0.0;  // so far, at least that of the scene's grid [s]
   // Warm start: of the last step, and of attempts at the one that has begun.
   PairTable<std::vector<KnownImpulse>> last_impulses;

@@ -8,6 +8,7 @@
 #include "framework/core/numbers.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
+#include "framework/engines/contact/impact_bodies.h"
 #include "framework/engines/stepping/body_groups.h"
 
 namespace tumble::engines {
@@ -47,7 +48,9 @@ void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
               b.velocity_world - b.omega_world.cross(geometry_.point_of(pair, p) - b.com_world);
           return std::abs(relative.dot(p.normal_b_to_a_world)) < restitution_threshold_;
         });
-    if (slow) begin(pair, gap);
+    if (!slow) continue;
+    begin(pair, gap);
+    memory_.apart_at_start.insert(pair);
   }
   remove_overlaps();
 }
@@ -95,6 +98,20 @@ std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& 
   return result;
 }
 
+// Whether a gap is what six digits leave at the start of places that were meant to touch, and
+// closes slowly: a path that forces bend dips no deeper than that on its way, and a straight one
+// would leave out what they bend.
+bool PersistentContacts::is_apart_by_digits(Pair pair,
+                                            const collision::ManifoldPoint& point) const {
+  if (!memory_.apart_at_start.contains(pair)) return false;
+  const double digits = kSixDigits * geometry_.size_of(pair);
+  if (point.gap > digits) return false;
+  const Vector3d at = geometry_.point_of(pair, point);
+  const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
+  const double approach = -point.normal_b_to_a_world.dot(relative_velocity(a, b, at));
+  return approach * (moving_.target() - moving_.time()) <= digits;
+}
+
 StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
   StepContacts contacts;
   for (const Pair& pair : island.pairs)
@@ -103,10 +120,12 @@ StepContacts PersistentContacts::contacts_of(const ContactIsland& island) {
       const double margin = geometry_.margin(pair), distance = point.gap - margin;
       const bool is_apart =
           distance > kContact.touching_band * margin + kNegligible * reach_.of(pair);
-      // what shares a load with others closes its gap on the way, and is no impact
+      // what shares a load with others, and what decimals of the scene leave apart, closes its gap
+      // on the way, and is no impact
+      const bool shares = is_apart && memory_.sharing.contains(pair) &&
+                          distance <= kContact.sharing_band * geometry_.size_of(pair);
       const bool activates =
-          is_apart && !(memory_.sharing.contains(pair) &&
-                        distance <= kContact.sharing_band * geometry_.size_of(pair));
+          is_apart && !shares && !(island.linked.empty() && is_apart_by_digits(pair, point));
       contacts.push_back({pair, point,
                           is_apart ? -distance / (moving_.target() - moving_.time()) : 0.0,
                           activates, Vector3d::Zero(), point.gap});
@@ -472,6 +491,7 @@ bool PersistentContacts::commit() {
   // of a step that an impact has cut, its part
   for (Loss& loss : lost_) loss.energy *= (moving_.time() - began_) / (target_ - began_);
   has_committed_ = true;
+  if (moving_.time() >= target_) memory_.apart_at_start.clear();
   bool apart = true;
   std::vector<RigidBodyState> states = moving_.states();
   for (const ContactIsland& island : islands_) {

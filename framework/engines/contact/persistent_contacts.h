@@ -176,6 +176,7 @@ class PersistentContacts {
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
   StepContacts contacts_of(const ContactIsland& island);
+  bool is_apart_by_digits(Pair pair, const collision::ManifoldPoint& point) const;
   bool is_curved(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
   double near_distance(Pair pair, bool lasted, bool is_large,
