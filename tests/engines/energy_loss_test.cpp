@@ -335,6 +335,61 @@ TEST(EnergyLost, IsNotHiddenByDampersInAnyEngine) {
   }
 }
 
+// The same swing, which the drag of a medium takes as little of, or that of the water round it.
+TEST(EnergyLost, IsNotHiddenByDragOrWaterInAnyEngine) {
+  for (const bool in_water : {false, true}) {
+    scene::Scene scene = swing(1.0, 82944.0, 0.1, 1.0 / 240, 0.5);
+    if (in_water) {
+      effects::set_gravity(scene, kDown);
+      effects::WaterSpec water;
+      water.surface_m = {0, 0, 10};
+      water.drag_1_s = 1e-4;  // times 4 g of water, on 1 kg
+      scene.effects.of<effects::WaterSpec>().push_back(water);
+    } else {
+      scene.effects.of<effects::DragSpec>().push_back({"bob", 1e-6, 0.0});
+    }
+    std::optional<double> of_events;
+    for (const std::string engine : {"rd", "ordered", "ca", "tw"}) {
+      const Trajectory run = run_by(engine, scene);
+      const auto fault = lost_in(run);
+      ASSERT_TRUE(fault) << engine << in_water << said(run);
+      EXPECT_GT(fault->worst, 0.5) << engine;
+      if (engine == "rd") continue;
+      EXPECT_EQ(fault->worst, of_events.value_or(fault->worst)) << engine;
+      of_events = fault->worst;
+    }
+  }
+}
+
+// What drag and water take between two frames, over which bodies swing, sink and rise many times,
+// is looked at where steps begin: right runs are told nothing of.
+TEST(EnergyLost, IsNotWhatDragAndWaterTakeBetweenFrames) {
+  const Laws laws = reference_laws();
+  Random random(11);
+  for (int trial = 0; trial < 24; ++trial) {
+    const double mass = random.between(2.0, 11.0), frequency = random.between(1.0, 200.0);
+    scene::Scene scene = swing(mass, mass * frequency * frequency, 0.2, 0.1 / frequency / 2, 0.6);
+    scene.step_s = std::min(scene.step_s, 1.0 / 240);
+    scene.bodies[0].shape = scene::BoxSpec{{0.3, 0.2, 0.2}};
+    scene.bodies[0].velocity_m_s = {0, random.between(-3.0, 3.0), random.between(-3.0, 3.0)};
+    scene.bodies[0].omega_world_rad_s = {5, random.between(-5.0, 5.0), 1};
+    const bool in_water = trial % 2 == 0;
+    if (in_water) {
+      effects::set_gravity(scene, kDown);
+      effects::WaterSpec water;
+      water.surface_m = {0, 0, random.between(-0.2, 0.2)};
+      water.drag_1_s = 0.1 * std::pow(1000.0, random.unit());
+      scene.effects.of<effects::WaterSpec>().push_back(water);
+    } else {
+      scene.effects.of<effects::DragSpec>().push_back(
+          {"bob", mass * 0.1 * std::pow(1000.0, random.unit()), random.between(0.0, 1e-2)});
+    }
+    const std::string engine = trial % 3 == 0 ? "tw" : trial % 3 == 1 ? "ordered" : "ca";
+    const Trajectory run = run_by(engine, scene, laws);
+    EXPECT_TRUE(run.counters.faults.empty()) << trial << ' ' << engine << said(run);
+  }
+}
+
 // The same swing from an anchor that moves evenly, in gravity that the spring holds: by Galileo's
 // principle it loses, or wins, what it does from one at rest, and all of it is the step's. Damped
 // rightly it is not told; nor where a second spring leads to what stands still, which does work.

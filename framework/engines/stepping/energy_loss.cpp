@@ -156,11 +156,8 @@ void EnergyLoss::begin(const World& world) {
     const bool needs_steps = !sees_switches_ && effect->work_meter(world) != nullptr;
     for (int k = 0; k < count; ++k) {
       int first = -1;
-      // at frames only the power of what is stiff is asked: of immersed volumes that costs more
-      // than steps do
       const bool takes_power = effect->takes(world, k) == effects::Takes::kPower;
-      bool is_unknown = needs_steps || effect->takes(world, k) == effects::Takes::kUnknown ||
-                        (!sees_switches_ && takes_power && !effect->traits().may_be_stiff);
+      bool is_unknown = needs_steps || effect->takes(world, k) == effects::Takes::kUnknown;
       const std::vector<int> bodies = effect->bodies_of(world, k);
       // what names one body holds it by the world, or slows it down by what rests in it
       std::optional<int> frame;

@@ -19,9 +19,9 @@
 /// world says nothing, a part's own energy must not rise either.
 /// Not watched: what is linked with bodies that are driven differently, what an effect acts on that
 /// says of no entry what it takes (effects::Takes::kUnknown), balls at rest without contacts; and
-/// where looks are taken at frames (event engines), what motors and forces drive, what is dragged
-/// or floats, what hangs on what is shaken, what driven bodies damp, and islands of scenes whose
-/// impacts are solved in steps. What dampers take is summed there over the steps between two looks
+/// where looks are taken at frames (event engines), what motors, forces and streams drive, what
+/// hangs on what is shaken, what driven bodies damp, and islands of scenes whose impacts are solved
+/// in steps. What dampers, drag and water take is summed there over the steps between two looks
 /// (pass), where that matters.
 #pragma once
 
