@@ -141,12 +141,13 @@ class PersistentContacts {
   /// that passes through the pair. [m]
   double impact_band(Pair pair) const { return kContact.impact_band * geometry_.size_of(pair); }
 
-  /// Whether bodies that are slow may be left where they are: standing still, nothing would set them
-  /// in motion that links, contacts and friction do not hold, or they would come to such places
-  /// nearer than `within`. Asked after a step was committed; changes nothing, nor what is counted.
+  /// Whether the island is solved in steps, without locating its impacts.
+  bool is_large(const ContactIsland& island) const { return large_.is_large(island); }
+  /// Whether bodies that are slow may be left where they are: if they stood still, links, contacts
+  /// and friction would hold all that acts on them, or would from places nearer than `within`.
+  /// Asked after a step was committed; changes nothing, nor what is counted.
   /// @param island  bodies, pairs and links of the step that was committed last
   /// @param within  of the fastest point of its bodies [m]
-  bool is_large(const ContactIsland& island) const { return large_.is_large(island); }
   bool is_in_equilibrium(const ContactIsland& island, double within);
 
   /// Goes on from what is remembered of another state; what was known of a step is forgotten.
