@@ -15,6 +15,7 @@
 
 #include "framework/cli/json_output.h"
 #include "framework/cli/judgement_table.h"
+#include "framework/cli/kept_frames.h"
 #include "framework/cli/planned_run.h"
 #include "framework/cli/run_page.h"
 #include "framework/cli/scene_pictures.h"
@@ -252,6 +253,13 @@ void check_words_of_fast_timewarp(const PlannedRun& plan, const RunWords& words)
         fmt::format("Leave out {}, or the module of a4: the fast timewarp takes it.", flag));
 }
 
+bool is_shown(const RunWords& words) {
+  for (const std::string* file : {&words.png, &words.sheet, &words.video, &words.trajectory,
+                                  &words.html, &words.virtual_times})
+    if (!file->empty()) return true;
+  return false;
+}
+
 }  // namespace
 
 void add_run_words(Verb& verb, RunWords& words) {
@@ -344,15 +352,21 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   check_words_of_fast_timewarp(plan, words);
   VirtualTimes times;  // of the fast scheduler; the teaching timewarp sends them to the recorder
   if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
+  const double duration_s = plan.options.duration_s.value_or(plan.scene.duration_s);
+  // a search's error is that of all frames
+  const KeptFrames kept = kept_frames(plan.options.frame_rate_hz, duration_s,
+                                      plan.scene.bodies.size(), is_shown(words) || plan.search);
+  plan.options.frame_rate_hz = kept.rate_hz;
+  if (!kept.warning.empty()) fmt::print(stderr, "tumble: {}\n", kept.warning);
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();
   const double cpu_before = cpu_seconds();
-  const double duration_s = plan.options.duration_s.value_or(plan.scene.duration_s);
   const std::string ended = simulate(plan, duration_s, recorder);
   const double cpu_s = cpu_seconds() - cpu_before;
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Trajectory run = recorder.trajectory();
+  Trajectory run = recorder.take();
+  if (!kept.notice.empty()) run.counters.notices.push_back(kept.notice);
   if (!ended.empty()) run.stopped_by = ended;
   if (run.virtual_times.moves.empty()) run.virtual_times = std::move(times);
 

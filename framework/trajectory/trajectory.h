@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/core/math.h"
@@ -159,6 +160,8 @@ class TrajectoryRecorder final : public TrajectorySink {
   void end(const Counters& counters, const std::string& stopped_by) override;
   void virtual_times(const VirtualTimes& times) override { trajectory_.virtual_times = times; }
   const Trajectory& trajectory() const { return trajectory_; }
+  /// Hands it over.
+  Trajectory take() { return std::move(trajectory_); }
 
  private:
   Trajectory trajectory_;

@@ -366,5 +366,23 @@ TEST_F(CommandLine, AnAuditOfAnUnknownSlipIsAnsweredWithTheNearest) {
 }
 #endif
 
+// 700 s and one body that nothing touches, in steps of 100 s.
+TEST_F(CommandLine, ALongRunKeepsFewerFramesUnlessItIsRecorded) {
+  std::ofstream(folder_ / "long.json")
+      << R"({"title": "t", "duration_s": 700, "step_s": 100, "bodies": [
+             {"name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1,
+              "velocity_m_s": [1, 0, 0]}]})";
+  const Said plain = type("run long.json --modules library"),
+             recorded = type("run long.json --modules library --trajectory long.bin"),
+             ordinary = type("run long.json --modules library --duration-s 600");
+  EXPECT_EQ(plain.code, 0) << plain.err;
+  EXPECT_TRUE(holds(plain.out, "36001 frames")) << plain.out;
+  EXPECT_TRUE(holds(plain.out, "beyond 600 s")) << plain.out;
+  EXPECT_TRUE(holds(recorded.out, "42001 frames")) << recorded.out;
+  EXPECT_FALSE(holds(recorded.out, "beyond 600 s")) << recorded.out;
+  EXPECT_TRUE(holds(ordinary.out, "36001 frames")) << ordinary.out;
+  EXPECT_FALSE(holds(ordinary.out, "beyond 600 s")) << ordinary.out;
+}
+
 }  // namespace
 }  // namespace tumble::testing
