@@ -10,6 +10,7 @@
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
+#include "framework/engines/contact/island_problems.h"
 #include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
@@ -73,17 +74,7 @@ PersistentContacts::Unheld PersistentContacts::unheld(const ContactIsland& islan
   // what hangs on links alone has been held by these
   if (!island.pairs.empty()) {
     const StepContacts contacts = contacts_at_rest(island, states, moved);
-    for (const StepContact& touching : contacts) {
-      PushingContact contact;
-      contact.body_a = place_body(moving_, touching.pair.first, t, places, states,
-                                  &states[touching.pair.first], problem);
-      contact.body_b = place_body(moving_, touching.pair.second, t, places, states,
-                                  &states[touching.pair.second], problem);
-      contact.point_world = geometry_.point_of(touching.pair, touching.point);
-      contact.normal_b_to_a_world = touching.point.normal_b_to_a_world;
-      contact.friction = geometry_.friction(touching.pair);
-      problem.contacts.push_back(contact);
-    }
+    add_contacts(moving_, geometry_, contacts, states, t, places, problem);
     warm_start_.set(contacts, states, h, kContact.warm_start_within_in_large_island, problem);
     add_island_rows(moving_, island, states, t, places, false, problem);
     ContactOptions options;

@@ -30,6 +30,24 @@ Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vec
 
 }  // namespace
 
+void add_contacts(const MovingWorld& moving, const ContactGeometry& geometry,
+                  const StepContacts& contacts, const std::vector<RigidBodyState>& states, double t,
+                  BodyPlaces& places, ContactProblem& problem) {
+  for (const StepContact& step_contact : contacts) {
+    PushingContact contact;
+    contact.body_a = place_body(moving, step_contact.pair.first, t, places, states,
+                                &states[step_contact.pair.first], problem);
+    contact.body_b = place_body(moving, step_contact.pair.second, t, places, states,
+                                &states[step_contact.pair.second], problem);
+    contact.point_world = geometry.point_of(step_contact.pair, step_contact.point);
+    contact.normal_b_to_a_world = step_contact.point.normal_b_to_a_world;
+    contact.friction = geometry.friction(step_contact.pair);
+    contact.target = step_contact.target;
+    contact.slip_target_world = step_contact.slip_target_world;
+    problem.contacts.push_back(contact);
+  }
+}
+
 ContactProblem IslandProblems::of(const ContactIsland& island, const StepContacts& contacts,
                                   const std::vector<RigidBodyState>& states, double h,
                                   const std::vector<RigidBodyState>* ends) {
@@ -42,19 +60,7 @@ ContactProblem IslandProblems::of(const ContactIsland& island, const StepContact
     if (ends) free.world_from_body = (*ends)[body].world_from_body;
     place_body(moving_, body, t, places_, states, &free, problem);
   }
-  for (const StepContact& step_contact : contacts) {
-    PushingContact contact;
-    contact.body_a = place_body(moving_, step_contact.pair.first, t, places_, states,
-                                &states[step_contact.pair.first], problem);
-    contact.body_b = place_body(moving_, step_contact.pair.second, t, places_, states,
-                                &states[step_contact.pair.second], problem);
-    contact.point_world = geometry_.point_of(step_contact.pair, step_contact.point);
-    contact.normal_b_to_a_world = step_contact.point.normal_b_to_a_world;
-    contact.friction = geometry_.friction(step_contact.pair);
-    contact.target = step_contact.target;
-    contact.slip_target_world = step_contact.slip_target_world;
-    problem.contacts.push_back(contact);
-  }
+  add_contacts(moving_, geometry_, contacts, states, t, places_, problem);
   if (!at_once)
     warm_start_.set(
         contacts, states, h,

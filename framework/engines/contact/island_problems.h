@@ -11,6 +11,12 @@
 
 namespace tumble::engines {
 
+/// Puts contacts into a problem, with the bodies on which they are that are not placed yet.
+/// @param places  of bodies in the problem
+void add_contacts(const MovingWorld& moving, const ContactGeometry& geometry,
+                  const StepContacts& contacts, const std::vector<RigidBodyState>& states, double t,
+                  BodyPlaces& places, ContactProblem& problem);
+
 class IslandProblems {
  public:
   IslandProblems(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules,

@@ -81,9 +81,8 @@ std::optional<std::string> notice_of_far_points(const scene::Scene& scene) {
   }
   if (farthest == nullptr) return std::nullopt;
   return fmt::format(
-      "{} body '{}' at a point {:.3g} m from its centre of mass, and nothing of the body is "
-      "farther "
-      "from there than {:.3g} m: it acts as on an arm without mass. If that is not meant: "
+      "{} body '{}' at a point {:.3g} m from its centre of mass, while no part of the body is "
+      "more than {:.3g} m from it: it acts as on an arm without mass. If that is not meant: "
       "\"point_body_m\" goes from the body's centre of mass along the body's axes, "
       "\"point_world_m\" and \"point_m\" are places in the world",
       farthest->words, farthest->body, farthest->arm, reach);

@@ -12,7 +12,7 @@ namespace tumble::engines {
 /// Ends of rods and springs, joints that are far from both of their bodies, and points at which
 /// forces that begin with the run push. Allowed: the body then has an arm without mass. Bodies
 /// without size and immovable ones are not looked at.
-/// @return nothing where each point is on its body, or nearer to it than half its size
+/// @return nothing where none is farther than one and a half of its body's radius
 std::optional<std::string> notice_of_far_points(const scene::Scene& scene);
 
 }  // namespace tumble::engines

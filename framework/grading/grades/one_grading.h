@@ -1,6 +1,6 @@
 /// What one submission's grading process does, and what its parent finds when it has ended.
 ///
-///   OUT/.NAME.../NAME/       the draft: the written files contain the final name. What lies beside
+///   OUT/.making-NAME/NAME/   the draft: the written files contain the final name. What lies beside
 ///                            it begins with a dot, as no folder of a submission does
 ///   OUT/NAME/                the result in place
 #pragma once
