@@ -239,7 +239,11 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   info.engine = options.engine;
   info.impulse_source = laws.impulse_source;
   info.integrator_source = laws.integrator_source;
-  info.constraint_source = laws.constraint_source;
+  // A scene without springs, rods and resting contact calls no law of a3.
+  if (scene.contact || effects::asks_laws_of("a3", scene))
+    info.constraint_source = laws.constraint_source;
+  else
+    info.constraint_source = "none";
   if (options.engine == "tw") info.scheduling_source = laws.scheduling_source;
   if (!laws.link_solver.empty()) info.constraint_source += ", links by " + laws.link_solver;
   if (!laws.contact_solver.empty())

@@ -49,18 +49,31 @@ void blend(std::uint8_t* pixel, const Ink& ink, double opacity) {
     pixel[i] = static_cast<std::uint8_t>(std::lround(pixel[i] + (color[i] - pixel[i]) * opacity));
 }
 
-// Draws a glyph's coverage at a position of the picture.
-void stamp(Image& image, const FT_Bitmap& letter, int left, int top, const Ink& ink,
-           double opacity) {
-  for (int row = 0; row < static_cast<int>(letter.rows); ++row) {
-    for (int column = 0; column < static_cast<int>(letter.width); ++column) {
-      const int x = left + column, y = top + row;
-      const int coverage = letter.buffer[row * letter.pitch + column];
-      if (coverage > 0 && x >= 0 && y >= 0 && x < image.width && y < image.height)
-        blend(image.pixel(x, y), ink, opacity * coverage / 255.0);
+// What a glyph covers of a picture, pixel by pixel: rendered once for the letter and its halo.
+class Letter {
+ public:
+  Letter(const FT_Bitmap& glyph, int left, int top)
+      : left_(left), top_(top), width_(static_cast<int>(glyph.width)) {
+    for (int row = 0; row < static_cast<int>(glyph.rows); ++row) {
+      const std::uint8_t* first = glyph.buffer + row * glyph.pitch;
+      coverage_.insert(coverage_.end(), first, first + width_);
     }
   }
-}
+
+  void stamp(Image& image, int dx, int dy, const Ink& ink, double opacity) const {
+    int x = left_ + dx, y = top_ + dy;
+    const int end = x + width_;
+    for (const int coverage : coverage_) {
+      if (coverage > 0 && x >= 0 && y >= 0 && x < image.width && y < image.height)
+        blend(image.pixel(x, y), ink, opacity * coverage / 255.0);
+      if (++x == end) x = left_ + dx, ++y;
+    }
+  }
+
+ private:
+  int left_, top_, width_;  // pixels
+  std::vector<std::uint8_t> coverage_;
+};
 
 // Relative luminance of sRGB [0, 1], and contrast as WCAG 2.1 defines them.
 double luminance(const double* rgb) {
@@ -171,15 +184,16 @@ void TextWriter::write(Image& image, const std::string& text, double x, double b
   if (align != Align::kLeft) x -= wide * (align == Align::kCentre ? 0.5 : 1.0);
   const double beside = 0.2 * size, above = 0.95 * size, below = 0.3 * size;
   lay_plate(image, x - beside, baseline - above, x + wide + beside, baseline + below, ink);
+  std::vector<Letter> letters;
+  fonts_->walk(text, size, bold, [&](FT_GlyphSlot slot, double pen) {
+    const double place = x + pen, whole = std::floor(place);
+    FT_Outline_Translate(&slot->outline, std::lround((place - whole) * kFixed), 0);
+    if (FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL) != 0) return;
+    letters.emplace_back(slot->bitmap, static_cast<int>(whole) + slot->bitmap_left,
+                         static_cast<int>(std::lround(baseline)) - slot->bitmap_top);
+  });
   const auto draw = [&](const Ink& color, double opacity, int dx, int dy) {
-    fonts_->walk(text, size, bold, [&](FT_GlyphSlot slot, double pen) {
-      const double place = x + pen, whole = std::floor(place);
-      FT_Outline_Translate(&slot->outline, std::lround((place - whole) * kFixed), 0);
-      if (FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL) != 0) return;
-      const int left = static_cast<int>(whole) + slot->bitmap_left + dx;
-      stamp(image, slot->bitmap, left,
-            static_cast<int>(std::lround(baseline)) - slot->bitmap_top + dy, color, opacity);
-    });
+    for (const Letter& letter : letters) letter.stamp(image, dx, dy, color, opacity);
   };
   if (ink.halo > 0.0) {
     for (int dy = -1; dy <= 1; ++dy)

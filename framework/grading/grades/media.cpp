@@ -1,5 +1,6 @@
 #include "framework/grading/grades/media.h"
 
+#include <future>
 #include <set>
 
 #include "framework/engines/judging/judge.h"
@@ -132,42 +133,65 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
   report::write_player(folder / media.page, scene, played, player);
 }
 
+// A scene with what submission and reference made of it.
+struct RunScene {
+  scene::Scene scene;
+  Run theirs, ours;
+  SceneMedia media;
+  bool is_stub = false;  // only stubs were called
+};
+
+RunScene run_both(const Course& course, const ModuleKind& kind, const AnyModule& reference,
+                  const fs::path& submission, const fs::path& file, const MediaOptions& options) {
+  RunScene both{scene::load_scene(file), {}, {}, {}};
+  both.theirs = run_submission(course, kind, submission, both.scene, options);
+  both.is_stub = !both.theirs.attempted && !both.theirs.is_answered;
+  if (reference && !both.is_stub)
+    both.ours = run(both.scene, laws_around(course, kind, reference, "reference", both.scene));
+  SceneMedia& media = both.media;
+  media.scene = both.scene.name;
+  media.title = both.scene.title;
+  media.about = both.scene.about;
+  media.story = both.theirs.story;
+  media.attempted = both.theirs.attempted;
+  media.functions.assign(both.theirs.functions.begin(), both.theirs.functions.end());
+  if (media.story.empty()) media.checks = engines::judge_run(both.scene, both.theirs.trajectory);
+  return both;
+}
+
 }  // namespace
 
 std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
                                    const std::vector<fs::path>& scenes, const fs::path& submission,
-                                   const fs::path& folder, const MediaOptions& options,
-                                   const std::function<void(const std::string&)>& on_scene) {
+                                   const fs::path& folder, const MediaOptions& options) {
   const ModuleKind& kind = course.registry->find(id);
   const AnyModule reference = reference_of(course, kind);
   fs::create_directories(folder);
   std::vector<SceneMedia> all;
-  for (const fs::path& file : scenes) {
-    const scene::Scene scene = scene::load_scene(file);
-    if (on_scene) on_scene(scene.title);
-    SceneMedia media;
-    media.scene = scene.name;
-    media.title = scene.title;
-    media.about = scene.about;
-    const Run theirs = run_submission(course, kind, submission, scene, options);
-    media.story = theirs.story;
-    media.attempted = theirs.attempted;
-    media.functions.assign(theirs.functions.begin(), theirs.functions.end());
-    if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
-    const bool is_stub = !theirs.attempted && !theirs.is_answered;
-    const Run ours = reference && !is_stub
-                         ? run(scene, laws_around(course, kind, reference, "reference", scene))
-                         : Run{};
+  // A scene is run while the one before it is drawn.
+  const auto begin = [&](std::size_t i) {
+    return i < scenes.size() ? std::async(std::launch::async,
+                                          [&, i] {
+                                            return run_both(course, kind, reference, submission,
+                                                            scenes[i], options);
+                                          })
+                             : std::future<RunScene>();
+  };
+  std::future<RunScene> ready = begin(0);
+  while (ready.valid()) {
+    RunScene both = ready.get();
+    ready = begin(all.size() + 1);
+    SceneMedia& media = both.media;
     std::vector<render::LabelledRun> runs;
-    if (!theirs.trajectory.frames.empty() && !is_stub)
-      runs.push_back({theirs.trajectory, "submission"});
-    if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
+    if (!both.theirs.trajectory.frames.empty() && !both.is_stub)
+      runs.push_back({both.theirs.trajectory, "submission"});
+    if (!both.ours.trajectory.frames.empty()) runs.push_back({both.ours.trajectory, "reference"});
     MediaOptions own = options;
     // without an implementation nothing moves: a picture is enough
-    own.video = options.video && theirs.attempted;
-    if (!runs.empty()) draw(scene, runs, folder, own, course, media);
-    if (!runs.empty() && options.page && theirs.attempted)
-      write_page(scene, runs, folder, options, course, media);
+    own.video = options.video && media.attempted;
+    if (!runs.empty()) draw(both.scene, runs, folder, own, course, media);
+    if (!runs.empty() && options.page && media.attempted)
+      write_page(both.scene, runs, folder, options, course, media);
     all.push_back(std::move(media));
   }
   return all;

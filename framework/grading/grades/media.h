@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,13 +45,11 @@ struct SceneMedia {
 /// the submission's module does not implement come from the reference if the scene needs them, else
 /// from the library.
 /// @param submission  a shared object; never loaded into this process
-/// @param on_scene        called with each scene's title before it runs; may be empty
 /// @throws UserError when this machine cannot draw pictures, or a file cannot be written
 std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
                                    const std::vector<std::filesystem::path>& scenes,
                                    const std::filesystem::path& submission,
                                    const std::filesystem::path& folder,
-                                   const MediaOptions& options = {},
-                                   const std::function<void(const std::string&)>& on_scene = {});
+                                   const MediaOptions& options = {});
 
 }  // namespace tumble::grading
