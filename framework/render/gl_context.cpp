@@ -1,8 +1,8 @@
 #include "framework/render/gl_context.h"
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <utility>
 
 #include "framework/core/error.h"
 
@@ -35,8 +35,8 @@ std::unique_ptr<GlContext> make_gl_context(const std::string& choice) {
   } catch (const UserError& no_osmesa) {
     try {
       auto context = make_egl_context();
-      static bool is_told = false;
-      if (!std::exchange(is_told, true))
+      static std::atomic_flag is_told;
+      if (!is_told.test_and_set())
         std::fprintf(stderr, "tumble: drawing with EGL, because %s\n", no_osmesa.what());
       return context;
     } catch (const UserError& no_egl) {

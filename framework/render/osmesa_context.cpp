@@ -1,6 +1,8 @@
 // OpenGL in memory, by Mesa's off-screen library.
 #include <dlfcn.h>
 
+#include <mutex>
+
 #include <GL/osmesa.h>
 
 #include "framework/core/error.h"
@@ -43,6 +45,13 @@ const Library& library() {
   return opened;
 }
 
+// Mesa keeps a list of all buffers and contexts, which it does not lock: threads that draw each with
+// a context of their own take turns here.
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 class OsmesaContext final : public GlContext {
  public:
   OsmesaContext() {
@@ -55,7 +64,10 @@ class OsmesaContext final : public GlContext {
                           OSMESA_CONTEXT_MINOR_VERSION,
                           3,
                           0};
-    context_ = library().create(wanted, nullptr);
+    {
+      const std::lock_guard lock(one_at_a_time());
+      context_ = library().create(wanted, nullptr);
+    }
     if (context_ == nullptr)
       throw UserError(kLibrary, "offers no OpenGL 3.3 core context",
                       "Install Debian 12's libosmesa6.");
@@ -64,13 +76,20 @@ class OsmesaContext final : public GlContext {
         [](const char* name) { return reinterpret_cast<void*>(library().address(name)); },
         kLibrary);
   }
-  ~OsmesaContext() override { library().destroy(context_); }
+  ~OsmesaContext() override {
+    const std::lock_guard lock(one_at_a_time());
+    library().destroy(context_);
+  }
 
   void make_current() override {
+    const std::lock_guard lock(one_at_a_time());
     if (!library().make_current(context_, own_buffer_, GL_UNSIGNED_BYTE, kSide, kSide))
       throw UserError(kLibrary, "cannot make its context current");
   }
-  void release() override { library().make_current(nullptr, nullptr, 0, 0, 0); }
+  void release() override {
+    const std::lock_guard lock(one_at_a_time());
+    library().make_current(nullptr, nullptr, 0, 0, 0);
+  }
   const char* name() const override { return "osmesa"; }
 
  private:

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,20 +18,6 @@
 
 namespace tumble::render {
 namespace {
-
-// A pipe without a reader must be an error, not a SIGPIPE that ends the process.
-class WithoutPipeSignal {
- public:
-  WithoutPipeSignal() {
-    struct sigaction ignore {};
-    ignore.sa_handler = SIG_IGN;
-    sigaction(SIGPIPE, &ignore, &before_);
-  }
-  ~WithoutPipeSignal() { sigaction(SIGPIPE, &before_, nullptr); }
-
- private:
-  struct sigaction before_ {};
-};
 
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int width, int height,
                                       double rate_hz, int crf, const std::string& record) {
@@ -70,24 +57,25 @@ void expect_ffmpeg(const std::filesystem::path& mp4) {
 VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz,
                          int crf, const std::string& record)
     : mp4_(mp4), width_(width), height_(height) {
-  int pipe_ends[2];
+  int ends[2];
   complaints_ = memfd_create("ffmpeg", MFD_CLOEXEC);
-  if (complaints_ < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0)
-    throw UserError(mp4.string(), "no pipe can be created", "Close some programs and try again.");
+  if (complaints_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    throw UserError(mp4.string(), "no connection to ffmpeg can be made",
+                    "Close some programs and try again.");
   const std::vector<std::string> words = ffmpeg_words(mp4, width, height, rate_hz, crf, record);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   ffmpeg_ = fork();
   if (ffmpeg_ == 0) {
-    dup2(pipe_ends[0], 0);
+    dup2(ends[0], 0);
     dup2(complaints_, 1);
     dup2(complaints_, 2);
     execvp(arguments[0], arguments.data());
     _exit(127);
   }
-  close(pipe_ends[0]);
-  input_ = pipe_ends[1];
+  close(ends[0]);
+  input_ = ends[1];
   if (ffmpeg_ < 0)
     throw UserError(mp4.string(), "no process can be created for ffmpeg",
                     "Close some programs and try again.");
@@ -127,10 +115,10 @@ void VideoWriter::finish() {
 void VideoWriter::add(const Image& image) {
   if (image.width != width_ || image.height != height_)
     throw std::logic_error("all pictures of a video must have the same size");
-  const WithoutPipeSignal guard;
   const auto* bytes = image.rgb.data();
   for (std::size_t left = image.rgb.size(); left > 0;) {
-    const ssize_t written = write(input_, bytes, left);
+    // without a reader an error, not a SIGPIPE that ends the process
+    const ssize_t written = send(input_, bytes, left, MSG_NOSIGNAL);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return finish();  // ffmpeg ended early: finish() reports why
     bytes += written;

@@ -37,7 +37,7 @@ class VideoWriter {
 
   std::filesystem::path mp4_;
   int width_, height_;
-  int input_ = -1;       // pipe into ffmpeg
+  int input_ = -1;       // socket into ffmpeg
   int complaints_ = -1;  // what ffmpeg printed
   pid_t ffmpeg_ = -1;
 };

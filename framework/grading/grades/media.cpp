@@ -1,5 +1,7 @@
 #include "framework/grading/grades/media.h"
 
+#include <algorithm>
+#include <deque>
 #include <future>
 #include <set>
 
@@ -113,22 +115,24 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
   render::write_side_by_side_video(folder / media.video, scene, runs, picture);
 }
 
+report::PlayerOptions player_of(const MediaOptions& options, const Course& course) {
+  report::PlayerOptions player;
+  player.root = course.root;
+  player.three_file = options.three_file.empty() ? fs::path(kThree) : options.three_file;
+  player.most_poses = kMostPoses;
+  player.most_contacts = kMostContacts;
+  return player;
+}
+
 // A page that plays run and reference, with the first difference.
 void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs,
                 const fs::path& folder, const MediaOptions& options, const Course& course,
                 SceneMedia& media) {
-  report::PlayerOptions player;
-  player.root = course.root;
-  const bool is_shared = !options.three_file.empty();
-  player.three_file = is_shared ? options.three_file : fs::path(kThree);
-  player.most_poses = kMostPoses;
-  player.most_contacts = kMostContacts;
+  report::PlayerOptions player = player_of(options, course);
   std::vector<report::PlayedRun> played;
   if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty())
     player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
-  // also where an earlier program wrote one: it holds the scripts of these pages
-  if (!is_shared) report::write_three(folder / kThree, player);
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);
 }
@@ -159,6 +163,22 @@ RunScene run_both(const Course& course, const ModuleKind& kind, const AnyModule&
   return both;
 }
 
+SceneMedia draw_both(RunScene both, const fs::path& folder, const MediaOptions& options,
+                     const Course& course) {
+  SceneMedia& media = both.media;
+  std::vector<render::LabelledRun> runs;
+  if (!both.theirs.trajectory.frames.empty() && !both.is_stub)
+    runs.push_back({both.theirs.trajectory, "submission"});
+  if (!both.ours.trajectory.frames.empty()) runs.push_back({both.ours.trajectory, "reference"});
+  MediaOptions own = options;
+  // without an implementation nothing moves: a picture is enough
+  own.video = options.video && media.attempted;
+  if (!runs.empty()) draw(both.scene, runs, folder, own, course, media);
+  if (!runs.empty() && options.page && media.attempted)
+    write_page(both.scene, runs, folder, options, course, media);
+  return std::move(media);
+}
+
 }  // namespace
 
 std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
@@ -167,33 +187,29 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
   const ModuleKind& kind = course.registry->find(id);
   const AnyModule reference = reference_of(course, kind);
   fs::create_directories(folder);
+  // Scenes are run one after the other, and drawn beside that: a picture waits for memory and for
+  // ffmpeg as often as it computes.
+  constexpr std::size_t kDrawn = 2;  // at a time; each holds its runs in memory
+  std::deque<std::future<SceneMedia>> drawn;
   std::vector<SceneMedia> all;
-  // A scene is run while the one before it is drawn.
-  const auto begin = [&](std::size_t i) {
-    return i < scenes.size() ? std::async(std::launch::async,
-                                          [&, i] {
-                                            return run_both(course, kind, reference, submission,
-                                                            scenes[i], options);
-                                          })
-                             : std::future<RunScene>();
+  const auto keep_first = [&] {
+    all.push_back(drawn.front().get());
+    drawn.pop_front();
   };
-  std::future<RunScene> ready = begin(0);
-  while (ready.valid()) {
-    RunScene both = ready.get();
-    ready = begin(all.size() + 1);
-    SceneMedia& media = both.media;
-    std::vector<render::LabelledRun> runs;
-    if (!both.theirs.trajectory.frames.empty() && !both.is_stub)
-      runs.push_back({both.theirs.trajectory, "submission"});
-    if (!both.ours.trajectory.frames.empty()) runs.push_back({both.ours.trajectory, "reference"});
-    MediaOptions own = options;
-    // without an implementation nothing moves: a picture is enough
-    own.video = options.video && media.attempted;
-    if (!runs.empty()) draw(both.scene, runs, folder, own, course, media);
-    if (!runs.empty() && options.page && media.attempted)
-      write_page(both.scene, runs, folder, options, course, media);
-    all.push_back(std::move(media));
+  for (const fs::path& file : scenes) {
+    RunScene both = run_both(course, kind, reference, submission, file, options);
+    if (drawn.size() == kDrawn) keep_first();
+    drawn.push_back(std::async(
+        std::launch::async,
+        [&](RunScene run) { return draw_both(std::move(run), folder, options, course); },
+        std::move(both)));
   }
+  while (!drawn.empty()) keep_first();
+  const bool has_page = std::any_of(all.begin(), all.end(),
+                                    [](const SceneMedia& media) { return !media.page.empty(); });
+  // also where an earlier program wrote one: it holds the scripts of these pages
+  if (has_page && options.three_file.empty())
+    report::write_three(folder / kThree, player_of(options, course));
   return all;
 }
 
