@@ -45,8 +45,8 @@ const Library& library() {
   return opened;
 }
 
-// Mesa keeps a list of all buffers and contexts, which it does not lock: threads that draw each with
-// a context of their own take turns here.
+// Threads may draw at the same time, each with a context of its own; OSMesa does not say that they
+// may also create, bind and destroy contexts at the same time, so they take turns in that.
 std::mutex& one_at_a_time() {
   static std::mutex mutex;
   return mutex;

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/socket.h>

@@ -1,7 +1,7 @@
 #include "framework/grading/grades/media.h"
 
 #include <algorithm>
-#include <deque>
+#include <atomic>
 #include <future>
 #include <set>
 
@@ -86,7 +86,7 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
   worker.session_own_s = options.wall_s;
   // a scene has thousands of steps; above what the wall-clock limit allows
   worker.callback_budget = 100'000'000;
-  call_log() = CallLog{};
+  const OwnCallLog log;
   WorkerConnection connection(worker);
   CalledFunctions called;
   const Laws laws = laws_around(course, kind, kind.watched(kind.make_proxy(connection), called),
@@ -187,24 +187,23 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id,
   const ModuleKind& kind = course.registry->find(id);
   const AnyModule reference = reference_of(course, kind);
   fs::create_directories(folder);
-  // Scenes are run one after the other, and drawn beside that: a picture waits for memory and for
-  // ffmpeg as often as it computes.
-  constexpr std::size_t kDrawn = 2;  // at a time; each holds its runs in memory
-  std::deque<std::future<SceneMedia>> drawn;
-  std::vector<SceneMedia> all;
-  const auto keep_first = [&] {
-    all.push_back(drawn.front().get());
-    drawn.pop_front();
+  // A scene waits for its worker, for memory and for ffmpeg as often as it computes.
+  constexpr int kAtOnce = 3;  // scenes; each holds its runs in memory
+  std::vector<SceneMedia> all(scenes.size());
+  std::atomic<std::size_t> next = 0;
+  const auto take_scenes = [&] {
+    try {
+      for (std::size_t i = next++; i < scenes.size(); i = next++)
+        all[i] = draw_both(run_both(course, kind, reference, submission, scenes[i], options),
+                           folder, options, course);
+    } catch (...) {
+      next = scenes.size();  // ends the others after their scene
+      throw;
+    }
   };
-  for (const fs::path& file : scenes) {
-    RunScene both = run_both(course, kind, reference, submission, file, options);
-    if (drawn.size() == kDrawn) keep_first();
-    drawn.push_back(std::async(
-        std::launch::async,
-        [&](RunScene run) { return draw_both(std::move(run), folder, options, course); },
-        std::move(both)));
-  }
-  while (!drawn.empty()) keep_first();
+  std::vector<std::future<void>> at_once;
+  for (int i = 0; i < kAtOnce; ++i) at_once.push_back(std::async(std::launch::async, take_scenes));
+  for (std::future<void>& one : at_once) one.get();
   const bool has_page = std::any_of(all.begin(), all.end(),
                                     [](const SceneMedia& media) { return !media.page.empty(); });
   // also where an earlier program wrote one: it holds the scripts of these pages

@@ -38,6 +38,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 CallLog* shared_log = nullptr;
+thread_local CallLog* own_log = nullptr;
 DyingPlaces* shared_places = nullptr;
 
 // s of CPU time: the judge's part of a test takes at most a few
@@ -302,8 +303,12 @@ void CallLog::note(Verdict what, const std::string& text) {
   std::snprintf(story, sizeof story, "%s", text.c_str());
 }
 
+OwnCallLog::OwnCallLog() : before_(std::exchange(own_log, &log_)) {}
+OwnCallLog::~OwnCallLog() { own_log = before_; }
+
 CallLog& call_log() {
   static CallLog outside_of_tests;
+  if (own_log != nullptr) return *own_log;
   return shared_log != nullptr ? *shared_log : outside_of_tests;
 }
 

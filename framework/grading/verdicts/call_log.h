@@ -48,8 +48,21 @@ struct CallLog {
   void note(Verdict verdict, const std::string& story);
 };
 
-/// The log of the test that runs in this process.
+/// The log of the test that runs in this process, or of this thread where it has its own.
 CallLog& call_log();
+
+/// A log of its own for the calls of this thread while it lives: for scenes that run at one time.
+class OwnCallLog {
+ public:
+  OwnCallLog();
+  ~OwnCallLog();
+  OwnCallLog(const OwnCallLog&) = delete;
+  OwnCallLog& operator=(const OwnCallLog&) = delete;
+
+ private:
+  CallLog log_;
+  CallLog* before_;
+};
 
 namespace detail {
 
