@@ -188,14 +188,14 @@ bool add_xray(const std::string& function, XrayOfCall xray) {
 }
 
 LastCall& last_call() {
-  static LastCall call;
+  thread_local LastCall call;
   return call;
 }
 
 namespace {
 
 std::deque<LastCall>& earlier_calls() {
-  static std::deque<LastCall> calls;
+  thread_local std::deque<LastCall> calls;
   return calls;
 }
 

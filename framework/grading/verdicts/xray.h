@@ -105,7 +105,7 @@ bool add_xray_of(const std::string& function,
   });
 }
 
-/// The last call to the worker, as it travelled.
+/// The last call of this thread to the worker, as it travelled.
 struct LastCall {
   std::string function;              // empty: none, or too long to keep
   modules::Bytes arguments, answer;  // arguments without the function's number; no answer: empty
