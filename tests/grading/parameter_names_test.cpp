@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <set>
+#include <thread>
 #include <stdexcept>
 
 #include "assignments/a1_impulse/a1_impulse.h"
@@ -178,6 +179,26 @@ TEST_F(ParameterNames, AreOfTheOuterCallWhenTheInnerOneHasReturned) {
   EXPECT_EQ(call_log().asked(),
             "f = a function, t = 2, y = (1, 0), h = 0.5\n"
             "  read:     handouts/a2_integration.md#hint-rk4");
+}
+
+// Scenes that run at the same time: what fails in one ends and names nothing in the other.
+TEST_F(ParameterNames, AreOfTheThreadThatHasALogOfItsOwn) {
+  const OdeFunction decay = [](double, const VectorXd& y) { return VectorXd(-y); };
+  call_log().begin("euler_step");
+  std::thread([&] {
+    const OwnCallLog own;
+    EXPECT_THROW(failing_step().rk4_step(decay, 0.0, Eigen::Vector2d(1.0, -2.0), 0.01),
+                 std::runtime_error);
+    EXPECT_STREQ(call_log().last_call, "rk4_step");
+    EXPECT_TRUE(call_log().noted);
+  }).join();
+  EXPECT_STREQ(call_log().last_call, "euler_step");
+  EXPECT_FALSE(call_log().noted);
+  {
+    const OwnCallLog own;
+    call_log().begin("rk4_step");
+  }
+  EXPECT_STREQ(call_log().last_call, "euler_step");
 }
 
 }  // namespace
