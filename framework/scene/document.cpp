@@ -204,6 +204,14 @@ std::string expectation_of(const json& rule, const json& value, const std::strin
   return are_said || names.empty() ? words : words + "; its keys: " + joined(names);
 }
 
+/// " (an immovable half-space, ...)": what an object is, of a description that says it shortly.
+std::string kind_of(const std::string& words) {
+  constexpr std::string_view kBegin = "an object: ";
+  constexpr std::size_t kShort = 150;  // characters: a sentence beside the keys
+  if (!words.starts_with(kBegin) || words.size() > kShort) return "";
+  return " (" + words.substr(kBegin.size()) + ")";
+}
+
 /// Reports the problem of one value, whose children are all valid.
 [[noreturn]] void explain(const Document& document, const std::string& pointer, const json& schema,
                           const json& node) {
@@ -215,9 +223,10 @@ std::string expectation_of(const json& rule, const json& value, const std::strin
         rule.contains("properties") ? keys(rule.at("properties")) : std::vector<std::string>{};
     for (const auto& key : keys(value))
       if (std::find(known.begin(), known.end(), key) == known.end())
-        document.refuse(pointer + '/' + escaped(key),
-                        "unknown key '" + key + "'." + hint_for(schema, key, known),
-                        "Known here: " + joined(known) + ".");
+        document.refuse(
+            pointer + '/' + escaped(key),
+            "unknown key '" + key + "'." + hint_for(schema, key, known),
+            "Known here" + kind_of(description(schema, node)) + ": " + joined(known) + ".");
     for (const auto& key : rule.value("required", std::vector<std::string>{}))
       if (!value.contains(key))
         document.refuse(

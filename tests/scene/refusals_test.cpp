@@ -54,6 +54,13 @@ TEST(SceneRefusals, AKeyAtAWrongLevelIsNamedWithWhereItBelongs) {
                {"/bodies/0/gravity_m_s2", "It is a key of: the scene itself."});
 }
 
+TEST(SceneRefusals, AnUnknownKeyIsToldWhatTheObjectIs) {
+  expect_words(
+      refusal(scene_with(R"({ "name": "floor", "shape": { "plane": { "normal": [0, 0, 1] } } })")),
+      {"/bodies/0/shape/plane/normal", "Known here (an immovable half-space",
+       "+z is its normal): drawn_half_extent_m."});
+}
+
 // As springs and rods name their ends, and joints do not.
 TEST(SceneRefusals, AKeyThatIsAPartOfTheRightOneIsNamedWithIt) {
   expect_words(
