@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <regex>
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
@@ -60,11 +61,18 @@ void refuse_unknown_flag(const CLI::App& app) {
   }
 }
 
-// The parser reports a range of 309 digits where a number has to be positive.
-std::string without_digits(const std::string& told) {
-  constexpr const char* kRange = " not in range 0.000000 to 1797";  // the largest double
-  const std::size_t begin = told.find(kRange);
-  return begin == std::string::npos ? told : told.substr(0, begin) + " is not a number above 0";
+// The parser's complaints in the words of the others here.
+std::string in_our_words(const std::string& told) {
+  // a range of 309 digits where a number has to be positive: to the largest double
+  static const std::vector<std::pair<std::regex, std::string>> said = {
+      {std::regex(" not in range 0\\.000000 to 1797.*"), " is not a number above 0"},
+      {std::regex("(.*): \\d+ required .* missing"), "$1: its value is missing"},
+      {std::regex("(.*): At Most 1 required but received (\\d+)"), "$1: is given $2 times"},
+      {std::regex("Could not convert: (.*) = (.*)"), "$1: Value $2 is not what it takes"},
+      {std::regex("The following arguments? w\\w+ not expected: (.*)"), "$1: more than it takes"}};
+  for (const auto& [theirs, ours] : said)
+    if (std::regex_search(told, theirs)) return std::regex_replace(told, theirs, ours);
+  return told;
 }
 
 // On a terminal broken at words to its width; a file or a pipe keeps the line, to be searched.
@@ -94,21 +102,14 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
   refuse_unknown_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ExtrasError& error) {
-    refuse_unknown_flag(app);
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
-  } catch (const CLI::ValidationError& error) {
-    throw UserError("tumble " + (argc > 1 ? std::string(argv[1]) : ""),
-                    without_digits(error.what()), "Run with --help for what each flag takes.");
-  } catch (const CLI::RequiredError& error) {
-    const std::vector<CLI::App*> verbs = app.get_subcommands();
-    if (verbs.empty())  // of the program alone
-      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
-    refuse_unknown_flag(app);  // likely the one that is missing, mistyped
-    const std::string verb = "tumble " + verbs.front()->get_name();
-    throw UserError(verb, error.what(), verb + " --help says what it takes, with an example.");
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+    const std::vector<CLI::App*> verbs = app.get_subcommands();
+    if (error.get_exit_code() == 0 || verbs.empty())  // a call for help; or of the program alone
+      return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+    refuse_unknown_flag(app);  // likely what is missing, mistyped
+    const std::string verb = "tumble " + verbs.front()->get_name();
+    throw UserError(verb, in_our_words(error.what()),
+                    verb + " --help says what it takes, with an example.");
   }
   return static_cast<int>(command.exit);
 }

@@ -151,7 +151,7 @@ void add_cost(CLI::App& app, Context& context) {
               "CPU time of all methods together [s], default 30, with all: 4 per scene; the "
               "reference solution takes at most 18 s more")
       .positive();
-  verb.option("--n", words->n, "Size of a scene whose size is a parameter");
+  verb.option("--n", words->n, "Size of a scene whose size is a parameter").positive();
   verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made")
       .shows_default();
   verb.flag("--json", words->json, "For machines");

@@ -131,7 +131,7 @@ void add_engines(CLI::App& app, Context& context) {
       .excludes("--full");
   verb.flag("--no-videos", words->no_videos,
             "Of the page of all scenes: tables, plots and players only");
-  verb.option("--n", words->n, "Size of a scene whose size is a parameter");
+  verb.option("--n", words->n, "Size of a scene whose size is a parameter").positive();
   verb.option("--sizes", words->sizes,
               "Sizes to run one after the other: draws work and time against n, e.g. --sizes "
               "50,100,200")

@@ -229,7 +229,7 @@ void add_sweep(CLI::App& app, Context& context) {
       .separated_by(',')
       .type_name("WORD,...")
       .default_text("energy, gap, joint where there is one, cpu");
-  verb.option("--n", words->run.n, "Size of a scene whose size is a parameter");
+  verb.option("--n", words->run.n, "Size of a scene whose size is a parameter").positive();
   verb.option("--modules", words->run.modules, "Whose laws, as for tumble run").type_name("WORDS");
   verb.option("--engine", words->run.engine, "Of all runs, as for tumble run").type_name("WORD");
   verb.option("--method", words->run.method, "Of all runs, as for tumble run").type_name("WORD");

@@ -115,6 +115,21 @@ TEST_F(CommandLine, AMissingWordIsNamedAndAMistypedOneFirst) {
   EXPECT_TRUE(left_nothing());
 }
 
+TEST_F(CommandLine, WhatAFlagDoesNotTakeIsToldInTheSameWordsEverywhere) {
+  const std::vector<std::pair<std::string, std::string>> told = {
+      {"run t_handle --step-s 0", "tumble run: --step-s: Value 0 is not a number above 0."},
+      {"run t_handle --step-s", "tumble run: --step-s: its value is missing."},
+      {"run t_handle --step-s 1 --step-s 2", "tumble run: --step-s: is given 2 times."},
+      {"run t_handle --json=perhaps", "tumble run: --json: Value perhaps is not what it takes."},
+      {"run t_handle pong_1", "tumble run: pong_1: more than it takes."},
+      {"sweep t_handle --n x", "tumble sweep: --n: Value x is not a number above 0."}};
+  for (const auto& [words, answer] : told) {
+    const Said said = type(words);
+    EXPECT_EQ(said.code, 2) << words;
+    EXPECT_TRUE(holds(said.err, "tumble: " + answer) && holds(said.err, "--help says")) << said.err;
+  }
+}
+
 #ifdef TUMBLE_HAS_REFERENCE
 TEST_F(CommandLine, BodiesThatOverlapAreNamedWithTheLineOfOneThatCanBeMoved) {
   write_whole(folder_ / "mine.json", R"({"title": "t", "duration_s": 1, "bodies": [
