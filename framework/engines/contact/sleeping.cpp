@@ -54,7 +54,8 @@ void Sleepers::watch(int body) {
 
 bool Sleepers::is_still(const Group& group, double since) const {
   return std::all_of(group.bodies.begin(), group.bodies.end(), [&](int body) {
-    return (group.slides ? still_[body].strictly : still_[body].roughly).since <= since;
+    return (group.slides || group.is_alone() ? still_[body].strictly : still_[body].roughly)
+               .since <= since;
   });
 }
 

@@ -5,16 +5,19 @@
 /// was faster than a tenth of the restitution threshold, or left its position by more than a
 /// hundredth of the distance that the threshold makes in that time: 5 um at the default threshold,
 /// 1 mm/s. A contact solver leaves that much motion in large islands and, without friction, in
-/// stacks. Where a pair of the island slides with friction, the limit is a hundredth of that:
-/// 1e-7 m/s, the creep that a sticking contact is allowed. Something immovable must hold the
-/// island, too: a body at the top of its path is slow for a while, and not at rest.
+/// stacks. Where a pair of the island slides with friction, the limit is a hundredth of that: 1e-7
+/// m/s, the creep that a sticking contact is allowed; and for a body that lies by itself, whose
+/// contacts are solved to rounding: nothing brakes what glides without friction or rolls. Something
+/// immovable must hold the island, too: a body at the top of its path is slow for a while, and not
+/// at rest.
 ///
 /// Slow is not at rest either where a damper, drag or a motor brakes what a force still draws, or
 /// where the force is faint: an island stays awake unless contacts, friction, rods and joints would
 /// hold all that acts on its bodies if they stood still, or would from places nearer than those 5
 /// um (contact_equilibrium.cpp). Where they would not it is asked again after another half second.
-/// What no force draws or brakes is at rest as far as speed tells: a body that glides over a smooth
-/// floor more slowly than that, or swings so slowly past its equilibrium, is stopped.
+/// What no force draws or brakes is at rest as far as speed tells: several bodies that glide over a
+/// smooth floor together more slowly than that, or swing so slowly past their equilibrium, are
+/// stopped, and told of (energy_loss.h).
 ///
 /// Asleep, a body keeps its position to the last bit and its velocity is zero. It is not
 /// integrated, its contacts are not solved, and it is no candidate with others that do not move.
@@ -79,6 +82,8 @@ class Sleepers {
     // by something that does not move; by something that moves by its own law
     bool held = false, driven = false;
     bool slides = false;
+
+    bool is_alone() const { return bodies.size() == 1 && linked.empty(); }
   };
 
   void watch(int body);
