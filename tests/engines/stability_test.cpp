@@ -99,6 +99,32 @@ TEST(LargestStep, DragIsRefusedFromTheStepAtWhichItsDecayGrows) {
                {"drag", "'spoon'", "turning", "at most 0.05571 s"});
 }
 
+// A step of the command line has no line in the scene's file.
+TEST(LargestStep, IsRefusedAtTheLineOfTheScenesStepInEachEngine) {
+  scene::Scene scene =
+      scene_of({ball("bob", 0.1, 1.0, {2, 0, 0}, Vector3d::Zero())}, 10.0, std::nullopt);
+  effects::SpringSpec spring{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}};
+  spring.stiffness_n_m = 1e6;  // w h = 16.7
+  spring.rest_length_m = 1.0;
+  scene.effects.of<effects::SpringSpec>().push_back(spring);
+  scene.file = "mine.json";
+  scene.step_s = 1.0 / 60;
+  scene.lines = {{"", 1}, {"/step_s", 4}};
+  for (const std::string engine : {"rd", "ordered"})
+    for (const bool is_given : {false, true}) {
+      TrajectoryRecorder recorder;
+      engines::RunOptions options;
+      options.engine = engine;
+      if (is_given) options.step_s = 1.0 / 50;
+      try {
+        engines::run_scene(scene, reference_laws(), options, recorder);
+        FAIL() << engine;
+      } catch (const UserError& refusal) {
+        EXPECT_EQ(refusal.where(), is_given ? "mine.json" : "mine.json:4: /step_s") << engine;
+      }
+    }
+}
+
 // A kick takes (1 - l h) of a velocity; two of half a step, the second by what the first has left,
 // (1 - l h / 2)^2.
 TEST(LargestStep, DragIsRefusedForMethodsThatKickVelocities) {

@@ -38,8 +38,8 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
         "that fly freely act one after the other in this engine, also at one instant: --engine rd "
         "takes all together");
   if (!world_.processes()) return;
-  refuse_unstable_steps(world_.world(), laws_, {step_, duration_},
-                        scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
+  refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, place_of_step(scene, step_),
+                        counters.notices);
   if (const auto step = report_unstable_links(world_.world(), LinkForces(world_.world()), laws_,
                                               {step_, duration_}, counters.notices))
     counters.watch.name_step(*step);

@@ -226,7 +226,8 @@ void RetroactiveRun::report_light_bodies() {
 void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
   world_step_.impact_detection().refuse_overlap(where, scene_);
-  refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
+  refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, place_of_step(scene_, step_),
+                        counters_.notices);
   for (const effects::Effect* effect : effects::all())
     for (const effects::Switch& one : effect->switches(moving_.world()))
       switch_times_.insert(one.event.time);

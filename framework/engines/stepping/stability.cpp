@@ -303,6 +303,12 @@ void report_fast_driven(const World& world, double step, std::vector<std::string
 
 }  // namespace
 
+std::string place_of_step(const scene::Scene& scene, double step) {
+  const std::string pointer = "/step_s";
+  if (step == scene.step_s && scene.lines.contains(pointer)) return scene::place_of(scene, pointer);
+  return scene.file.empty() ? scene.name : scene.file.string();
+}
+
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps,
                            const std::string& where, std::vector<std::string>& notices) try {
   report_fast_driven(world, steps.step, notices);

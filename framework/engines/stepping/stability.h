@@ -12,6 +12,7 @@
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/link_forces.h"
+#include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
@@ -112,6 +113,9 @@ std::optional<StepLimit> judge_joints(const World& world,
 struct StepsOfARun {
   double step, duration;  // [s]
 };
+
+/// Where a refusal of a run's step points: at the scene's "step_s" where the step is from there.
+std::string place_of_step(const scene::Scene& scene, double step);
 
 /// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's
 /// term take part in; reports one where it can be seen. Reports what is driven to and fro by more
