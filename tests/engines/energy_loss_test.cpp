@@ -247,6 +247,24 @@ TEST(EnergyLost, HasTheOrderOfTheMethodsOwnDamping) {
   EXPECT_NEAR(engines::order_of_damping(with_implicit_euler(reference_laws())), 1.0, 0.1);
 }
 
+// A body that only gravity acts on can go in closed forms, one that a force or drag acts on cannot.
+TEST(EnergyLost, NamesClosedFormsOnlyWhereNothingButGravityActs) {
+  scene::Scene scene = ball_and_box();
+  const auto remedy = [&scene] {
+    const engines::LostEnergy of_ball{{0}, 0.1, 1.0, 0.5, 1.0, false, false};
+    return engines::told_of_loss(of_ball, build_world(scene), reference_laws(), 1.0 / 60).remedy;
+  };
+  EXPECT_NE(remedy().find("--propagator auto"), std::string::npos) << remedy();
+  scene.effects.of<effects::PointForceSpec>().push_back({"box", {1, 0, 0}, {3, 0, 0.1}, 0.0, 1.0});
+  EXPECT_NE(remedy().find("--propagator auto"), std::string::npos) << remedy();
+  scene::Scene with_drag = scene;
+  scene.effects.of<effects::PointForceSpec>().push_back({"ball", {1, 0, 0}, {0, 0, 2}, 0.0, 1.0});
+  EXPECT_EQ(remedy().find("--propagator auto"), std::string::npos) << remedy();
+  scene = with_drag;
+  scene.effects.of<effects::DragSpec>().push_back({"ball", 0.1, 0.0});
+  EXPECT_EQ(remedy().find("--propagator auto"), std::string::npos) << remedy();
+}
+
 /// Two arms that hang from the world on hinges across their plane, held out sideways.
 scene::Scene double_pendulum(double angle, bool with_rods) {
   const Vector3d along(std::sin(angle), 0, -std::cos(angle));

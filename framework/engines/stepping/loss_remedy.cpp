@@ -11,10 +11,11 @@
 namespace tumble::engines {
 namespace {
 
-/// What links the bodies of a part.
+/// What acts on the bodies of a part beside what acts on all bodies.
 struct PartLinks {
   bool are_springs = false;
-  int holding = 0;  // rods and joints
+  int holding = 0;       // rods and joints
+  bool are_any = false;  // forces of effects that name a body, too
 };
 
 PartLinks links_of(const std::vector<int>& bodies, const World& world) {
@@ -26,6 +27,7 @@ PartLinks links_of(const std::vector<int>& bodies, const World& world) {
     for (int entry = 0; entry < effect->count_in(world); ++entry) {
       const std::vector<int> ends = effect->bodies_of(world, entry);
       if (std::none_of(ends.begin(), ends.end(), is_among)) continue;
+      links.are_any = true;
       if (effect->traits().constrains) ++links.holding;
       if (effect->traits().stores_energy) links.are_springs = true;
     }
@@ -112,7 +114,7 @@ RunWatch::Size told_of_loss(const LostEnergy& loss, const World& world, const La
     told.remedy = "a method of a higher order (a2's rk4_step)";
   else if (links.are_springs && links.holding == 0)
     told.remedy = "softer springs";
-  else if (loss.bodies.size() == 1 && links.holding == 0)
+  else if (loss.bodies.size() == 1 && !links.are_any)
     told.remedy = "--propagator auto where nothing but gravity acts";
   return told;
 }

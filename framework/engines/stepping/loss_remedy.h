@@ -12,7 +12,7 @@ namespace tumble::engines {
 ///   springs        the largest step at which the method damps their fastest swing by less than
 ///                  half of what is allowed until the run's end
 ///   rods, joints   other coordinates where these hold no loop, or where they are reduced ones
-///   nothing        closed forms
+///   nothing        closed forms, where no effect names the body
 ///   what fell asleep while it moved: no sleep
 ///   what steps in contact have lost: a shorter step
 /// and where no step is known, by the size of the loss and the order of the method's damping.
