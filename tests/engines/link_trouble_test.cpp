@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/dynamics/stopped_run.h"
 #include "framework/effects/drag/drag.h"
 #include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/truths/memory_scene.h"
 #include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -191,6 +193,40 @@ TEST(LinkTrouble, AContactForceThatIsNotANumberIsNamed) {
   expect_stopped(run(scene, clock.laws),
                  {"t = 0.5", "'crate'", "persistent contact", "contact_forces", "not a number"},
                  0.45, 0.55);
+}
+
+TEST(LinkTrouble, ALawIsNotBlamedForWhatItWasGivenThatIsNoNumber) {
+  Laws answering = reference_laws();
+  answering.contact_forces = [](const MatrixXd&, const VectorXd& b) { return b; };
+  const Laws laws = engines::guarded(answering);
+  const auto why = [](const auto& ask) -> std::string {
+    try {
+      ask();
+    } catch (const StoppedRun& stop) {
+      return stop.what();
+    }
+    return "no stop";
+  };
+  std::vector<Constraint> rows(1);
+  rows[0].body_b = 1;
+  rows[0].row.jacobian_a << 1, 0, 0, 0, 0, 0;
+  rows[0].row.jacobian_b = -rows[0].row.jacobian_a;
+  rows[0].row.value = rows[0].row.rate = rows[0].row.velocity_product = 0.0;
+  std::vector<ConstrainedBody> bodies(2, {1.0, Matrix3d::Identity(), Vector6d::Zero()});
+  const VectorXd none = VectorXd::Zero(1);
+  EXPECT_EQ(why([&] { laws.constraint_multipliers(rows, bodies, none); }), "no stop");
+  EXPECT_EQ(why([&] { laws.constraint_correction(rows, bodies, none); }), "no stop");
+  bodies[0].free_acceleration[0] = kNaN;
+  rows[0].row.jacobian_a[0] = kNaN;
+  const VectorXd no_number = VectorXd::Constant(1, kNaN);
+  const MatrixXd one = MatrixXd::Identity(1, 1);
+  for (const std::string& stopped :
+       {why([&] { laws.constraint_multipliers(rows, bodies, none); }),
+        why([&] { laws.constraint_correction(rows, bodies, no_number); }),
+        why([&] { laws.contact_forces(one, no_number); })}) {
+    EXPECT_EQ(stopped.find("returned"), std::string::npos) << stopped;
+    EXPECT_NE(stopped.find("the steps have run away"), std::string::npos) << stopped;
+  }
 }
 
 TEST(LinkTrouble, ACallbackThatLeavesNoNumbersOrThrowsIsNamed) {

@@ -78,16 +78,55 @@ void guard_motion(Laws& laws) {
         [](const auto&...) {});
 }
 
+bool are_directions(const std::vector<Constraint>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const Constraint& one) {
+    return is_number(one.row.jacobian_a) && is_number(one.row.jacobian_b);
+  });
+}
+
+bool are_accelerations(const std::vector<Constraint>& rows,
+                       const std::vector<ConstrainedBody>& bodies) {
+  return std::all_of(rows.begin(), rows.end(),
+                     [](const Constraint& one) { return is_number(one.row.velocity_product); }) &&
+         std::all_of(bodies.begin(), bodies.end(),
+                     [](const ConstrainedBody& body) { return is_number(body.free_acceleration); });
+}
+
+/// Out of what is no number no law makes one: then it is not blamed.
+template <class Answer, class AreNumbers>
+void need_number_of(const LawGuard& by, const char* effect, const Answer& answer,
+                    AreNumbers&& are_given_numbers) {
+  if (!is_number(answer) && !are_given_numbers())
+    throw StoppedRun(std::string(effect) +
+                     ": what acts on these bodies, or how they move, is not a number any more: the "
+                     "steps have run away, and no law could answer for it");
+  by.need_number(answer);
+}
+
 void guard_constraints(Laws& laws) {
   guard(laws.spring_force, "springs", "spring_force", laws.constraint_source, kNumber);
   guard(laws.baumgarte_acceleration, "rods and joints", "baumgarte_acceleration",
         laws.constraint_source, kNumber);
   guard(laws.constraint_multipliers, "rods and joints", "constraint_multipliers",
-        laws.source_of_links(), kNumber);
+        laws.source_of_links(),
+        [](const LawGuard& by, const VectorXd& answer, const std::vector<Constraint>& rows,
+           const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted) {
+          need_number_of(by, "rods and joints", answer, [&] {
+            return is_number(wanted) && are_directions(rows) && are_accelerations(rows, bodies);
+          });
+        });
   guard(laws.constraint_correction, "rods and joints", "constraint_correction",
-        laws.source_of_links(), kNumber);
+        laws.source_of_links(),
+        [](const LawGuard& by, const VectorXd& answer, const std::vector<Constraint>& rows,
+           const std::vector<ConstrainedBody>&, const VectorXd& error) {
+          need_number_of(by, "rods and joints", answer,
+                         [&] { return is_number(error) && are_directions(rows); });
+        });
   guard(laws.contact_forces, "persistent contact", "contact_forces", laws.source_of_contacts(),
-        kNumber);
+        [](const LawGuard& by, const VectorXd& answer, const MatrixXd& A, const VectorXd& b) {
+          need_number_of(by, "persistent contact", answer,
+                         [&] { return is_number(A) && is_number(b); });
+        });
 }
 
 }  // namespace
