@@ -172,11 +172,14 @@ class EnergySum {
 /// What an effect brought into a world. [J]
 struct Work {
   double done = 0.0;  // as far as it is known
-  double most = 0.0;  // besides, at most
+  double most = 0.0;  // besides, at most; infinite: it is not known
 };
 class WorkMeter {
  public:
   virtual ~WorkMeter() = default;
+  /// Whether it must be asked after each step: what it brings in depends on all of the way. Else
+  /// it may be asked less often.
+  virtual bool needs_steps() const { return true; }
   /// Adds what it brought in since it was asked last. @param states  by body of the world that it
   /// was made for  @param brought  by body: either of those that it acts on and that can move
   virtual void add_work(double time, const std::vector<RigidBodyState>& states,

@@ -379,6 +379,48 @@ TEST(EnergyLost, IsNotHiddenByDragOrWaterInAnyEngine) {
   }
 }
 
+// The same swing, which a force draws aside: from the start, or for a while that begins and ends
+// between frames, where event engines see it before and after.
+TEST(EnergyLost, IsNotHiddenByForcesInAnyEngine) {
+  for (const double start : {0.0, 0.1234}) {
+    scene::Scene scene = swing(1.0, 82944.0, 0.1, 1.0 / 240, 0.5);
+    scene.effects.of<effects::PointForceSpec>().push_back(
+        {"bob", {0, 0.5, 0.2}, scene.bodies[0].position_m, start, start > 0 ? 0.0567 : 1.0});
+    for (const std::string engine : {"rd", "ordered", "ca", "tw"}) {
+      const Trajectory run = run_by(engine, scene);
+      const auto fault = lost_in(run);
+      ASSERT_TRUE(fault) << engine << start << said(run);
+      EXPECT_GT(fault->worst, 0.5) << engine;
+    }
+  }
+}
+
+// Forces on bodies that turn and swing, and that begin and end anywhere, are work, not a loss.
+TEST(EnergyLost, IsNotWhatForcesDo) {
+  const Laws laws = reference_laws();
+  Random random(17);
+  for (int trial = 0; trial < 24; ++trial) {
+    const double mass = random.between(0.5, 5.0), frequency = random.between(1.0, 20.0);
+    scene::Scene scene = swing(mass, mass * frequency * frequency, 0.2, 1.0 / 480, 0.6);
+    scene.bodies[0].shape = scene::BoxSpec{{0.3, 0.2, 0.2}};
+    scene.bodies[0].omega_world_rad_s = {random.between(-5.0, 5.0), 3, random.between(-5.0, 5.0)};
+    for (int force = 0; force < 3; ++force) {
+      const auto any = [&](double most) {
+        return Vector3d(random.between(-most, most), random.between(-most, most),
+                        random.between(-most, most));
+      };
+      const double start = force == 0 ? 0.0 : random.between(0.0, 0.4);
+      scene.effects.of<effects::PointForceSpec>().push_back({scene.bodies[0].name, any(10.0 * mass),
+                                                             scene.bodies[0].position_m + any(0.1),
+                                                             start, random.between(0.01, 0.5)});
+    }
+    for (const std::string engine : {"rd", "ordered", "tw"}) {
+      const Trajectory run = run_by(engine, scene, laws);
+      EXPECT_FALSE(lost_in(run)) << engine << trial << said(run);
+    }
+  }
+}
+
 // What drag and water take between two frames, over which bodies swing, sink and rise many times,
 // is looked at where steps begin: right runs are told nothing of.
 TEST(EnergyLost, IsNotWhatDragAndWaterTakeBetweenFrames) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "framework/core/numbers.h"
 
 namespace tumble::effects {
 
@@ -129,16 +132,22 @@ void PointForceMeter::add_work(double time, const std::vector<RigidBodyState>& s
                                std::vector<Work>& brought) {
   points_body_.resize(forces_.size(), unset_vector());  // entries may have been appended
   points_world_.resize(forces_.size(), unset_vector());
+  begins_unseen_.resize(forces_.size(), false);
+  const double last = std::exchange(last_look_, time);
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     const PointForce& force = forces_[k];
-    if (time < force.start) continue;
+    if (time < force.start || force.end <= last) continue;
     const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
-    if (std::isnan(points_body_[k].x()))
+    Work& work = brought[static_cast<std::size_t>(force.body)];
+    if (std::isnan(points_body_[k].x())) {
       points_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
+      begins_unseen_[k] = last < force.start && force.start < time;
+    }
     const Vector3d now = state.com_world + state.world_from_body * points_body_[k];
-    if (!std::isnan(points_world_[k].x()) && time <= force.end)
-      brought[static_cast<std::size_t>(force.body)].done +=
-          force.force_world.dot(now - points_world_[k]);
+    if (begins_unseen_[k] || force.end < time)
+      work.most = kInfinity;
+    else if (!std::isnan(points_world_[k].x()))
+      work.done += force.force_world.dot(now - points_world_[k]);
     points_world_[k] = now;
   }
 }

@@ -42,14 +42,17 @@ class ActingPointForces final : public SteadyForces {
   std::vector<Vector3d> points_body_;  // by entry, from when it begins to act: body frame [m]
 };
 
-/// The work that they do: force times the way of its point, exact where looks come often enough for
-/// the point's way to be straight.
+/// The work that they do: force times the displacement of its point, exact between any two looks at
+/// which it acts. Not known where one begins or ends between two looks, nor after that begin: which
+/// point of the body it acts on is known of its state then.
 class PointForceMeter final : public WorkMeter {
  public:
   explicit PointForceMeter(const World& world)
       : forces_(world.effects.of<PointForce>()),
         points_body_(forces_.size(), unset_vector()),
-        points_world_(points_body_) {}
+        points_world_(points_body_),
+        begins_unseen_(forces_.size(), false) {}
+  bool needs_steps() const override { return false; }
   void add_work(double time, const std::vector<RigidBodyState>& states,
                 std::vector<Work>& brought) override;
 
@@ -57,6 +60,8 @@ class PointForceMeter final : public WorkMeter {
   const std::vector<PointForce>& forces_;
   // by entry: where it acts, and where that was at the last look [m]
   std::vector<Vector3d> points_body_, points_world_;
+  std::vector<bool> begins_unseen_;  // by entry: between two looks
+  double last_look_ = kUnset;        // [s]
 };
 
 }  // namespace tumble::effects

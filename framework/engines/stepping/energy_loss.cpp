@@ -153,7 +153,8 @@ void EnergyLoss::begin(const World& world) {
   for (const effects::Effect* effect : effects::all()) {
     const int count = effect->count_in(world);
     if (count == 0) continue;
-    const bool needs_steps = !sees_switches_ && effect->work_meter(world) != nullptr;
+    const auto meter = sees_switches_ ? nullptr : effect->work_meter(world);
+    const bool needs_steps = meter && meter->needs_steps();
     for (int k = 0; k < count; ++k) {
       int first = -1;
       const bool takes_power = effect->takes(world, k) == effects::Takes::kPower;
@@ -266,7 +267,7 @@ bool EnergyLoss::look(double time, const World& world, const std::vector<RigidBo
     const Seen seen_before = std::exchange(part.seen, seen);
     part.highest_place = std::max(part.highest_place, height);
     part.whole = std::max({part.whole, at_work, part.highest_place - height});
-    const bool is_touched = std::exchange(part.is_touched, false),
+    const bool is_touched = std::exchange(part.is_touched, false) || std::isinf(work.most),
                fell_asleep = std::exchange(part.fell_asleep, false);
     if (std::isnan(before)) {  // the first look
       part.highest = part.least = all;

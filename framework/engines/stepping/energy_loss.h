@@ -8,21 +8,21 @@
 /// water have taken, at most (Effect::power_taken). Nothing makes A smaller than it was but the
 /// method: damping of the step, projections, links of which two hold the same.
 ///
-/// What a part is given or loses where it is hit, or in persistent contact, is counted neither way:
-/// A stands still from the look before to the one after. Impacts are judged by themselves
-/// (`impact_energy`, judging/judge.h); what steps of bodies that touch lose beside what sliding and
-/// landing take (contact/contact_energy.cpp) has a ledger of its own, for all bodies that have
-/// touched each other: what rolls or rests loses nothing.
+/// What a part is given or loses where it is hit, in persistent contact, or while a force begins or
+/// ends between two looks, is counted neither way: A stands still from the look before to the one
+/// after. Impacts are judged by themselves (`impact_energy`, judging/judge.h); what steps of bodies
+/// that touch lose beside what sliding and landing take (contact/contact_energy.cpp) has a ledger
+/// of its own, for all bodies that have touched each other: what rolls or rests loses nothing.
 /// What hangs on driven bodies that all move alike is seen from a frame that moves along: there
 /// they stand still. Where the frame is shaken, inertial forces -m a(t) act in it, like gravity
 /// that changes, and what they do is part of W. Where bodies are driven, and the energy of the
 /// world says nothing, a part's own energy must not rise either.
 /// Not watched: what is linked with bodies that are driven differently, what an effect acts on that
 /// says of no entry what it takes (effects::Takes::kUnknown), balls at rest without contacts; and
-/// where looks are taken at frames (event engines), what motors, forces and streams drive, what
-/// hangs on what is shaken, what driven bodies damp, and islands of scenes whose impacts are solved
-/// in steps. What dampers, drag and water take is summed there over the steps between two looks
-/// (pass), where that matters.
+/// where looks are taken at frames (event engines), what motors and streams drive, what forces that
+/// begin between two frames act on until they end, what hangs on what is shaken, what driven bodies
+/// damp, and islands of scenes whose impacts are solved in steps. What dampers, drag and water take
+/// is summed there over the steps between two looks (pass), where that matters.
 #pragma once
 
 #include <algorithm>

@@ -172,7 +172,8 @@ void EnergyWatch::tell_of_rises(const World& world, RunCounters& counters) const
 // What effects have brought in since the last look, at most.
 double EnergyWatch::work_of_effects() const {
   double work = 0.0;
-  for (const effects::Work& one : brought_) work += one.done + one.most;
+  for (const effects::Work& one : brought_)
+    if (std::isfinite(one.most)) work += one.done + one.most;
   return work;
 }
 
@@ -195,7 +196,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
   if (!has_meters_) take_in(world);
   sum_energy(world, states, energy_);
   const EnergyByBody& now = energy_;
-  if (sees_switches_ && !meters_.empty()) {
+  if (!meters_.empty()) {
     brought_.assign(world.bodies.size(), {});
     for (const auto& meter : meters_) meter->add_work(time, states, brought_);
   }
@@ -204,7 +205,8 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
     note_rounding(time, now.kinetic, world, states);
   if ((!sees_switches_ && !meters_.empty()) || has_driven(world)) return std::nullopt;
   work_ += work_of_effects();
-  for (const effects::Work& one : brought_) given_ += std::abs(one.done) + one.most;
+  for (const effects::Work& one : brought_)
+    if (std::isfinite(one.most)) given_ += std::abs(one.done) + one.most;
   const double energy = now.kinetic + now.potential - work_;
   if (std::isnan(first_energy_)) begin(world, now);
   // methods whose energy swings, as symplectic ones' does, have begun to by now: that is no runaway
