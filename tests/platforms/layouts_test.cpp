@@ -113,14 +113,51 @@ TEST_F(Layouts, OfMoodleNamesParticipants) {
                        {"Carl_103_assignsubmission_file_a9_thing.cpp", "int c;\n"},
                        {"Dora_104_assignsubmission_onlinetext_/onlinetext.html", "<p>"}};
   EXPECT_LAYOUT(
-      files, (Told{"Ada Lovelace_101 | 101 | int ada;\n", "Blaise_von Pascal_102 | 102 | int b;\n",
-                   "Carl_103 | 103 | int c;\n", "Dora_104 | 104 | Holds no a9_thing.cpp."}));
+      files,
+      (Told{"Ada Lovelace_101 | 101 | int ada;\n", "Blaise_von Pascal_102 | 102 | int b;\n",
+            "Carl_103 | 103 | int c;\n",
+            "Dora_104 | 104 | Holds no a9_thing.cpp, but "
+            "Dora_104_assignsubmission_onlinetext_/onlinetext.html. Hand in a9_thing.cpp."}));
 }
 
 TEST_F(Layouts, OfCanvasNamesStudents) {
   const Files files = {{"doejane_12_678_a9_thing.cpp", "int a;\n"},
                        {"roejohn_LATE_22_679_a9_thing-1.cpp", "int b;\n"}};
   EXPECT_LAYOUT(files, (Told{"doejane_12 | 12 | int a;\n", "roejohn_22 | 22 | int b;\n"}));
+}
+
+// Who typed a text in the place of a file has handed in, and stands in the gradebook.
+TEST_F(Layouts, OfCanvasNamesWhoTypedAText) {
+  EXPECT_LAYOUT(
+      (Files{{"doejane_12_text.html", "<p>"}, {"roejohn_LATE_22_link.html", "<p>"}}),
+      (Told{"doejane_12 | 12 | Holds no a9_thing.cpp, but doejane_12_text.html. Hand in "
+            "a9_thing.cpp.",
+            "roejohn_22 | 22 | Holds no a9_thing.cpp, but roejohn_LATE_22_link.html. Hand in "
+            "a9_thing.cpp."}));
+}
+
+// An anonymous assignment of Canvas has letters for the number; all files of one are together.
+TEST_F(Layouts, OfCanvasHoldsAnonymousFilesTogether) {
+  const Files files = {{"LATE_anon_x7B_15_a9_thing.cpp", "int x;\n"},
+                       {"anon_Ab3xY_12_a9_thing.cpp", "int a;\n"},
+                       {"anon_Ab3xY_13_other.cpp", "int b;\n"}};
+  EXPECT_LAYOUT(files, (Told{"anon_Ab3xY | Ab3xY | int a;\n", "anon_x7B | x7B | int x;\n"}));
+}
+
+TEST_F(Layouts, AFileOfAnotherKindIsNamed) {
+  EXPECT_LAYOUT((Files{{"ada/a9_thing.cpp.txt", "int a;\n"}, {"bo/a9.pdf", "%PDF"}}),
+                (Told{"ada |  | Holds no a9_thing.cpp, but a9_thing.cpp.txt. Hand in a9_thing.cpp.",
+                      "bo |  | Holds no a9_thing.cpp, but a9.pdf. Hand in a9_thing.cpp."}));
+}
+
+// Of an archive without a source the reason names it, and no note says that a file was taken.
+TEST_F(Layouts, AnArchiveInAnArchiveIsNamed) {
+  const std::string inner = zip_of(members({{"a9_thing.cpp", "int a;\n"}}));
+  const FoundSubmissions all = found(folder_of({{"ada/hw.zip", zip_of({{"in.zip", inner}})}}));
+  EXPECT_EQ(told(all),
+            (Told{"ada |  | In hw.zip: Holds no a9_thing.cpp, only an archive: in.zip. Unpack it "
+                  "first."}));
+  EXPECT_TRUE(all.all[0].notes.empty());
 }
 
 // The name of the file is the student's: it chooses nobody else's number.

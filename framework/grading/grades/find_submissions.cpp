@@ -29,6 +29,7 @@ struct Found {
   std::vector<fs::path> named, sources, archives, headers;
   std::vector<fs::path> own_tests;                       // a1_impulse_tests.cpp for a1_impulse.cpp
   std::vector<std::pair<fs::path, std::string>> locked;  // folders that cannot be read, and why
+  std::vector<fs::path> others;                          // documents and the like
   bool cut = false, is_deep = false;
   std::string refused;  // why a part of it was not unpacked; then nothing of it is used
 };
@@ -83,6 +84,8 @@ void sort_in(const fs::path& path, const std::string& name, const std::string& w
     found.archives.push_back(path);
   else if (is_header(name))
     found.headers.push_back(path);
+  else
+    found.others.push_back(path);
 }
 
 void search(const fs::path& folder, const std::string& wanted, int depth, std::size_t& seen,
@@ -156,11 +159,15 @@ void choose_from_archive(const fs::path& archive, const std::string& wanted, Unp
   const fs::path place = unpacked.next();
   submission.problem = unpack_submission(archive, place);
   if (!submission.problem.empty()) return;
-  submission.notes.push_back("its file was in " + archive.filename().string());
+  const std::string name = archive.filename().string();
   Found found;
   std::size_t seen = 0;
   search(place, wanted, 0, seen, found);
   choose_source(found, wanted, place, nullptr, submission);
+  if (submission.problem.empty())
+    submission.notes.insert(submission.notes.begin(), "its file was in " + name);
+  else
+    submission.problem = "In " + name + ": " + submission.problem;
 }
 
 void choose_own_tests(const Found& found, const fs::path& folder, Submission& submission) {
@@ -217,10 +224,14 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
     choose_from_archive(found.archives[0], wanted, *unpacked, submission);
   } else if (found.named.empty() && found.sources.empty()) {
     submission.problem = "Holds no " + wanted;
-    submission.problem +=
-        found.archives.empty()
-            ? "."
-            : ", only an archive: " + listed(found.archives, folder) + ". Unpack it first.";
+    if (!found.archives.empty())
+      submission.problem +=
+          ", only an archive: " + listed(found.archives, folder) + ". Unpack it first.";
+    else if (const auto& others = found.headers.empty() ? found.others : found.headers;
+             !others.empty())
+      submission.problem += ", but " + listed(others, folder) + ". Hand in " + wanted + ".";
+    else
+      submission.problem += ".";
   } else {
     submission.source = found.named.empty() ? found.sources[0] : found.named[0];
     const std::string name = submission.source.filename().string();

@@ -88,8 +88,15 @@ bool key_and_value(std::string line, std::string& key, std::string& value) {
 }  // namespace
 
 std::optional<PlatformName> canvas_name(const std::string& name) {
-  static const std::regex pattern(R"(^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$)");
-  auto canvas = taken_apart(name, pattern);
+  // A text or an address typed on the page has no number of its own; of an anonymous assignment the
+  // student is anon_ and letters.
+  static const std::regex file(R"(^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$)");
+  static const std::regex typed(R"(^([^_]+)_(?:LATE_)?(\d+)_((?:text|link)\.html)$)");
+  static const std::regex anonymous(
+      R"(^(?:LATE_)?(anon)_([A-Za-z0-9]+)_(?:\d+_)?((?:text|link)\.html|.+\.[^.]+)$)");
+  auto canvas = taken_apart(name, file);
+  if (!canvas) canvas = taken_apart(name, typed);
+  if (!canvas) canvas = taken_apart(name, anonymous);
   if (canvas) canvas->file = without_copy_number(canvas->file);
   return canvas;
 }
