@@ -212,6 +212,32 @@ TEST_F(PolicyFolder, IsReadWithItsTables) {
   EXPECT_EQ(file.hand_ins[0].time_s - file.policy.due_s, 31 * 60);
 }
 
+// Of two keys with one name a parser keeps the last, and the first student's extension is lost.
+TEST_F(PolicyFolder, AKeyThatStandsTwiceIsRefusedWithItsLine) {
+  const std::string said = refusal("{" + due_ + R"(,
+      "extensions": {"a1": {"7": "2026-10-19T23:59:00+02:00"},
+                     "a1": {"bo": "2026-10-19T23:59:00+02:00"}}})");
+  EXPECT_NE(said.find("policy.json:2: /extensions/a1"), std::string::npos) << said;
+  EXPECT_NE(said.find("twice"), std::string::npos) << said;
+}
+
+TEST_F(PolicyFolder, AMistakeIsSaidWithItsPlaceInPlainWords) {
+  const std::string json = refusal("{" + due_ + ",}");
+  EXPECT_NE(json.find("policy.json:1"), std::string::npos) << json;
+  EXPECT_EQ(json.find("exception"), std::string::npos) << json;
+  const std::string table = refusal("{" + due_ + R"(, "handed_in": "none.csv"})");
+  EXPECT_NE(table.find("none.csv: does not exist"), std::string::npos) << table;
+}
+
+// As a spreadsheet writes it where numbers have a decimal comma.
+TEST_F(PolicyFolder, ATableMayHaveSemicolonsBetweenItsCells) {
+  put("roster.csv", "\xef\xbb\xbfname;id\r\nLovelace, Ada;7\r\nbo;8\r\n");
+  const PolicyFile file = read("{" + due_ + "}");
+  ASSERT_EQ(file.roster.size(), 2u);
+  EXPECT_EQ(file.roster[0].name, "Lovelace, Ada");
+  EXPECT_EQ(file.roster[1].id, "8");
+}
+
 // 2026-10-13T00:30 is 31 minutes after a1 is due.
 TEST_F(PolicyFolder, AnExtensionIsOneStudentsAndOneAssignments) {
   const std::string times = R"(, "handed_in": "handed_in.csv", "free_late_days": 0)";

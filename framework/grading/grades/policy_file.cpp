@@ -14,6 +14,7 @@
 #include "framework/core/files.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/verdicts/plain_text.h"
+#include "framework/scene/document.h"
 
 namespace tumble::grading {
 namespace {
@@ -26,7 +27,9 @@ constexpr const char* kExample = "For example \"2026-10-12T23:59:00+02:00\".";
 std::string text_to_read(const fs::path& file) {
   std::string why;
   const auto text = read_plain_file(file, 16u << 20, why);
-  if (!text) throw UserError(file.string(), "cannot be read: it " + why);
+  if (!text && !fs::exists(fs::symlink_status(file)))
+    throw UserError(file.string(), "does not exist");
+  if (!text) throw UserError(file.string(), why);
   return text->starts_with("\xef\xbb\xbf") ? text->substr(3) : *text;
 }
 
@@ -278,6 +281,8 @@ std::optional<std::int64_t> time_of(const std::string& text) {
 }
 
 std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
+  const std::string head = text.substr(0, text.find('\n'));
+  const char between = head.find(',') == head.npos && head.find(';') != head.npos ? ';' : ',';
   std::vector<std::vector<std::string>> rows(1, {""});
   bool quoted = false;
   const auto end_row = [&] {
@@ -293,7 +298,7 @@ std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
       quoted = !quoted;
     else if (quoted)
       cell += c;
-    else if (c == ',')
+    else if (c == between)
       rows.back().push_back("");
     else if (c == '\n')
       end_row();
@@ -306,12 +311,11 @@ std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
 }
 
 PolicyFile read_policy(const fs::path& file, const std::string& assignment) {
-  Json json;
-  try {
-    json = Json::parse(text_to_read(file));
-  } catch (const Json::exception& error) {
-    throw UserError(file.string(), std::string("is no JSON: ") + error.what());
-  }
+  const std::string text = text_to_read(file);
+  // Refuses what is no JSON, by line and column, and a key that stands twice: of two lists of
+  // extensions the first would be lost.
+  scene::parse_document(text, file);
+  const Json json = Json::parse(text);
   if (!json.is_object()) throw UserError(file.string(), "is no JSON object");
   refuse_unknown_fields(file, json);
   PolicyFile read;

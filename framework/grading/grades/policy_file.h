@@ -36,8 +36,9 @@ PolicyFile read_policy(const std::filesystem::path& file, const std::string& ass
 /// @return empty where the text is no such time
 std::optional<std::int64_t> time_of(const std::string& text);
 
-/// The rows of a table with commas between cells; a cell in double quotes may hold commas, line
-/// breaks, and quotes written twice. Lines without a character are left out.
+/// The rows of a table with commas between cells, or semicolons where the first line has these and
+/// no comma, as spreadsheets write it where a comma is in numbers; a cell in double quotes may hold
+/// commas, line breaks, and quotes written twice. Lines without a character are left out.
 std::vector<std::vector<std::string>> csv_rows(const std::string& text);
 
 }  // namespace tumble::grading
