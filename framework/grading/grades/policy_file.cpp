@@ -14,7 +14,7 @@
 #include "framework/core/files.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/verdicts/plain_text.h"
-#include "framework/scene/document.h"
+#include "framework/scene/json_text.h"
 
 namespace tumble::grading {
 namespace {
@@ -314,7 +314,7 @@ PolicyFile read_policy(const fs::path& file, const std::string& assignment) {
   const std::string text = text_to_read(file);
   // Refuses what is no JSON, by line and column, and a key that stands twice: of two lists of
   // extensions the first would be lost.
-  scene::parse_document(text, file);
+  scene::require_json(text, file);
   const Json json = Json::parse(text);
   if (!json.is_object()) throw UserError(file.string(), "is no JSON object");
   refuse_unknown_fields(file, json);
