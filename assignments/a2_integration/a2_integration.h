@@ -161,15 +161,15 @@ EulerAngles euler_angles_from_rotation(const Matrix3d& world_from_body);
 //   kConverged     time = a, the end where the gap has not closed: g(time) >= 0, so that nothing
 //                  penetrates there. b - a <= tolerance, or no double lies between a and b, or
 //                  g(time) == 0 exactly
-//   kNoSignChange  both ends open, g > 0 (no impact seen), or g(t_low) < 0 (overlap from the start).
-//                  time and residual are NaN; nothing but the two ends was evaluated
+//   kNoSignChange  both ends open, g > 0 (no impact seen), or g(t_low) < 0 (overlap from the
+//                  start). time and residual are NaN; nothing but the two ends was evaluated
 //   kNotConverged  the search ended with a larger bracket; here the only cause is a g that gave NaN
 //                  (there is no limit of iterations). time and residual are those of the last a
 //                  (t_low, where g(t_high) is NaN), or NaN where g(t_low) is NaN
 // residual is g(time); evaluations counts the calls of g. An end that is exactly 0 is an impact,
 // unless g(t_low) < 0: t_low is tested first; g(t_low) == 0 is one also where the gap opens
-// afterwards, g(t_high) > 0. An even number of crossings inside the interval
-// cannot be seen from its ends: the caller chooses the interval.
+// afterwards, g(t_high) > 0. An even number of crossings inside the interval cannot be seen from
+// its ends: the caller chooses the interval.
 
 /// Time of impact by bisection: halve the bracket, keep the half where the sign changes.
 ///   m = a + (b - a) / 2;   g(m) >= 0: a = m,  otherwise b = m;   until b - a <= tolerance  (A2.11)

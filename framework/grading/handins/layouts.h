@@ -1,8 +1,8 @@
 /// How platforms name what they give to download.
 ///
 ///   Canvas      STUDENT_[LATE_]USER_SUBMISSION_FILE, all in one folder; what was typed on the page
-///               is STUDENT_[LATE_]USER_text.html or _link.html; of an anonymous assignment the first
-///               three are [LATE_]anon_LETTERS
+///               is STUDENT_[LATE_]USER_text.html or _link.html; of an anonymous assignment the
+///               first three are [LATE_]anon_LETTERS
 ///   Moodle      STUDENT_PARTICIPANT_assignsubmission_file_/FILE, older without the last "_";
 ///               without folders STUDENT_PARTICIPANT_assignsubmission_file_FILE
 ///   Gradescope  assignment_N_export/submission_M/FILE, and submission_metadata.yml beside it
