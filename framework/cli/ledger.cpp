@@ -65,7 +65,11 @@ void verify(Context& context, const LedgerWords& words) {
   if (!faults.empty()) return;
   fmt::print("{}: {} entries of {} submissions fit together{}\nhead {}\n", file.string(),
              ledger.entries.size(), grading::latest_entries(ledger).size(),
-             is_folder ? ", and describe the results beside it" : "", ledger.head);
+             is_folder
+                 ? ", and describe the results.json beside it (a gradebook.csv is not compared: "
+                   "the next grading into the folder writes it anew from these)"
+                 : "",
+             ledger.head);
 }
 
 }  // namespace
@@ -74,8 +78,10 @@ void add_ledger(CLI::App& app, Context& context) {
   auto words = std::make_shared<LedgerWords>();
   Verb verb(app, "ledger", "Check the ledger of a folder of results, entry by entry");
   verb.option("action", words->action, "verify").required().type_name("ACTION");
-  verb.option("place", words->place,
-              "A folder of results, which is compared with its ledger too; or a ledger.jsonl alone")
+  verb.option(
+          "place", words->place,
+          "A folder of results, whose results.json files are compared with its ledger too; or a "
+          "ledger.jsonl alone")
       .required()
       .type_name("OUT|FILE");
   verb.option("--head", words->head,
