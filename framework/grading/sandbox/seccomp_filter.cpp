@@ -297,8 +297,8 @@ void allow_listed(scmp_filter_ctx filter, const FilterRules& rules) {
 }
 
 // The first call that the lists above were not made for: libseccomp of Debian 12 has no names for
-// those of Linux 5.18 and later, so it would let pass fchmodat2 (452), setxattrat (463) or
-// file_setattr (469), whatever is refused of their kin. To a program they do not exist.
+// those of Linux 5.18 and later, so it would let fchmodat2 (452), setxattrat (463) and file_setattr
+// (469) pass, though their older relatives are refused. To a program they do not exist.
 constexpr unsigned kFirstUnlisted = 451;
 constexpr unsigned kOtherNumbers = 0x40000000;  // of x32, which libseccomp's part refuses
 
