@@ -395,7 +395,8 @@ TEST(EnergyLost, IsNotHiddenByForcesInAnyEngine) {
   }
 }
 
-// Forces on bodies that turn and swing, and that begin and end anywhere, are work, not a loss.
+// Forces on bodies that turn and swing, and that begin and end anywhere, are work, not a loss nor a
+// rise.
 TEST(EnergyLost, IsNotWhatForcesDo) {
   const Laws laws = reference_laws();
   Random random(17);
@@ -417,6 +418,7 @@ TEST(EnergyLost, IsNotWhatForcesDo) {
     for (const std::string engine : {"rd", "ordered", "tw"}) {
       const Trajectory run = run_by(engine, scene, laws);
       EXPECT_FALSE(lost_in(run)) << engine << trial << said(run);
+      EXPECT_FALSE(has_fault(run, "energy_rises")) << engine << trial << said(run);
     }
   }
 }

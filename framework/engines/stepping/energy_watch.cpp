@@ -169,12 +169,30 @@ void EnergyWatch::tell_of_rises(const World& world, RunCounters& counters) const
                          rise.is_at_contact ? kOrderAtContacts : kOrderOfMethods});
 }
 
-// What effects have brought in since the last look, at most.
-double EnergyWatch::work_of_effects() const {
-  double work = 0.0;
-  for (const effects::Work& one : brought_)
-    if (std::isfinite(one.most)) work += one.done + one.most;
-  return work;
+// What effects have brought in since the last look, at most. Where looks are rare and that is not
+// known, all that the energy has changed by.
+void EnergyWatch::add_work_of_effects(double energy) {
+  const bool is_known =
+      sees_switches_ || std::all_of(brought_.begin(), brought_.end(), [](const effects::Work& one) {
+        return std::isfinite(one.most);
+      });
+  if (!is_known) {
+    const double brought = std::isnan(last_energy_) ? 0.0 : energy - work_ - last_energy_;
+    work_ += brought;
+    given_ += std::abs(brought);
+    return;
+  }
+  for (const effects::Work& one : brought_) {
+    if (!std::isfinite(one.most)) continue;
+    work_ += one.done + one.most;
+    given_ += std::abs(one.done) + one.most;
+  }
+}
+
+// Whether the work of effects is known without a look at each step.
+bool EnergyWatch::sees_enough() const {
+  return sees_switches_ || std::none_of(meters_.begin(), meters_.end(),
+                                        [](const auto& meter) { return meter->needs_steps(); });
 }
 
 void EnergyWatch::take_in(const World& world) {
@@ -203,11 +221,9 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world,
   for (const ContactPoint& contact : contacts) loss_.note_touch(contact.body_a, contact.body_b);
   if (loss_.look(time, world, states, now, brought_, pass_steps))
     note_rounding(time, now.kinetic, world, states);
-  if ((!sees_switches_ && !meters_.empty()) || has_driven(world)) return std::nullopt;
-  work_ += work_of_effects();
-  for (const effects::Work& one : brought_)
-    if (std::isfinite(one.most)) given_ += std::abs(one.done) + one.most;
-  const double energy = now.kinetic + now.potential - work_;
+  if (!sees_enough() || has_driven(world)) return std::nullopt;
+  add_work_of_effects(now.kinetic + now.potential);
+  const double energy = last_energy_ = now.kinetic + now.potential - work_;
   if (std::isnan(first_energy_)) begin(world, now);
   // methods whose energy swings, as symplectic ones' does, have begun to by now: that is no runaway
   else if (std::exchange(is_first_step_, false)) {

@@ -32,7 +32,7 @@ class EnergyWatch {
   /// motion is not asked for
   /// @param step  of the run [s]
   /// @param sees_switches  whether it looks at each instant at which a force begins or ends, or a
-  /// control law looks: else worlds with effects that bring energy in go unwatched
+  /// control law looks: else worlds go unwatched whose effects bring in what depends on each step
   EnergyWatch(double restitution_threshold, double step, bool sees_switches)
       : restitution_threshold_(restitution_threshold),
         step_(step),
@@ -82,7 +82,8 @@ class EnergyWatch {
     bool is_at_contact;  // of that body, or of what it is linked with
   };
   void begin(const World& world, const EnergyByBody& energy);
-  double work_of_effects() const;
+  void add_work_of_effects(double energy);
+  bool sees_enough() const;
   void tell_of_rises(const World& world, RunCounters& counters) const;
   void tell_of_losses(const World& world, const Laws& laws, RunCounters& counters) const;
   void note_rounding(double time, double kinetic, const World& world,
@@ -104,9 +105,9 @@ class EnergyWatch {
   std::vector<effects::Work> brought_;  // since the last look, by body
   // what effects have brought in, at most, and without its sign [J]
   double work_ = 0.0, given_ = 0.0;
-  // [J]
-  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0,
-         by_impacts_ = 0.0;
+  // without what effects have brought in, at the first look and at the last; the others [J]
+  double first_energy_ = kUnset, last_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0,
+         lowest_potential_ = 0.0, by_impacts_ = 0.0;
   // the least so far; of all bodies m v^2 of the restitution threshold, and m g size [J]
   double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;
   double rounding_ = 0.0;  // what it leaves of an energy, where one has risen [J]
