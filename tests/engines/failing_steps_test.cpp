@@ -286,7 +286,7 @@ TEST(Notices, OfStepsThatAnImpactPreventsAreNone) {
   const Laws laws = with_spinning_steps(test_laws());
   for (const auto& [met_at, count] : {std::pair{0.43, 0U}, {0.47, 0U}, {0.49, 0U}, {0.75, 1U}}) {
     SCOPED_TRACE(met_at);
-    const scene::Scene scene = pushed_carts(1, met_at, 1.0);
+    const scene::Scene scene = beside_much_energy(pushed_carts(1, met_at, 1.0));
     for (const Told& told : {Told{"ordered"}, Told{"ca"}, Told{"tw", 1}, Told{"tw", 2},
                              Told{"tw", 1, by_lot(1)}, Told{"tw", 1, by_lot(2)}}) {
       const Trajectory run = run_told(told, scene, laws);
