@@ -48,6 +48,10 @@ struct ContactConstants {
   /// of the smaller body: how far points of one contact lie from each other at two instants of a
   /// step, at most. Larger: one corner is taken for another. Smaller: contacts lose their middle.
   double midway = 0.3;
+  /// of what the two have turned against each other between them: how far the normal of one contact
+  /// turns, at most; that of edges turns by 1 / sin(angle between them) of it. Larger: one face is
+  /// taken for the next. Smaller: edges that cross at less than 20 degrees lose their middle.
+  double midway_turn = 3.0;
 
   // ---- The step
   /// of the longest step: what changes sooner than this after a step's start, or before its end,
@@ -59,6 +63,10 @@ struct ContactConstants {
   /// rad: an island that turns twice as far in a step gets a shorter one; the error left is of
   /// second order. Larger: that error grows. Smaller: more steps.
   double most_turn = 0.05;
+  /// of the longest step: one in which what presses goes over a corner to the next face is not cut
+  /// below this; it presses for all of that part or for none. Larger: that error, of first order,
+  /// grows. Smaller: more steps.
+  double shortest_step_at_corners = 1.0 / 16;
   /// rad: where nothing turns more in a step, forces of its start do for the whole. Larger: energy
   /// errors. Smaller: a second solve for most steps.
   double even_turn = 1e-5;

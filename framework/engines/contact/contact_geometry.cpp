@@ -112,23 +112,53 @@ double ContactGeometry::same_within(Pair pair) const {
                          : kContact.midway * size_of(pair);
 }
 
-// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where
-// none lies as near as that.
-const collision::ManifoldPoint* ContactGeometry::same_point(
-    Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at,
-    const ContactManifold& points, const std::vector<RigidBodyState>& at, double near) {
+// The point of `points` that is `p` at another time: fixed in one of the two bodies. None where
+// none lies as near, or where its normal has turned farther than the bodies explain: that of a face
+// stands still in its body, that of two edges turns with both. Where an edge has gone over a
+// corner, the point of the next face lies as near as its own would.
+ContactGeometry::SamePoint ContactGeometry::same_point(Pair pair, const collision::ManifoldPoint& p,
+                                                       const std::vector<RigidBodyState>& p_at,
+                                                       const ContactManifold& points,
+                                                       const std::vector<RigidBodyState>& at,
+                                                       double near) const {
+  const RigidBodyState &a_then = p_at[pair.first], &b_then = p_at[pair.second],
+                       &a_now = at[pair.first], &b_now = at[pair.second];
   const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d {
     return s.world_from_body.conjugate() * (x - s.com_world);
   };
-  const collision::ManifoldPoint* best = nullptr;
-  double distance = near;
+  const auto turn_in = [&](const RigidBodyState& then, const RigidBodyState& now,
+                           const collision::ManifoldPoint& q) {
+    return (then.world_from_body.conjugate() * p.normal_b_to_a_world -
+            now.world_from_body.conjugate() * q.normal_b_to_a_world)
+        .norm();
+  };
+  // those of a ball turn about its centre and about edges, however little it turns itself
+  const double most_turn =
+      are_balls(pair) || is_ball_on_edges(pair)
+          ? std::numeric_limits<double>::infinity()
+          : kSixDigits +
+                kContact.midway_turn *
+                    (a_then.world_from_body.conjugate() * b_then.world_from_body)
+                        .angularDistance(a_now.world_from_body.conjugate() * b_now.world_from_body);
+  const auto way_to = [&](const collision::ManifoldPoint& q) {
+    return std::min((in(a_then, p.point_a_world) - in(a_now, q.point_a_world)).norm(),
+                    (in(b_then, p.point_b_world) - in(b_now, q.point_b_world)).norm());
+  };
+  // of several that lie together, as in a groove, the one with its normal
+  double nearest = near;
+  for (const collision::ManifoldPoint& q : points) nearest = std::min(nearest, way_to(q));
+  double distance = std::min(near, 2 * nearest + kSixDigits * size_of(pair));
+  SamePoint best;
   for (const collision::ManifoldPoint& q : points) {
-    const double d = std::min(
-        (in(p_at[pair.first], p.point_a_world) - in(at[pair.first], q.point_a_world)).norm(),
-        (in(p_at[pair.second], p.point_b_world) - in(at[pair.second], q.point_b_world)).norm());
-    if (d >= distance) continue;
-    distance = d;
-    best = &q;
+    const double way = way_to(q);
+    if (way >= distance) continue;
+    const double turn = std::min(turn_in(a_then, a_now, q), turn_in(b_then, b_now, q));
+    if (turn > most_turn) {
+      best.is_over_a_corner = best.is_over_a_corner || turn > kContact.most_turn;
+      continue;
+    }
+    distance = way;
+    best.point = &q;
   }
   return best;
 }

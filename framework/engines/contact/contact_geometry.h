@@ -63,13 +63,16 @@ class ContactGeometry {
   Vector3d point_of(Pair pair, const collision::ManifoldPoint& point) const;
   /// How far the points of one contact may lie from each other at two instants of a step. [m]
   double same_within(Pair pair) const;
-  /// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where
-  /// none lies as near as `near` [m].
-  static const collision::ManifoldPoint* same_point(Pair pair, const collision::ManifoldPoint& p,
-                                                    const std::vector<RigidBodyState>& p_at,
-                                                    const ContactManifold& points,
-                                                    const std::vector<RigidBodyState>& at,
-                                                    double near);
+  /// A point of a contact at another instant.
+  struct SamePoint {
+    const collision::ManifoldPoint* point = nullptr;  // null: it is there no more
+    bool is_over_a_corner = false;  // a point as near has the normal of another face or edge
+  };
+  /// The point of `points` that is `p` at another time: fixed in one of the two bodies, within
+  /// `near` [m], on the same face or edges.
+  SamePoint same_point(Pair pair, const collision::ManifoldPoint& p,
+                       const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
+                       const std::vector<RigidBodyState>& at, double near) const;
 
  private:
   MovingWorld& moving_;

@@ -149,10 +149,16 @@ StepContacts PersistentContacts::contacts_midway(const ContactIsland& island,
                           at_end = geometry_.points_at(pair, ends, reach);
     for (std::size_t i = from; i < to; ++i) {
       StepContact step_contact = contacts[i];
-      const collision::ManifoldPoint* mid =
+      const ContactGeometry::SamePoint at_mid =
           geometry_.same_point(pair, step_contact.point, starts, at_middle, middle, near);
-      const collision::ManifoldPoint* end =
-          mid ? geometry_.same_point(pair, *mid, middle, at_end, ends, near) : nullptr;
+      const collision::ManifoldPoint *const mid = at_mid.point, *end = nullptr;
+      step_contact.leaves_its_face = !mid && at_mid.is_over_a_corner;
+      if (mid) {
+        const ContactGeometry::SamePoint then =
+            geometry_.same_point(pair, *mid, middle, at_end, ends, near);
+        end = then.point;
+        step_contact.leaves_its_face = !end && then.is_over_a_corner;
+      }
       if (mid && end) {
         step_contact.point = *mid;
         const Vector3d at_end_point = slip(pair, ends, *end),

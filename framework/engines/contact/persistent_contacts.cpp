@@ -303,6 +303,10 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     if (round > 0) find_ends(island, problem, solution, h, activation, true);
     is_midway = true;
     const StepContacts before = std::exchange(used, contacts_midway(island, contacts));
+    // it presses for the whole of a step or not at all: of a short one
+    if (located && h > kContact.shortest_step_at_corners * memory_.longest_step &&
+        presses_over_a_corner(used, solution))
+      return moving_.time() + 0.5 * h;
     // a load that statics does not tell: until targets fit each other
     if (solution.sharing == LoadSharing::kMostEven && round + 1 == rounds &&
         rounds < kContact.most_sharing_rounds &&

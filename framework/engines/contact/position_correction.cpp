@@ -120,8 +120,9 @@ PositionCorrection::Missing PositionCorrection::add_corrections(
     std::vector<const collision::ManifoldPoint*> at_margin;
     for (const ActiveContact& h : active)
       if (keeps && h.pair == pair)
-        at_margin.push_back(geometry_.same_point(pair, h.point, *h.at, points, states,
-                                                 geometry_.same_within(pair)));
+        at_margin.push_back(
+            geometry_.same_point(pair, h.point, *h.at, points, states, geometry_.same_within(pair))
+                .point);
     for (const collision::ManifoldPoint& point : points) {
       const bool is_active =
           std::find(at_margin.begin(), at_margin.end(), &point) != at_margin.end();

@@ -28,6 +28,12 @@ double slip_speed(const ContactProblem& problem, std::size_t contact,
   return (relative - relative.dot(c.normal_b_to_a_world) * c.normal_b_to_a_world).norm();
 }
 
+bool presses_over_a_corner(const StepContacts& contacts, const ContactSolution& solution) {
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].leaves_its_face && !solution.impulses_world[i].isZero(0.0)) return true;
+  return false;
+}
+
 bool activates(const StepContacts& contacts, const ContactSolution& solution) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].activates && solution.impulses_world[i].squaredNorm() > 0.0) return true;

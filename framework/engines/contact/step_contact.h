@@ -17,7 +17,8 @@ struct StepContact {
   double target;                                  // least normal velocity afterwards [m/s]
   bool activates;                                 // apart at the start of the step
   Vector3d slip_target_world = Vector3d::Zero();  // [m/s], see PushingContact
-  double start_gap = 0.0;  // at the start of the step, wherever `point` is looked at [m]
+  double start_gap = 0.0;        // at the start of the step, wherever `point` is looked at [m]
+  bool leaves_its_face = false;  // within the step, over a corner to the next
 };
 /// Sorted by pair.
 using StepContacts = std::vector<StepContact>;
@@ -34,6 +35,8 @@ double slip_speed(const ContactProblem& problem, std::size_t contact,
 
 /// Whether a contact becomes active in this step that did not touch before.
 bool activates(const StepContacts& contacts, const ContactSolution& solution);
+/// Whether a contact that presses leaves its face within the step.
+bool presses_over_a_corner(const StepContacts& contacts, const ContactSolution& solution);
 /// What touches at the start of the step neither parts nor comes nearer by its end.
 void keep_together(StepContacts& contacts, ContactProblem& problem);
 /// By how much the targets of the same points differ. [m/s]
