@@ -254,9 +254,11 @@ const ProcessStep& IslandSegments::step_at(int number, double t) {
   reach(number, t);
   if (at(number).failure && !is_at_end(at(number).front->time, t, rules_.step)) raise(number);
   const std::deque<ProcessStep>& steps = at(number).steps;
-  std::size_t k = steps.size() - 1;
-  while (k > 0 && steps[k].from.time > t) --k;
-  return steps[k];
+  // by halves: "ordered" draws its frames at the next event, which may be the end of a long run
+  const auto later =
+      std::upper_bound(steps.begin(), steps.end(), t,
+                       [](double time, const ProcessStep& step) { return time < step.from.time; });
+  return later == steps.begin() ? *later : *std::prev(later);
 }
 
 double IslandSegments::step_end(int number, double t) {

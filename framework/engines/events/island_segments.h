@@ -18,6 +18,7 @@
 /// that segments share is locked.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <exception>
@@ -103,8 +104,9 @@ class IslandSegments {
   template <class Work>
   void for_each_step(int segment, double from, double to, const Work& work) {
     reach(segment, to);
-    for (const ProcessStep& step : at(segment).steps)
-      if (step.end >= from && step.from.time <= to) work(step);
+    const std::deque<ProcessStep>& steps = at(segment).steps;
+    for (auto step = first_since(steps, from); step != steps.end() && step->from.time <= to; ++step)
+      work(*step);
   }
   /// The motion of one body along one step, for a search for impacts. @pre low < high lie in one
   /// step
@@ -115,9 +117,9 @@ class IslandSegments {
   void for_each_step(int segment, int body, double from, double to, const Work& work) {
     reach(segment, to);
     const std::size_t member = place(segment, body);
-    for (const ProcessStep& step : at(segment).steps)
-      if (step.end >= from && step.from.time <= to)
-        work(step, member, std::max(from, step.from.time), std::min(to, step.end));
+    const std::deque<ProcessStep>& steps = at(segment).steps;
+    for (auto step = first_since(steps, from); step != steps.end() && step->from.time <= to; ++step)
+      work(*step, member, std::max(from, step->from.time), std::min(to, step->end));
   }
 
   /// A process world of these members, for single queries. @param still  an immovable body that one
@@ -134,6 +136,13 @@ class IslandSegments {
   void add_counts_to(RunCounters& counters) const;
 
  private:
+  /// The first that does not end before it.
+  static std::deque<ProcessStep>::const_iterator first_since(const std::deque<ProcessStep>& steps,
+                                                             double t) {
+    return std::partition_point(steps.begin(), steps.end(),
+                                [&](const ProcessStep& step) { return step.end < t; });
+  }
+
   struct CachedWorld {
     // one for each world, because another thread may count for another world
     RunCounters counters;
