@@ -52,6 +52,10 @@ struct ContactConstants {
   /// turns, at most; that of edges turns by 1 / sin(angle between them) of it. Larger: one face is
   /// taken for the next. Smaller: edges that cross at less than 20 degrees lose their middle.
   double midway_turn = 3.0;
+  /// of the smaller body, and of what the two have turned against each other: a point that has gone
+  /// no farther on either is what they turn about, and may change its normal. Larger: edges that
+  /// slide slowly are taken to a next face. Smaller: hinges of edge on edge lose their middle.
+  double pivot = 0.03;
 
   // ---- The step
   /// of the longest step: what changes sooner than this after a step's start, or before its end,

@@ -132,34 +132,39 @@ ContactGeometry::SamePoint ContactGeometry::same_point(Pair pair, const collisio
             now.world_from_body.conjugate() * q.normal_b_to_a_world)
         .norm();
   };
-  // those of a ball turn about its centre and about edges, however little it turns itself
-  const double most_turn =
-      are_balls(pair) || is_ball_on_edges(pair)
-          ? std::numeric_limits<double>::infinity()
-          : kSixDigits +
-                kContact.midway_turn *
-                    (a_then.world_from_body.conjugate() * b_then.world_from_body)
-                        .angularDistance(a_now.world_from_body.conjugate() * b_now.world_from_body);
-  const auto way_to = [&](const collision::ManifoldPoint& q) {
-    return std::min((in(a_then, p.point_a_world) - in(a_now, q.point_a_world)).norm(),
-                    (in(b_then, p.point_b_world) - in(b_now, q.point_b_world)).norm());
+  const double turned =
+      (a_then.world_from_body.conjugate() * b_then.world_from_body)
+          .angularDistance(a_now.world_from_body.conjugate() * b_now.world_from_body);
+  // normals of a ball turn about its centre and about edges, however little it turns itself
+  const double most_turn = are_balls(pair) || is_ball_on_edges(pair)
+                               ? std::numeric_limits<double>::infinity()
+                               : kSixDigits + kContact.midway_turn * turned;
+  const auto ways_to = [&](const collision::ManifoldPoint& q) {
+    return std::minmax({(in(a_then, p.point_a_world) - in(a_now, q.point_a_world)).norm(),
+                        (in(b_then, p.point_b_world) - in(b_now, q.point_b_world)).norm()});
   };
+  // where an edge turns on an edge every normal between the two faces is right
+  const double at_pivot = (kSixDigits + kContact.pivot * turned) * size_of(pair);
   // of several that lie together, as in a groove, the one with its normal
   double nearest = near;
-  for (const collision::ManifoldPoint& q : points) nearest = std::min(nearest, way_to(q));
+  for (const collision::ManifoldPoint& q : points) nearest = std::min(nearest, ways_to(q).first);
   double distance = std::min(near, 2 * nearest + kSixDigits * size_of(pair));
   SamePoint best;
+  const collision::ManifoldPoint* turned_about = nullptr;
   for (const collision::ManifoldPoint& q : points) {
-    const double way = way_to(q);
+    const auto [way, longer_way] = ways_to(q);
     if (way >= distance) continue;
     const double turn = std::min(turn_in(a_then, a_now, q), turn_in(b_then, b_now, q));
-    if (turn > most_turn) {
+    if (turn <= most_turn) {
+      distance = way;
+      best.point = &q;
+    } else if (longer_way <= at_pivot) {
+      turned_about = &q;
+    } else {
       best.is_over_a_corner = best.is_over_a_corner || turn > kContact.most_turn;
-      continue;
     }
-    distance = way;
-    best.point = &q;
   }
+  if (!best.point) best.point = turned_about;
   return best;
 }
 
