@@ -415,5 +415,36 @@ TEST(ImpactEnergy, IsJudgedAtEveryImpact) {
   }
 }
 
+// A lever lies on the floor, and a block falls on it: block and floor hand the lever to and fro in
+// one instant, and of its speed roundings of the first blow's are left. They are no wrong energy.
+TEST(ImpactEnergy, IsNotThatOfRoundingsWhereBodiesComeToRest) {
+  for (const double block_kg : {1.0, 5.0})
+    for (const double speed_m_s : {1.0, 20.0}) {
+      constexpr double kLength = 0.8, kHalfWidth = 0.03, kTilt = 0.3;
+      const double height = kLength * std::sin(kTilt) + kHalfWidth * std::cos(kTilt);
+      scene::BodySpec lever =
+          box("lever", {0.5 * kLength, kHalfWidth, kHalfWidth}, 1.0,
+              {0.5 * kLength * std::cos(kTilt), 0, height - 0.5 * kLength * std::sin(kTilt)},
+              Vector3d::Zero());
+      lever.world_from_body = Quaterniond(Eigen::AngleAxisd(kTilt, Vector3d::UnitY()));
+      scene::Scene scene = scene_of(
+          {plane("floor", Vector3d::Zero(), Vector3d::UnitZ()), lever,
+           box("block", {0.05, 0.05, 0.05}, block_kg, {0.5, 0, height + 0.3}, {0, 0, -speed_m_s})},
+          0.4, Vector3d(0, 0, -9.81));
+      for (scene::BodySpec& body : scene.bodies) body.restitution = body.friction = 0.0;
+      scene.effects.of<effects::JointSpec>().push_back(
+          {"hinge", effects::JointKind::kHinge, "lever", "", {0, 0, height}, Vector3d::UnitY()});
+      scene.contact.emplace();
+      scene.step_s = 1.0 / 240;
+      for (const std::string& engine : kEngines) {
+        const Trajectory run = run_by(engine, scene, {}, 60.0, laws());
+        EXPECT_GT(run.events.size(), 5u);
+        for (const auto& result : engines::judge_run(scene, run))
+          EXPECT_TRUE(result.passed) << engine << ", " << block_kg << " kg: " << result.kind << ' '
+                                     << result.value << ' ' << result.detail;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace tumble::testing::linked_impacts

@@ -202,7 +202,8 @@ bool ContactActivation::apply_impact(const ContactIsland& island, StepContacts d
   // unsolved: never more is all that can be asked
   double excess = by_contacts.excess(
       solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities)
-                         : by_contacts.change);
+                         : by_contacts.change,
+      restitution_threshold_);
   // One event a pair: where its impulse is largest, with the sum of all.
   for (std::size_t from = 0, to = 0; from < down.size(); from = to) {
     std::size_t largest = from;

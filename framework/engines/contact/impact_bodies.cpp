@@ -67,8 +67,9 @@ void EnergyOfImpact::add(const Inertia& inertia, const Quaterniond& q, const Vel
   change += 0.5 * (w_after - w).dot(inertia.inertia_body * (w + w_after));
 }
 
-double EnergyOfImpact::excess(double by_law) const {
-  const double size = before + std::abs(by_law) + 0.5 * mass * kNegligibleSpeed * kNegligibleSpeed;
+double EnergyOfImpact::excess(double by_law, double least_speed) const {
+  const double speed = std::max(least_speed, kNegligibleSpeed),
+               size = before + std::abs(by_law) + 0.5 * mass * speed * speed;
   return size > 0 ? std::max(std::abs(change - by_law), change) / size : change;
 }
 

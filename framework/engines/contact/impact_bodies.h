@@ -36,8 +36,10 @@ struct EnergyOfImpact {
   void add(const Inertia& inertia, const Quaterniond& world_from_body, const Velocity& from,
            const Velocity& to, const Vector3d& seen_from_world);
   /// How far the change is from what the law says, or above 0, over the energy before; over that of
-  /// kNegligibleSpeed where there is less.
-  double excess(double by_law) const;
+  /// a speed that matters where there is less. What bodies at rest are left with are roundings of
+  /// the speeds that they had a moment before.
+  /// @param least_speed  that matters [m/s]
+  double excess(double by_law, double least_speed) const;
 };
 
 /// The velocities that the bodies of a problem have before its impulses.

@@ -163,7 +163,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   work.result.events.push_back({work.bodies.moving().time(), EventKind::kCollision, pair.a, pair.b,
                                 contact.point_world, contact.normal_b_to_a_world, impulse, approach,
                                 normal_velocity(contact, a, b), energy.change,
-                                energy.excess(by_law)});
+                                energy.excess(by_law, rules_.restitution_threshold)});
   return true;
 }
 
@@ -324,7 +324,8 @@ bool SequentialImpacts::collide_together(Work& work, const std::vector<const Tou
   // unsolved: never more is all that can be asked
   const double excess = energy.excess(
       solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities)
-                         : energy.change);
+                         : energy.change,
+      rules_.restitution_threshold);
   bool is_first = true;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const TouchingPair& pair = *met[i].pair;

@@ -94,7 +94,8 @@ void FlightImpactResponse::collide(Work& work) const {
     work.record({work.result.key.time, EventKind::kCollision, a, b, contact.point_world,
                  contact.normal_b_to_a_world, impulse, approach,
                  normal_velocity(contact, work.a, work.b), energy.change,
-                 energy.excess(work_of_impulse(impulse, approach, restitution))});
+                 energy.excess(work_of_impulse(impulse, approach, restitution),
+                               rules_.restitution_threshold)});
   }
 }
 
