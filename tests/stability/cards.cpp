@@ -138,6 +138,24 @@ scene::Scene card_house(double a, double mu, int levels, const std::filesystem::
   return with_contact("card house", std::move(bodies));
 }
 
+/// What a house gains where it becomes a large island, over its energy. Bodies of one are kept
+/// 1e-4 of the smaller's radius apart (large_island_margin in
+/// framework/engines/contact/contact_constants.h): each is lifted by as much for each contact
+/// between it and the floor, and nobody pays for that. 1e-6 beside it are roundings.
+double lift_into_large_island(const scene::Scene& house, double energy) {
+  constexpr std::size_t kFewBodies = 12;
+  constexpr double kMargin = 1e-4;
+  if (house.bodies.size() - 1 <= kFewBodies) return 0.0;  // without the floor
+  const double level = cut_card(0.4).high + kThickness, radius = std::hypot(0.5, 0.5);
+  double gained = 0.0;
+  for (const scene::BodySpec& body : house.bodies) {
+    // cards of a level stand on a plank, which lies on the cards of the level below
+    const double below = 2 * std::floor(body.position_m.z() / level) + 1;
+    gained += body.mass_kg.value_or(0.0) * kG * below * kMargin * radius;
+  }
+  return gained / energy;
+}
+
 /// However the load is shared: a card that carries nothing at its top stands from limit(), one that
 /// carries any load from foot / high.
 void card_house(const Given& given, Findings& findings, int levels) {
@@ -163,9 +181,8 @@ void card_house(const Given& given, Findings& findings, int levels) {
   constexpr double fall_s = 0.3;
   // impacts of many cards at once come in another order at every step
   for (const int rate : {240, 333}) {
-    const Trajectory falls =
-        run_by_steps(card_house(0.4, 0.9 * card.limit(), levels, folder.path()), given.laws, fall_s,
-                     1.0 / rate, 100);
+    const scene::Scene house = card_house(0.4, 0.9 * card.limit(), levels, folder.path());
+    const Trajectory falls = run_by_steps(house, given.laws, fall_s, 1.0 / rate, 100);
     const std::string fall =
         name +
         fmt::format("mu = 0.9 of the limit of a free tent, {:g} s at 1/{} s: ", fall_s, rate);
@@ -173,8 +190,11 @@ void card_house(const Given& given, Findings& findings, int levels) {
                        "friction too small for the lightest load");
     findings.at_most(fall + "way of any card", way(falls), 0.5 * kG * fall_s * fall_s, "m",
                      "g t^2 / 2: none is thrown farther than it could fall");
-    findings.at_most(fall + "rise of the energy", energy_rise(falls), 1e-6, "",
-                     "friction and plastic impacts only take");
+    findings.at_most(
+        fall + "rise of the energy", energy_rise(falls),
+        1e-6 + lift_into_large_island(house, energy_of(falls.frames.front())), "",
+        "friction and plastic impacts only take; where a house becomes a large island, "
+        "its bodies are lifted to their margins once");
   }
 }
 
