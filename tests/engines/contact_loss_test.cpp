@@ -230,6 +230,15 @@ TEST(ContactLoss, IsNoneWhereAnEdgeTurnsAboutAnother) {
   EXPECT_NEAR(end_energy(1.0 / 60), end_energy(1.0 / 960), 4.0);
 }
 
+// What presses goes over a corner of the bowl again and again: for the whole of a step or not at
+// all. In uncut steps the box gained 0.28 of the energy that there is.
+TEST(ContactLoss, IsNoneWhereABoxGoesOverTheCornersOfABowl) {
+  for (const std::string engine : {"rd", "ordered"}) {
+    const Trajectory run = run_by(engine, broken_scene("box_in_a_bowl"));
+    EXPECT_TRUE(run.counters.faults.empty()) << engine << said(run);
+  }
+}
+
 TEST(OverlapLeft, InAFrameBetweenTheEndsOfStepsIsTold) {
   for (const std::string engine : {"ordered", "tw"})
     for (const bool is_coarse : {true, false}) {
