@@ -149,8 +149,8 @@ double lift_into_large_island(const scene::Scene& house, double energy) {
   const double level = cut_card(0.4).high + kThickness, radius = std::hypot(0.5, 0.5);
   double gained = 0.0;
   for (const scene::BodySpec& body : house.bodies) {
-    // cards of a level stand on a plank, which lies on the cards of the level below
-    const double below = 2 * std::floor(body.position_m.z() / level) + 1;
+    // a card's centre lies in the lower half of its level, a plank's at the level's end
+    const double below = std::ceil(2 * body.position_m.z() / level);
     gained += body.mass_kg.value_or(0.0) * kG * below * kMargin * radius;
   }
   return gained / energy;
